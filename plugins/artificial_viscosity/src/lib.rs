@@ -1,0 +1,1 @@
+//! artificial_viscosity

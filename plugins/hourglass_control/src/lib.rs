@@ -1,0 +1,1 @@
+//! hourglass_control

@@ -1,0 +1,15 @@
+//! The engine of `meshless`: particles are hecs entities with component columns, systems run in stages.
+//!
+//! The data flow is scene -> world -> schedule -> systems -> recording; imports between the modules go down this
+//! list, never up.
+//!
+//! Conventions that hold everywhere: SI units, three-dimensional vectors (a two-dimensional scene is plane strain in
+//! x-y with z = 0), pair vectors point from i to j, `x_ij = x_j - x_i`, and the pair weight is
+//! `w_ij = |W'(r)| / r > 0`, so that `grad_i W = w_ij x_ij`.
+
+pub mod kernels;
+pub mod materials;
+pub mod neighbors;
+pub mod record;
+pub mod scene;
+pub mod shapes;

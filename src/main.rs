@@ -1,0 +1,2 @@
+//! meshless
+fn main(){}
