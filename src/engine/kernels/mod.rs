@@ -1,1 +1,32 @@
-//! Placeholder.
+//! Smoothing kernels W(r, h).
+//!
+//! A kernel is a profile f(q), q = r / h, scaled to unit integral: `W(r, h) = sigma_d / h^d f(r / h)`. Two lengths are
+//! never confused: the *smoothing length* h in which profiles are written, and the *support radius* H = SUPPORT x h
+//! at and beyond which W is exactly zero. Derivatives are with respect to r; the pair weight is
+//! `w = |W'(r)| / r >= 0`, so that `grad_i W = w x_ij` with `x_ij = x_j - x_i`.
+//!
+//! To add a kernel: one file with its [`KernelProfile`] and one line in `registry.rs`.
+
+mod cubic_spline;
+mod kernel;
+mod profile;
+mod quartic_spline;
+mod quintic_spline;
+mod registry;
+mod spiky;
+#[cfg(test)]
+mod tests;
+mod wendland_c2;
+mod wendland_c4;
+mod wendland_c6;
+
+pub use cubic_spline::CubicSpline;
+pub use kernel::{Kernel, ProfiledKernel, ScaledKernel};
+pub use profile::KernelProfile;
+pub use quartic_spline::QuarticSpline;
+pub use quintic_spline::QuinticSpline;
+pub use registry::{KernelName, KernelVisitor};
+pub use spiky::Spiky;
+pub use wendland_c2::WendlandC2;
+pub use wendland_c4::WendlandC4;
+pub use wendland_c6::WendlandC6;
