@@ -1,1 +1,11 @@
-//! Placeholder.
+//! What a run writes, and how it is read back: the file formats.
+//!
+//! The files know nothing of the world or the scene: slices go in, files come out.
+
+pub mod atomic;
+pub mod container;
+pub mod hash;
+
+pub use atomic::{Existing, WriteError, write_atomically};
+pub use container::{Container, ContainerError, ContainerWriter, Section};
+pub use hash::{StateHash, StateHasher};
