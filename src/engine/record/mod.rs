@@ -5,7 +5,9 @@
 pub mod atomic;
 pub mod container;
 pub mod hash;
+pub mod series;
 
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
 pub use hash::{StateHash, StateHasher};
+pub use series::{Column, Series, SeriesError, SeriesWriter, read_series};

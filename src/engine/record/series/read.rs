@@ -1,0 +1,150 @@
+//! Reading series back: those of a run and reference data.
+
+use std::path::{Path, PathBuf};
+
+use csv::StringRecord;
+
+use super::SeriesError;
+
+/// A column of a series.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, without the unit.
+    pub name: String,
+    /// Its unit, where the header ends in one in brackets: `x[m]`.
+    pub unit: Option<String>,
+}
+
+impl Column {
+    pub(super) fn new(header: &str) -> Self {
+        match header.strip_suffix(']').and_then(|text| text.rsplit_once('[')) {
+            Some((name, unit)) => Self { name: name.to_owned(), unit: Some(unit.to_owned()) },
+            None => Self { name: header.to_owned(), unit: None },
+        }
+    }
+
+    fn header(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{}[{unit}]", self.name),
+            None => self.name.clone(),
+        }
+    }
+}
+
+/// A table of named columns, read from a CSV file.
+#[derive(Debug)]
+pub struct Series {
+    path: PathBuf,
+    columns: Vec<Column>,
+    rows: Vec<StringRecord>,
+}
+
+impl Series {
+    /// The columns, from left to right.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The column `name` as numbers; an empty cell is NaN, a text is an error. The name may carry its unit.
+    pub fn numbers(&self, name: &str) -> Result<Vec<f64>, SeriesError> {
+        let column = self.find(name)?;
+        self.rows
+            .iter()
+            .map(|row| match &row[column] {
+                "" => Ok(f64::NAN),
+                cell => cell.parse().map_err(|_| SeriesError::NotANumber {
+                    path: self.path.clone(),
+                    line: row.position().map_or(0, csv::Position::line),
+                    column: name.to_owned(),
+                    found: cell.to_owned(),
+                }),
+            })
+            .collect()
+    }
+
+    /// The column `name` as it stands in the file, without the blanks around it.
+    pub fn texts(&self, name: &str) -> Result<Vec<&str>, SeriesError> {
+        let column = self.find(name)?;
+        Ok(self.rows.iter().map(|row| &row[column]).collect())
+    }
+
+    fn find(&self, name: &str) -> Result<usize, SeriesError> {
+        self.columns.iter().position(|column| column.name == name || column.header() == name).ok_or_else(
+            || SeriesError::NoColumn {
+                path: self.path.clone(),
+                name: name.to_owned(),
+                known: self
+                    .columns
+                    .iter()
+                    .map(|column| format!("`{}`", column.header()))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            },
+        )
+    }
+}
+
+/// Reads the CSV file `path`.
+///
+/// Lines that begin with `#` are comments. The first other line names the columns; if it holds nothing but numbers,
+/// it is the first row and the columns are named `0`, `1`, ...
+pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
+    let failed = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(source) => SeriesError::Read { path: path.to_path_buf(), source },
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => malformed(
+            path,
+            format!("line {} has {len} cells, expected {expected_len}", pos.map_or(0, |pos| pos.line())),
+        ),
+        csv::ErrorKind::Utf8 { pos, err } => {
+            malformed(path, format!("line {}: {err}, expected UTF-8", pos.map_or(0, |pos| pos.line())))
+        }
+        other => malformed(path, format!("{other:?}")),
+    };
+    let rows: Result<Vec<StringRecord>, _> = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_path(path)
+        .map_err(failed)?
+        .into_records()
+        .collect();
+    let mut rows = rows.map_err(failed)?;
+    let first = rows
+        .first()
+        .ok_or_else(|| malformed(path, "it is empty, expected a line of column names".to_owned()))?;
+    let columns = if first.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        (0..first.len()).map(|index| Column { name: index.to_string(), unit: None }).collect()
+    } else {
+        rows.remove(0).iter().map(Column::new).collect::<Vec<_>>()
+    };
+    check_names(path, &columns)?;
+    Ok(Series { path: path.to_path_buf(), columns, rows })
+}
+
+/// Every column must be found by its name.
+pub(super) fn check_names(path: &Path, columns: &[Column]) -> Result<(), SeriesError> {
+    for (index, column) in columns.iter().enumerate() {
+        let Column { name, .. } = column;
+        if name.is_empty() {
+            return Err(malformed(path, format!("column {} has no name", index + 1)));
+        }
+        if columns[..index].iter().any(|earlier| earlier.name == *name) {
+            return Err(malformed(path, format!("two columns are named `{name}`, names must differ")));
+        }
+    }
+    Ok(())
+}
+
+fn malformed(path: &Path, what: String) -> SeriesError {
+    SeriesError::Malformed { path: path.to_path_buf(), what }
+}
