@@ -1,1 +1,26 @@
-//! Placeholder.
+//! Neighbour lists.
+//!
+//! Particle j is in row i when `|x_ij| < (H_i + H_j) / 2 + skin`, with `x_ij = x_j - x_i` to the nearest periodic
+//! image and H the support radius. Lists are full (a pair is in both rows), rows are in ascending order and a
+//! particle is never its own neighbour. A list depends on positions, supports and skin alone: not on the number of
+//! threads, nor on what the buffers held before.
+//!
+//! Two uses: [`NeighborList::reference`], built once (total Lagrangian), and [`VerletList`], rebuilt when something
+//! has moved more than half the skin, within one set of particles or from one set to another (fluid and solid).
+
+mod cloud;
+mod error;
+mod grid;
+mod list;
+mod periodic;
+mod search;
+#[cfg(test)]
+mod tests;
+mod verlet;
+
+pub use cloud::{Cloud, Support};
+pub use error::NeighborError;
+pub use list::NeighborList;
+pub use periodic::Periodic;
+pub use search::NeighborSearch;
+pub use verlet::VerletList;

@@ -1,0 +1,81 @@
+//! A set of particles as the search sees it.
+
+use super::NeighborError;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Support radii of a set of particles.
+#[derive(Debug, Clone, Copy)]
+pub enum Support<'a> {
+    /// One support radius [m] for all: the faster case.
+    Uniform(f64),
+    /// One support radius [m] a particle. Cells are as large as the largest: the cost grows with the cube of the ratio
+    /// of largest to usual support.
+    PerParticle(&'a [f64]),
+}
+
+/// Positions [m] and support radii of a set of particles, in row order.
+#[derive(Debug, Clone, Copy)]
+pub struct Cloud<'a> {
+    /// Positions [m].
+    pub positions: &'a [DVec3],
+    /// Support radii [m].
+    pub support: Support<'a>,
+}
+
+impl<'a> Cloud<'a> {
+    /// Particles that share one support radius [m].
+    pub const fn uniform(positions: &'a [DVec3], support_radius: f64) -> Self {
+        Self { positions, support: Support::Uniform(support_radius) }
+    }
+
+    /// Particles with a support radius [m] each.
+    pub const fn per_particle(positions: &'a [DVec3], support_radii: &'a [f64]) -> Self {
+        Self { positions, support: Support::PerParticle(support_radii) }
+    }
+
+    #[inline]
+    pub(super) fn support_of(&self, index: usize) -> f64 {
+        match self.support {
+            Support::Uniform(radius) => radius,
+            Support::PerParticle(radii) => radii[index],
+        }
+    }
+
+    /// Largest support radius, zero for an empty set.
+    pub(super) fn largest_support(&self) -> f64 {
+        match self.support {
+            Support::Uniform(radius) => radius,
+            Support::PerParticle(radii) => radii.par_iter().copied().reduce(|| 0.0, f64::max),
+        }
+    }
+
+    /// Smallest box around the positions; an inverted box for an empty set.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        self.positions
+            .par_iter()
+            .with_min_len(4096)
+            .fold(empty, |(lo, hi), x| (lo.min(*x), hi.max(*x)))
+            .reduce(empty, |a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    pub(super) fn check(&self, set: &'static str) -> Result<(), NeighborError> {
+        let count = self.positions.len();
+        if count >= u32::MAX as usize {
+            return Err(NeighborError::TooMany(count));
+        }
+        if let Some(index) = self.positions.par_iter().with_min_len(4096).position_first(|x| !x.is_finite()) {
+            return Err(NeighborError::Position { set, index, position: self.positions[index] });
+        }
+        let bad = |radius: &f64| !(*radius > 0.0 && radius.is_finite());
+        let wrong = match self.support {
+            Support::Uniform(radius) => bad(&radius).then_some((0, radius)),
+            Support::PerParticle(radii) if radii.len() != count => {
+                return Err(NeighborError::Length { set, positions: count, supports: radii.len() });
+            }
+            Support::PerParticle(radii) => radii.iter().position(bad).map(|index| (index, radii[index])),
+        };
+        wrong.map_or(Ok(()), |(index, value)| Err(NeighborError::SupportRadius { set, index, value }))
+    }
+}

@@ -1,0 +1,69 @@
+//! What can be wrong with the input of a neighbour search.
+
+use glam::DVec3;
+
+/// Why a neighbour list cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NeighborError {
+    /// A position is NaN or infinite.
+    #[error("position of {set} particle {index} is not finite: {position}")]
+    Position {
+        /// "target" or "source".
+        set: &'static str,
+        /// Row of the particle in its set.
+        index: usize,
+        /// The position [m].
+        position: DVec3,
+    },
+    /// A support radius is not a positive finite number.
+    #[error("support radius of {set} particle {index} is {value} m; it must be positive and finite")]
+    SupportRadius {
+        /// "target" or "source".
+        set: &'static str,
+        /// Row of the particle in its set; 0 where all share one.
+        index: usize,
+        /// The support radius [m].
+        value: f64,
+    },
+    /// Not one support radius for each particle.
+    #[error("{supports} support radii for {positions} {set} particles; one for each is needed")]
+    Length {
+        /// "target" or "source".
+        set: &'static str,
+        /// Number of positions.
+        positions: usize,
+        /// Number of support radii.
+        supports: usize,
+    },
+    /// The skin is negative or not finite.
+    #[error("skin is {0} m; it must be zero or positive, and finite")]
+    Skin(f64),
+    /// A particle would see two images of another.
+    #[error(
+        "periodic domain is {length} m long in {axis}; it must be at least twice the largest support radius plus \
+         skin, {needed} m"
+    )]
+    PeriodicTooShort {
+        /// "x", "y" or "z".
+        axis: char,
+        /// Length of the domain [m].
+        length: f64,
+        /// Least length [m].
+        needed: f64,
+    },
+    /// The bounds of a periodic axis do not make an interval.
+    #[error(
+        "periodic domain reaches from {min} m to {max} m in {axis}; the end must be above the start, both finite"
+    )]
+    PeriodicBounds {
+        /// "x", "y" or "z".
+        axis: char,
+        /// Start [m].
+        min: f64,
+        /// End [m].
+        max: f64,
+    },
+    /// Rows are numbered in 32 bits.
+    #[error("{0} particles in one neighbour search; at most 4294967294 are possible")]
+    TooMany(usize),
+}

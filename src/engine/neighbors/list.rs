@@ -1,0 +1,89 @@
+//! The list itself, rows in one array.
+
+use super::{Cloud, NeighborError, NeighborSearch, Periodic};
+use std::ops::Range;
+
+/// Neighbours of every target particle, in compressed rows: row i is `indices[offsets[i]..offsets[i + 1]]`,
+/// ascending. Data of pairs lie in arrays parallel to `indices`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NeighborList {
+    pub(super) offsets: Vec<usize>,
+    pub(super) indices: Vec<u32>,
+}
+
+impl Default for NeighborList {
+    fn default() -> Self {
+        Self { offsets: vec![0], indices: Vec::new() }
+    }
+}
+
+impl NeighborList {
+    /// List of a set of particles with itself, for good: no skin, no spare memory.
+    ///
+    /// # Errors
+    /// See [`NeighborError`].
+    pub fn reference(cloud: Cloud<'_>, periodic: &Periodic) -> Result<Self, NeighborError> {
+        let mut list = Self::default();
+        NeighborSearch::default().within(cloud, 0.0, periodic, &mut list)?;
+        list.offsets.shrink_to_fit();
+        list.indices.shrink_to_fit();
+        Ok(list)
+    }
+
+    /// Number of target particles.
+    pub fn rows(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Number of directed pairs.
+    pub fn pairs(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Neighbours of particle `i`, ascending.
+    #[inline]
+    pub fn row(&self, i: usize) -> &[u32] {
+        &self.indices[self.range(i)]
+    }
+
+    /// Where row `i` lies in [`NeighborList::indices`] and in arrays of pair data.
+    #[inline]
+    pub fn range(&self, i: usize) -> Range<usize> {
+        self.offsets[i]..self.offsets[i + 1]
+    }
+
+    /// Row starts, one more than there are rows.
+    pub fn offsets(&self) -> &[usize] {
+        &self.offsets
+    }
+
+    /// All rows one after another.
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    /// Number of neighbours of each particle.
+    pub fn counts(&self) -> impl Iterator<Item = usize> {
+        self.offsets.windows(2).map(|w| w[1] - w[0])
+    }
+
+    /// Mean number of neighbours, zero without particles.
+    pub fn mean_count(&self) -> f64 {
+        self.pairs() as f64 / self.rows().max(1) as f64
+    }
+
+    /// Least number of neighbours, zero without particles.
+    pub fn min_count(&self) -> usize {
+        self.counts().min().unwrap_or(0)
+    }
+
+    /// Largest number of neighbours, zero without particles.
+    pub fn max_count(&self) -> usize {
+        self.counts().max().unwrap_or(0)
+    }
+
+    /// Memory held [B].
+    pub fn memory_bytes(&self) -> usize {
+        self.offsets.capacity() * size_of::<usize>() + self.indices.capacity() * size_of::<u32>()
+    }
+}

@@ -1,0 +1,85 @@
+//! Periodic domains.
+
+use super::NeighborError;
+use glam::DVec3;
+
+pub(super) const AXIS_NAMES: [char; 3] = ['x', 'y', 'z'];
+
+/// Which axes are periodic and how long they are. Positions need not lie inside.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Periodic {
+    min: DVec3,
+    axes: [bool; 3],
+    /// Zero on axes that are not periodic: with it, the minimal image needs no branch.
+    length: DVec3,
+    inverse_length: DVec3,
+}
+
+impl Periodic {
+    /// No periodic axis.
+    pub const NONE: Self =
+        Self { min: DVec3::ZERO, axes: [false; 3], length: DVec3::ZERO, inverse_length: DVec3::ZERO };
+
+    /// A box from `min` to `max` [m], periodic along the `axes` that are true; bounds of other axes are not used.
+    ///
+    /// # Errors
+    /// [`NeighborError::PeriodicBounds`] where a periodic axis has no positive finite length.
+    pub fn new(min: DVec3, max: DVec3, axes: [bool; 3]) -> Result<Self, NeighborError> {
+        let mut periodic = Self { min: DVec3::ZERO, axes, ..Self::NONE };
+        for a in (0..3).filter(|&a| axes[a]) {
+            let length = max[a] - min[a];
+            if !(length > 0.0 && length.is_finite() && (1.0 / length).is_finite()) {
+                return Err(NeighborError::PeriodicBounds { axis: AXIS_NAMES[a], min: min[a], max: max[a] });
+            }
+            periodic.min[a] = min[a];
+            periodic.length[a] = length;
+            periodic.inverse_length[a] = 1.0 / length;
+        }
+        Ok(periodic)
+    }
+
+    /// True where the axis is periodic.
+    pub const fn axes(&self) -> [bool; 3] {
+        self.axes
+    }
+
+    /// True when at least one axis is periodic.
+    pub fn any(&self) -> bool {
+        self.axes != [false; 3]
+    }
+
+    /// Lengths [m] of the periodic axes, zero on the others.
+    pub const fn lengths(&self) -> DVec3 {
+        self.length
+    }
+
+    /// Start [m] of the periodic axes, zero on the others.
+    pub const fn min(&self) -> DVec3 {
+        self.min
+    }
+
+    /// `x_ij` to the nearest image of j: every periodic component in -L/2 ..= L/2.
+    #[inline]
+    pub fn minimal_image(&self, x_ij: DVec3) -> DVec3 {
+        x_ij - self.length * nearest_integer(x_ij * self.inverse_length)
+    }
+
+    /// The image of a position inside the box, `min <= x < max` on periodic axes.
+    pub fn wrap(&self, position: DVec3) -> DVec3 {
+        let mut wrapped = position - self.length * ((position - self.min) * self.inverse_length).floor();
+        for a in (0..3).filter(|&a| self.axes[a]) {
+            // Rounding may land on the end of the box, which is its start.
+            if wrapped[a] >= self.min[a] + self.length[a] || wrapped[a] < self.min[a] {
+                wrapped[a] = self.min[a];
+            }
+        }
+        wrapped
+    }
+}
+
+/// Rounds to the nearest integer without a call per component: in this range of magnitudes the spacing of doubles is one.
+#[inline]
+fn nearest_integer(v: DVec3) -> DVec3 {
+    const SHIFT: DVec3 = DVec3::splat(6755399441055744.0);
+    (v + SHIFT) - SHIFT
+}
