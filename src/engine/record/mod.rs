@@ -6,8 +6,10 @@ pub mod atomic;
 pub mod container;
 pub mod hash;
 pub mod series;
+pub mod vtk;
 
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
 pub use hash::{StateHash, StateHasher};
 pub use series::{Column, Series, SeriesError, SeriesWriter, read_series};
+pub use vtk::{PointArray, PointValues, PvdFrame, PvdWriter, VtkError, write_vtu};

@@ -1,5 +1,6 @@
 //! Reading series back: those of a run and reference data.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
@@ -36,7 +37,13 @@ impl Column {
 pub struct Series {
     path: PathBuf,
     columns: Vec<Column>,
-    rows: Vec<StringRecord>,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug)]
+struct Row {
+    line: u64,
+    cells: StringRecord,
 }
 
 impl Series {
@@ -60,11 +67,11 @@ impl Series {
         let column = self.find(name)?;
         self.rows
             .iter()
-            .map(|row| match &row[column] {
+            .map(|row| match &row.cells[column] {
                 "" => Ok(f64::NAN),
                 cell => cell.parse().map_err(|_| SeriesError::NotANumber {
                     path: self.path.clone(),
-                    line: row.position().map_or(0, csv::Position::line),
+                    line: row.line,
                     column: name.to_owned(),
                     found: cell.to_owned(),
                 }),
@@ -75,7 +82,7 @@ impl Series {
     /// The column `name` as it stands in the file, without the blanks around it.
     pub fn texts(&self, name: &str) -> Result<Vec<&str>, SeriesError> {
         let column = self.find(name)?;
-        Ok(self.rows.iter().map(|row| &row[column]).collect())
+        Ok(self.rows.iter().map(|row| &row.cells[column]).collect())
     }
 
     fn find(&self, name: &str) -> Result<usize, SeriesError> {
@@ -99,36 +106,66 @@ impl Series {
 /// Lines that begin with `#` are comments. The first other line names the columns; if it holds nothing but numbers,
 /// it is the first row and the columns are named `0`, `1`, ...
 pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
-    let failed = |error: csv::Error| match error.into_kind() {
-        csv::ErrorKind::Io(source) => SeriesError::Read { path: path.to_path_buf(), source },
-        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => malformed(
-            path,
-            format!("line {} has {len} cells, expected {expected_len}", pos.map_or(0, |pos| pos.line())),
-        ),
-        csv::ErrorKind::Utf8 { pos, err } => {
-            malformed(path, format!("line {}: {err}, expected UTF-8", pos.map_or(0, |pos| pos.line())))
-        }
-        other => malformed(path, format!("{other:?}")),
-    };
-    let rows: Result<Vec<StringRecord>, _> = csv::ReaderBuilder::new()
+    let text = fs::read(path).map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })?;
+    let mut lines = LineCounter { text: &text, at: 0, line: 1 };
+    let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(failed)?
-        .into_records()
-        .collect();
-    let mut rows = rows.map_err(failed)?;
+        .from_reader(text.as_slice());
+    let mut rows = Vec::new();
+    loop {
+        let line = lines.of_next(reader.position());
+        let mut cells = StringRecord::new();
+        match reader.read_record(&mut cells).map_err(csv::Error::into_kind) {
+            Ok(true) => rows.push(Row { line, cells }),
+            Ok(false) => break,
+            Err(csv::ErrorKind::UnequalLengths { expected_len, len, .. }) => {
+                let what = format!("line {line} has {len} cells, expected {expected_len}");
+                return Err(malformed(path, what));
+            }
+            Err(_) => return Err(malformed(path, format!("line {line} is not text in UTF-8"))),
+        }
+    }
     let first = rows
         .first()
         .ok_or_else(|| malformed(path, "it is empty, expected a line of column names".to_owned()))?;
-    let columns = if first.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-        (0..first.len()).map(|index| Column { name: index.to_string(), unit: None }).collect()
+    let columns = if first.cells.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+        (0..first.cells.len()).map(|index| Column { name: index.to_string(), unit: None }).collect()
     } else {
-        rows.remove(0).iter().map(Column::new).collect::<Vec<_>>()
+        rows.remove(0).cells.iter().map(Column::new).collect::<Vec<_>>()
     };
     check_names(path, &columns)?;
     Ok(Series { path: path.to_path_buf(), columns, rows })
+}
+
+/// Counts lines up to the record that a reader will read next.
+///
+/// The reader's own count is that of where the record before ended, which is short of line feeds after carriage
+/// returns, of empty lines and of comments.
+struct LineCounter<'a> {
+    text: &'a [u8],
+    at: usize,
+    line: u64,
+}
+
+impl LineCounter<'_> {
+    /// The line on which the record after `position` begins; positions must not decrease.
+    fn of_next(&mut self, position: &csv::Position) -> u64 {
+        let end = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+        let mut in_comment = false;
+        while let Some(&byte) = self.text.get(self.at) {
+            if self.at >= end {
+                in_comment = byte != b'\n' && (in_comment || byte == b'#');
+                if !in_comment && !matches!(byte, b'\n' | b'\r') {
+                    break;
+                }
+            }
+            self.line += u64::from(byte == b'\n');
+            self.at += 1;
+        }
+        self.line
+    }
 }
 
 /// Every column must be found by its name.

@@ -147,10 +147,15 @@ fn bad_tables_are_clear_errors() {
     assert!(error.ends_with("line 4, column `x`: found `~43`, expected a number"), "{error}");
     let error = series.numbers("y").unwrap_err().to_string();
     assert!(error.ends_with("has no column `y`; its columns are `t`, `x`"), "{error}");
+    // Comments, empty lines, line ends of both kinds and cells of several lines do not upset the line number.
+    for text in ["t\n#\n\n0\n# a\nx\n", "# a\r\nt\r\n0\r\n#\r\n\r\nx", "t\n\" 0\n\n\"\n\nx\r\n"] {
+        let error = read_text(text).unwrap().numbers("t").unwrap_err().to_string();
+        assert!(error.ends_with("line 6, column `t`: found `x`, expected a number"), "{text:?}: {error}");
+    }
     for (text, expected) in [
         ("", "it is empty, expected a line of column names"),
         ("# only\n", "it is empty, expected a line of column names"),
-        ("t,x\n0,1\n0\n", "line 3 has 1 cells, expected 2"),
+        ("t,x\r\n0,1\r\n0\r\n", "line 3 has 1 cells, expected 2"),
         ("t,x,x\n", "two columns are named `x`, names must differ"),
         ("t,\n", "column 2 has no name"),
     ] {
