@@ -133,7 +133,7 @@ impl SeriesWriter {
         Ok(Self { path: path.to_path_buf(), file, pending: String::new(), position, width: columns.len() })
     }
 
-    /// Adds the row of the time `t` [s].
+    /// Adds the row of the time `t` \[s\].
     pub fn push(&mut self, t: f64, values: &[f64]) -> Result<(), SeriesError> {
         if values.len() != self.width {
             let path = self.path.clone();

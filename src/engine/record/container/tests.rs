@@ -1,4 +1,5 @@
 use super::*;
+use crate::record::atomic::WriteError;
 use proptest::prelude::*;
 use std::fs;
 

@@ -10,7 +10,7 @@ use crate::record::atomic::{Existing, write_atomically};
 /// One file of the list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PvdFrame {
-    /// Time t [s].
+    /// Time t \[s\].
     pub time: f64,
     /// The body, or whatever else was written at this time under its own name.
     pub part: String,
@@ -48,7 +48,7 @@ impl PvdWriter {
         Self { path: path.to_path_buf(), stem, existing, frames }
     }
 
-    /// Writes the points [m] and arrays of `part` at the time `time` [s] as a new frame, and lists it.
+    /// Writes the points \[m\] and arrays of `part` at the time `time` \[s\] as a new frame, and lists it.
     pub fn write(
         &mut self,
         time: f64,
