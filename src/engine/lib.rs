@@ -7,7 +7,9 @@
 //! x-y with z = 0), pair vectors point from i to j, `x_ij = x_j - x_i`, and the pair weight is
 //! `w_ij = |W'(r)| / r > 0`, so that `grad_i W = w_ij x_ij`.
 
+pub mod correction;
 pub mod kernels;
+pub mod linalg;
 pub mod materials;
 pub mod neighbors;
 pub mod record;

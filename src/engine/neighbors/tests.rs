@@ -79,7 +79,7 @@ fn build(targets: Cloud<'_>, sources: Option<Cloud<'_>>, skin: f64, periodic: &P
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
 
     #[test]
     fn random_clouds(

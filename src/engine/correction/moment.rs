@@ -1,0 +1,56 @@
+//! Moment matrix of a row of neighbours, and its inverse.
+
+use crate::linalg::Sym3;
+use glam::DVec3;
+
+/// Least determinant of a moment matrix in units of `(tr M / d)^d`: below it the neighbours lie on a line (or, in three
+/// dimensions, in a plane) to within about a thousandth of their distance, or are too few.
+pub const SINGULAR: f64 = 1e-6;
+
+/// `M_i = sum_j V_j w_ij x_ij (x) x_ij`, dimensionless: near the identity inside a body, about half of it at a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MomentMatrix {
+    matrix: Sym3,
+    dimension: usize,
+}
+
+impl MomentMatrix {
+    /// The matrix of no neighbours in 1, 2 or 3 dimensions.
+    #[inline]
+    pub const fn new(dimension: usize) -> Self {
+        Self { matrix: Sym3::ZERO, dimension }
+    }
+
+    /// Adds a neighbour by `V_j w_ij` [m^-2] and `x_ij` [m]; neighbours are to come in the order of their row.
+    #[inline]
+    pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {
+        self.matrix += Sym3::dyad(x_ij) * volume_weight;
+    }
+
+    /// The sum so far.
+    #[inline]
+    pub const fn matrix(&self) -> &Sym3 {
+        &self.matrix
+    }
+
+    /// The correction matrix `M_i^-1`, with zeros along the axes that the dimension lacks, so that corrected gradients
+    /// never leave the line or the plane. `None` where the moment matrix is singular, see [`SINGULAR`], or not finite:
+    /// such a particle has no deformation gradient and is free of stress.
+    #[inline]
+    pub fn inverse(&self) -> Option<Sym3> {
+        let m = &self.matrix;
+        let (determinant, mean, inverse) = match self.dimension {
+            1 => (m.xx, m.xx, Sym3 { xx: 1.0 / m.xx, ..Sym3::ZERO }),
+            2 => {
+                let determinant = m.xx * m.yy - m.xy * m.xy;
+                let scale = 1.0 / determinant;
+                let inverse = Sym3 { xx: m.yy * scale, yy: m.xx * scale, xy: -m.xy * scale, ..Sym3::ZERO };
+                (determinant, 0.5 * (m.xx + m.yy), inverse)
+            }
+            _ => (m.determinant(), m.trace() / 3.0, m.inverse()),
+        };
+        let limit = SINGULAR * mean.powi(self.dimension.clamp(1, 3) as i32);
+        // Strictly greater: without neighbours both sides are zero, and NaN is refused too.
+        (determinant > limit && determinant.is_finite()).then_some(inverse)
+    }
+}

@@ -1,0 +1,13 @@
+//! Small symmetric matrices, eigenvalues and polar decomposition: what glam does not have.
+
+mod eigen;
+mod polar;
+mod stretch;
+mod sym3;
+#[cfg(test)]
+mod tests;
+
+pub use eigen::Eigen;
+pub use polar::polar;
+pub use stretch::smallest_and_largest_stretch;
+pub use sym3::Sym3;
