@@ -1,0 +1,36 @@
+//! How particles are laid out inside a shape.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions) or
+/// spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Lattice {
+    /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the shape.
+    /// `Square` and `Cubic` are other names for it.
+    #[default]
+    #[serde(alias = "Square", alias = "Cubic")]
+    Regular,
+    /// Densest packing: rows of triangles along x in two dimensions, hexagonal close packing (hcp, layers ABAB along
+    /// z) in three. Nearest neighbours are 1.075 (two dimensions) or 1.122 (three) spacings apart.
+    Hexagonal,
+    /// Rings about the axis of a disc, ring, cylinder or tube, shells about the centre of a sphere; each ring or shell
+    /// is divided into parts of equal volume.
+    Concentric,
+    /// Irregular: random points that keep a least distance, moved to the centroids of their Voronoi cells (Lloyd's method). Every
+    /// particle has the volume of its own cell.
+    Relaxed {
+        /// Number from which the random points are drawn: the same seed gives the same particles.
+        #[serde(default)]
+        seed: u64,
+        /// Steps of Lloyd's method: the more, the more even the particles.
+        #[serde(default = "default_iterations")]
+        iterations: u32,
+    },
+}
+
+const fn default_iterations() -> u32 {
+    6
+}
