@@ -1,5 +1,50 @@
 //! The scene: the description of an experiment as a RON text, read into typed values with errors that point at the text.
+//!
+//! The way of a text: [`Source`] -> tree of values with their places -> typed [`Scene`] -> checks of what the types
+//! cannot say. What a registry knows by name stays an [`Item`] until its type is found.
 
+mod body;
+mod check;
+mod contact;
+mod decode;
+mod description;
+mod domain;
+mod expression;
+mod item;
+mod literal;
+mod load;
+mod names;
+mod overrides;
+mod path;
+mod per_axis;
+mod probe;
+mod problem;
+mod record;
+mod reference;
+mod select;
+mod source;
+mod syntax;
+mod time;
+mod tree;
 mod vec3;
 
+pub use body::Body;
+pub use contact::Contact;
+pub use description::{Dimension, Scene};
+pub use domain::{Axis, Domain, Outside};
+pub use expression::{Expression, ExpressionError};
+pub use item::Item;
+pub use load::{load, parse};
+pub use names::{nearest, unknown};
+pub use per_axis::PerAxis;
+pub use probe::{Probe, Quantity};
+pub use problem::{Place, Problem, SceneError};
+pub use record::Record;
+pub use reference::{Parameter, parameters, schema_markdown};
+pub use select::{Face, Select};
+pub use source::Source;
+pub use time::{Step, Time};
 pub use vec3::Vec3;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,220 @@
+//! What must hold in a scene beyond the types of its values, as far as the scene alone can tell.
+
+use glam::DVec3;
+
+use super::names::unknown;
+use super::{Axis, Dimension, Face, Probe, Problem, Quantity, Scene, Select, Step};
+
+/// All that is wrong with the values of a scene.
+pub(super) fn check(scene: &Scene) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    check_time(scene, &mut problems);
+    check_domain(scene, &mut problems);
+    in_plane(scene, scene.gravity.0, "gravity", &mut problems);
+    check_bodies(scene, &mut problems);
+    check_contacts(scene, &mut problems);
+    check_probes(scene, &mut problems);
+    for (field, every) in [("every", scene.record.every), ("checkpoint_every", scene.record.checkpoint_every)]
+    {
+        positive_time(every, &format!("record.{field}"), &mut problems);
+    }
+    problems
+}
+
+fn check_time(scene: &Scene, problems: &mut Vec<Problem>) {
+    let end = scene.time.end;
+    if end <= 0.0 {
+        problems.push(
+            Problem::at_path("time.end", format!("the run ends at {end} s, before it starts"))
+                .help("the end must be positive"),
+        );
+    }
+    match scene.time.step {
+        Step::Adaptive { factor } if !(factor > 0.0 && factor <= 2.0) => problems.push(
+            Problem::at_path("time.step.factor", format!("the factor on the stability limit is {factor}"))
+                .help("it must be above 0 and at most 2; 1 is the limit itself"),
+        ),
+        Step::Fixed(dt) if dt <= 0.0 => problems.push(
+            Problem::at_path("time.step[0]", format!("the time step is {dt} s")).help("it must be positive"),
+        ),
+        _ => {}
+    }
+}
+
+fn check_domain(scene: &Scene, problems: &mut Vec<Problem>) {
+    let Some(domain) = &scene.domain else { return };
+    let (min, max) = (domain.min.0.to_array(), domain.max.0.to_array());
+    for axis in [Axis::X, Axis::Y, Axis::Z].into_iter().take(scene.dimension.count()) {
+        let i = axis.index();
+        if min[i] >= max[i] {
+            let message = format!("the domain is empty along {axis:?}: from {} to {} m", min[i], max[i]);
+            problems.push(
+                Problem::at_path("domain.max", message).help("each component of max must exceed that of min"),
+            );
+        }
+    }
+    for (i, axis) in domain.periodic.iter().enumerate() {
+        let at = format!("domain.periodic[{i}]");
+        if domain.periodic[..i].contains(axis) {
+            problems.push(Problem::at_path(at, format!("axis {axis:?} is given twice")));
+        } else if scene.dimension == Dimension::Two && *axis == Axis::Z {
+            problems.push(
+                Problem::at_path(at, "a two-dimensional scene has no axis Z").help("the axes are X and Y"),
+            );
+        }
+    }
+}
+
+fn check_bodies(scene: &Scene, problems: &mut Vec<Problem>) {
+    if scene.bodies.is_empty() {
+        problems.push(Problem::at_path("bodies", "the scene has no body").help("add a `Body(...)`"));
+    }
+    let materials: Vec<_> = scene.materials.keys().collect();
+    for (i, body) in scene.bodies.iter().enumerate() {
+        let at = |field: &str| format!("bodies[{i}].{field}");
+        usable_name("body", &body.name, at("name"), problems);
+        if scene.bodies[..i].iter().any(|other| other.name == body.name) {
+            problems.push(twice("body", &body.name, at("name")));
+        }
+        if !scene.materials.contains_key(&body.material) && body.formulation.name() != "Wall" {
+            let (message, help) = unknown("material", &body.material, &materials);
+            problems.push(Problem::at_path(at("material"), message).helps(help));
+        }
+        if body.spacing <= 0.0 {
+            let message = format!("the distance between particles is {} m", body.spacing);
+            problems.push(Problem::at_path(at("spacing"), message).help("it must be positive"));
+        }
+        if let Some(velocity) = body.velocity {
+            in_plane(scene, velocity.0, &at("velocity"), problems);
+        }
+    }
+}
+
+fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
+    for (i, contact) in scene.contacts.iter().enumerate() {
+        for (side, name) in [&contact.between.0, &contact.between.1].into_iter().enumerate() {
+            if let Some((message, help)) = unknown_body(scene, name) {
+                problems
+                    .push(Problem::at_path(format!("contacts[{i}].between[{side}]"), message).helps(help));
+            }
+        }
+        if contact.friction < 0.0 {
+            let message = format!("the coefficient of friction is {}", contact.friction);
+            problems.push(
+                Problem::at_path(format!("contacts[{i}].friction"), message).help("it must not be negative"),
+            );
+        }
+        if !(0.0..=1.0).contains(&contact.restitution) {
+            let message = format!("the restitution is {}", contact.restitution);
+            problems.push(
+                Problem::at_path(format!("contacts[{i}].restitution"), message)
+                    .help("it must be from 0 to 1"),
+            );
+        }
+    }
+}
+
+fn check_probes(scene: &Scene, problems: &mut Vec<Problem>) {
+    for (i, probe) in scene.probes.iter().enumerate() {
+        let at = |field: &str| format!("probes[{i}].{field}");
+        usable_name("probe", &probe.name, at("name"), problems);
+        if scene.probes[..i].iter().any(|other| other.name == probe.name) {
+            problems.push(twice("probe", &probe.name, at("name")));
+        }
+        if probe.name == "energy" {
+            let message = "a probe cannot be called `energy`: that is the name of the energy ledger's file";
+            problems
+                .push(Problem::at_path(at("name"), message).help("choose another name, such as `energies`"));
+        }
+        problems.extend(place_of_probe(probe, i));
+        for (field, message, help) in probe.on.iter().flat_map(|on| on.problems(scene)) {
+            problems.push(Problem::at_path(at(&format!("on.{field}")), message).helps(help));
+        }
+        if let Some(point) = probe.at {
+            in_plane(scene, point.0, &at("at"), problems);
+        }
+        positive_time(probe.every, &at("every"), problems);
+    }
+}
+
+fn place_of_probe(probe: &Probe, i: usize) -> Option<Problem> {
+    let (field, message) = match (&probe.on, probe.at, &probe.quantity) {
+        (Some(_), Some(_), _) => ("at", "a probe has either `on` or `at`, not both"),
+        (None, Some(_), Quantity::Energy) => {
+            ("at", "there is no energy at a point: `Energy` is that of a selection")
+        }
+        (None, Some(_), Quantity::Force) => {
+            ("at", "there is no reaction force at a point: `Force` is that of a selection")
+        }
+        (None, None, Quantity::Energy) | (Some(_), None, _) | (None, Some(_), _) => return None,
+        (None, None, _) => ("name", "the probe does not say where it measures"),
+    };
+    Some(
+        Problem::at_path(format!("probes[{i}].{field}"), message)
+            .help("`on: Select(...)` averages over particles, `at: (x, y, z)` interpolates at a point"),
+    )
+}
+
+impl Select {
+    /// What is wrong with the selection in this scene: for each the field, the message and what would be right.
+    pub fn problems(&self, scene: &Scene) -> Vec<(&'static str, String, Vec<String>)> {
+        let mut problems = Vec::new();
+        if let Some((message, help)) = self.body.as_deref().and_then(|name| unknown_body(scene, name)) {
+            problems.push(("body", message, help));
+        }
+        if scene.dimension == Dimension::Two {
+            if let Some(face @ (Face::MinZ | Face::MaxZ)) = self.face {
+                let help = vec!["the faces are MinX, MaxX, MinY, MaxY".into()];
+                problems.push(("face", format!("a two-dimensional scene has no face {face:?}"), help));
+            }
+            if let Some(z) = self.nearest.map(|point| point.0.z).filter(|z| *z != 0.0) {
+                problems.push(("nearest", out_of_plane(z), vec![IN_PLANE.into()]));
+            }
+        }
+        problems
+    }
+}
+
+fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
+    let names: Vec<_> = scene.bodies.iter().map(|body| &body.name).collect();
+    scene.body(name).is_none().then(|| unknown("body", name, &names))
+}
+
+fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) {
+    let fits = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+' | ' ');
+    let what = if name.is_empty() {
+        format!("the name of the {kind} is empty")
+    } else if name.len() > 100 {
+        format!("the name of the {kind} is longer than 100 bytes")
+    } else if let Some(c) = name.chars().find(|&c| !fits(c)) {
+        format!("the name of the {kind} contains {c:?}, which a file name or path cannot")
+    } else if name.trim() != name {
+        format!("the name of the {kind} starts or ends with a space")
+    } else {
+        return;
+    };
+    problems
+        .push(Problem::at_path(at, what).help("names are made of letters, digits, spaces, `_`, `-`, `+`"));
+}
+
+fn twice(kind: &str, name: &str, at: String) -> Problem {
+    Problem::at_path(at, format!("two {kind} names are the same: `{name}`")).help("names must differ")
+}
+
+fn positive_time(every: Option<f64>, at: &str, problems: &mut Vec<Problem>) {
+    if let Some(every) = every.filter(|every| *every <= 0.0) {
+        problems.push(Problem::at_path(at, format!("the interval is {every} s")).help("it must be positive"));
+    }
+}
+
+const IN_PLANE: &str = "write (x, y); a two-dimensional scene is plane strain in x-y";
+
+fn out_of_plane(z: f64) -> String {
+    format!("a vector of a two-dimensional scene has z = {z}")
+}
+
+fn in_plane(scene: &Scene, vector: DVec3, at: &str, problems: &mut Vec<Problem>) {
+    if scene.dimension == Dimension::Two && vector.z != 0.0 {
+        problems.push(Problem::at_path(at, out_of_plane(vector.z)).help(IN_PLANE));
+    }
+}

@@ -1,0 +1,141 @@
+//! What serde says is wrong, until the place is known at which it is.
+
+use std::fmt;
+
+use serde::de::{self, Expected, Unexpected};
+
+use super::Context;
+use crate::scene::Problem;
+use crate::scene::names::unknown;
+use crate::scene::tree::{Kind, Node};
+
+/// An error on its way to the value that it is about.
+#[derive(Debug)]
+pub(super) enum Error {
+    /// Already reported.
+    Reported,
+    /// Something else was expected than the value.
+    Expected(String),
+    /// A tuple of the wrong length.
+    Length { found: usize, expected: String },
+    /// A name that is none of the variants.
+    Variant { found: String, known: &'static [&'static str] },
+    /// A field that must be given is not.
+    Missing(&'static str),
+    /// Anything else, as the type says it.
+    Message(String),
+}
+
+impl Error {
+    /// Reports the error at `node`.
+    pub fn report(self, node: &Node, context: &Context) -> Self {
+        let head = node.head();
+        let problem = match self {
+            Self::Reported => return Self::Reported,
+            Self::Expected(expected) => Problem::at_span(
+                whole_or_head(node),
+                format!("expected {expected}, found {}", node.describe()),
+            ),
+            Self::Length { found, expected } => {
+                Problem::at_span(whole_or_head(node), format!("expected {expected}, found {found} entries"))
+            }
+            Self::Variant { found, known } => {
+                let (message, help) = unknown("variant", &found, known);
+                Problem::at_span(head, message).helps(help)
+            }
+            Self::Missing(field) => {
+                let of = node.name.as_ref().map(|name| format!(" of `{}`", name.text)).unwrap_or_default();
+                Problem::at_span(head, format!("missing field `{field}`{of}"))
+            }
+            Self::Message(message) => located(node, &message),
+        };
+        context.report(problem);
+        Self::Reported
+    }
+}
+
+/// All of a value for a message about what it is; of a long one the head only.
+fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
+    match node.kind {
+        Kind::Tuple(_) | Kind::Fields(_) => node.span.clone(),
+        _ => node.head(),
+    }
+}
+
+const MARK: char = '\u{1f}';
+
+/// A message about the bytes `start..end` of a text value, for `serde::de::Error::custom`, which can carry only text.
+pub(in crate::scene) fn text_error(start: usize, end: usize, message: &str, help: &str) -> String {
+    format!("{MARK}{start}{MARK}{end}{MARK}{message}{MARK}{help}")
+}
+
+/// The problem of a message, at its place within a text where it has one.
+fn located(node: &Node, message: &str) -> Problem {
+    let parts: Vec<&str> = message.split(MARK).collect();
+    let &["", start, end, message, help] = parts.as_slice() else {
+        return Problem::at_span(whole_or_head(node), message);
+    };
+    let span = match (&node.kind, start.parse::<usize>(), end.parse::<usize>()) {
+        (Kind::Text { content: Some(content), .. }, Ok(start), Ok(end)) => content + start..content + end,
+        _ => node.span.clone(),
+    };
+    let problem = Problem::at_span(span, message);
+    if help.is_empty() { problem } else { problem.help(help) }
+}
+
+/// What serde calls a type, in the words of a scene.
+fn in_words(expected: &dyn Expected) -> String {
+    let expected = expected.to_string();
+    match expected.as_str() {
+        "f64" | "f32" => "a number".into(),
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, zero or more".into(),
+        "a boolean" => "`true` or `false`".into(),
+        "a string" => "a text in double quotes".into(),
+        "a sequence" => "a list `[...]`".into(),
+        "a map" => "a map `{...}`".into(),
+        "option" => "a value or `None`".into(),
+        other => match other.rsplit_once(' ') {
+            Some(("struct", name)) => format!("`{name}(...)`"),
+            Some(("enum", name)) => format!("one of the variants of {name}"),
+            _ => match other.strip_prefix("a tuple of size ") {
+                Some(size) => format!("a tuple `(...)` of {size} entries"),
+                None => expected,
+            },
+        },
+    }
+}
+
+impl de::Error for Error {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self::Message(message.to_string())
+    }
+
+    fn invalid_type(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::Expected(in_words(expected))
+    }
+
+    fn invalid_value(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::Expected(in_words(expected))
+    }
+
+    fn invalid_length(found: usize, expected: &dyn Expected) -> Self {
+        Self::Length { found, expected: in_words(expected) }
+    }
+
+    fn unknown_variant(found: &str, known: &'static [&'static str]) -> Self {
+        Self::Variant { found: found.into(), known }
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        Self::Missing(field)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self:?}")
+    }
+}
+
+impl std::error::Error for Error {}

@@ -1,0 +1,293 @@
+//! serde's view of a value of the tree.
+
+use serde::de::value::StrDeserializer;
+use serde::de::{Deserializer, Error as _, IntoDeserializer, Visitor};
+
+use super::Context;
+use super::access::{Entries, FieldValues, ItemParts, MapEntries};
+use super::error::Error;
+use super::variant::Variant;
+use crate::scene::Problem;
+use crate::scene::names::unknown;
+use crate::scene::tree::{Kind, Node};
+
+/// The name of the newtype by which an `Item` asks for its text and place instead of its value.
+pub(in crate::scene) const ITEM: &str = "$meshless::Item";
+
+/// A value on its way into a type.
+#[derive(Clone, Copy)]
+pub(super) struct Value<'a> {
+    pub node: &'a Node,
+    pub context: &'a Context<'a>,
+    /// Whether the name before the brackets was used already, as that of a variant.
+    pub unnamed: bool,
+}
+
+type Outcome<T> = Result<T, Error>;
+
+impl<'a> Value<'a> {
+    fn of(self, node: &'a Node) -> Self {
+        Self { node, unnamed: false, ..self }
+    }
+
+    /// The result, with an error reported at this value.
+    fn here<T>(self, result: Outcome<T>) -> Outcome<T> {
+        result.map_err(|error| error.report(self.node, self.context))
+    }
+
+    fn wrong<T>(self, expected: impl Into<String>) -> Outcome<T> {
+        self.here(Err(Error::Expected(expected.into())))
+    }
+
+    fn name(self) -> Option<&'a str> {
+        self.node.name.as_ref().filter(|_| !self.unnamed).map(|name| name.text.as_str())
+    }
+
+    /// Reports a struct name that is not the one of the type.
+    fn check_name(self, expected: &str) {
+        if let Some(name) = self.name().filter(|&name| name != expected) {
+            let problem =
+                Problem::at_span(self.node.head(), format!("expected `{expected}(...)`, found `{name}`"));
+            self.context.report(
+                problem.help(format!("the name may also be left out: `(...)` is a `{expected}` here")),
+            );
+        }
+    }
+
+    /// Reads fields, after reporting those that the type does not have and those that are given twice.
+    pub fn read_fields<V: Visitor<'a>>(
+        self,
+        label: &str,
+        known: &'static [&'static str],
+        visitor: V,
+    ) -> Outcome<V::Value> {
+        let mut fields = Vec::new();
+        let mut meant = Vec::new();
+        for field in self.node.fields() {
+            let name = &field.name;
+            let at = name.span.clone();
+            if !known.contains(&name.text.as_str()) {
+                let (message, help) = unknown("field", &name.text, known);
+                self.context.report(Problem::at_span(at, format!("{message} of `{label}`")).helps(help));
+                meant.extend(crate::scene::names::nearest(&name.text, known));
+            } else if fields.iter().any(|other: &&crate::scene::tree::Field| other.name.text == name.text) {
+                self.context.report(Problem::at_span(at, format!("field `{}` is given twice", name.text)));
+            } else if self.context.bad_fields.borrow().contains(&at.start) {
+                meant.push(&name.text);
+            } else {
+                fields.push(field);
+            }
+        }
+        match visitor.visit_map(FieldValues { fields: fields.iter(), next: None, context: self.context }) {
+            // What is missing because its name is misspelt or its value bad has been reported as that.
+            Err(Error::Missing(field)) if meant.contains(&field) => Err(Error::Reported),
+            result => self.here(result),
+        }
+    }
+
+    fn read_entries<V: Visitor<'a>>(
+        self,
+        entries: &'a [Node],
+        recover: bool,
+        visitor: V,
+    ) -> Outcome<V::Value> {
+        let mut rest = entries.iter();
+        let result = visitor.visit_seq(Entries { rest: &mut rest, recover, context: self.context });
+        let unread = rest.len();
+        let result = result.map_err(|error| match error {
+            Error::Length { expected, .. } => Error::Length { found: entries.len(), expected },
+            error => error,
+        });
+        if result.is_ok() && unread > 0 {
+            let expected = format!("{} entries", entries.len() - unread);
+            return self.here(Err(Error::Length { found: entries.len(), expected }));
+        }
+        self.here(result)
+    }
+}
+
+impl<'a> Deserializer<'a> for Value<'a> {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        let result = match &self.node.kind {
+            Kind::Number { value, .. } if !value.is_finite() => {
+                return self.here(Err(Error::Message("expected a finite number".into())));
+            }
+            Kind::Number { integer: Some(integer), value } => {
+                match (u64::try_from(*integer), i64::try_from(*integer)) {
+                    (Ok(integer), _) => visitor.visit_u64(integer),
+                    (_, Ok(integer)) => visitor.visit_i64(integer),
+                    _ => visitor.visit_f64(*value),
+                }
+            }
+            Kind::Number { value, integer: None } => visitor.visit_f64(*value),
+            Kind::Text { value, .. } => visitor.visit_borrowed_str(value),
+            Kind::Character(value) => visitor.visit_char(*value),
+            Kind::Bare if self.node.is_bare("true") => visitor.visit_bool(true),
+            Kind::Bare if self.node.is_bare("false") => visitor.visit_bool(false),
+            Kind::Bare if self.node.is_bare("None") => visitor.visit_none(),
+            Kind::Bare | Kind::Fields(_) | Kind::Tuple(_) if self.name().is_some() => {
+                visitor.visit_enum(Variant { value: self })
+            }
+            Kind::Bare => visitor.visit_unit(),
+            Kind::Fields(fields) => {
+                let fields: Vec<_> = fields.iter().collect();
+                visitor.visit_map(FieldValues { fields: fields.iter(), next: None, context: self.context })
+            }
+            Kind::Tuple(entries) => return self.read_entries(entries, false, visitor),
+            Kind::List(entries) => return self.read_entries(entries, true, visitor),
+            Kind::Map(_) => return self.deserialize_map(visitor),
+        };
+        self.here(result)
+    }
+
+    fn deserialize_str<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match (&self.node.kind, self.name()) {
+            (Kind::Bare, Some(name)) => {
+                let problem = format!("expected a text in double quotes, found `{name}`");
+                self.context
+                    .report(Problem::at_span(self.node.head(), problem).help(format!("write `\"{name}\"`")));
+                Err(Error::Reported)
+            }
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_string<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        self.deserialize_str(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match (self.name(), &self.node.kind) {
+            (Some("None"), Kind::Bare) => visitor.visit_none(),
+            (Some("Some"), Kind::Tuple(entries)) if entries.len() == 1 => {
+                visitor.visit_some(self.of(&entries[0]))
+            }
+            _ => visitor.visit_some(self),
+        }
+    }
+
+    fn deserialize_unit<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match &self.node.kind {
+            Kind::Tuple(entries) if entries.is_empty() => visitor.visit_unit(),
+            Kind::Bare if self.unnamed => visitor.visit_unit(),
+            _ => self.wrong("`()`"),
+        }
+    }
+
+    fn deserialize_unit_struct<V: Visitor<'a>>(self, name: &'static str, visitor: V) -> Outcome<V::Value> {
+        match (&self.node.kind, self.name()) {
+            (Kind::Bare, Some(found)) if found == name => visitor.visit_unit(),
+            (Kind::Bare, Some(_)) => self.wrong(format!("`{name}`")),
+            _ => {
+                self.check_name(name);
+                self.deserialize_unit(visitor)
+            }
+        }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'a>>(self, name: &'static str, visitor: V) -> Outcome<V::Value> {
+        if name == ITEM {
+            return match self.name() {
+                Some(_) => {
+                    let start = self.node.span.start;
+                    let text = &self.context.text
+                        [start - self.context.offset..self.node.span.end - self.context.offset];
+                    self.here(visitor.visit_seq(ItemParts { start: Some(start), text: Some(text) }))
+                }
+                None => {
+                    self.wrong("a name, with or without parameters, such as `name` or `name(parameter: 1.0)`")
+                }
+            };
+        }
+        match &self.node.kind {
+            Kind::Tuple(entries) if self.name() == Some(name) && entries.len() == 1 => {
+                visitor.visit_newtype_struct(self.of(&entries[0]))
+            }
+            _ => visitor.visit_newtype_struct(self),
+        }
+    }
+
+    fn deserialize_seq<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match &self.node.kind {
+            Kind::List(entries) => self.read_entries(entries, true, visitor),
+            _ => self.wrong("a list `[...]`"),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'a>>(self, _: usize, visitor: V) -> Outcome<V::Value> {
+        match &self.node.kind {
+            Kind::Tuple(entries) if self.name().is_none() => self.read_entries(entries, false, visitor),
+            _ => self.here(Err(Error::invalid_type(serde::de::Unexpected::Unit, &visitor))),
+        }
+    }
+
+    fn deserialize_tuple_struct<V: Visitor<'a>>(
+        self,
+        name: &'static str,
+        length: usize,
+        visitor: V,
+    ) -> Outcome<V::Value> {
+        self.check_name(name);
+        Self { unnamed: true, ..self }.deserialize_tuple(length, visitor)
+    }
+
+    fn deserialize_map<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match &self.node.kind {
+            Kind::Map(entries) => {
+                let result = visitor.visit_map(MapEntries::new(entries, self.context));
+                self.here(result)
+            }
+            Kind::Fields(_) if self.name().is_none() => self.deserialize_any(visitor),
+            _ => self.wrong("a map `{...}`"),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'a>>(
+        self,
+        name: &'static str,
+        fields: &'static [&'static str],
+        visitor: V,
+    ) -> Outcome<V::Value> {
+        match &self.node.kind {
+            Kind::Bare if self.unnamed => self.read_fields(name, fields, visitor),
+            Kind::Fields(_) => {
+                self.check_name(name);
+                self.read_fields(name, fields, visitor)
+            }
+            Kind::Tuple(entries) if entries.is_empty() => {
+                self.check_name(name);
+                self.read_fields(name, fields, visitor)
+            }
+            _ => self.wrong(format!("`{name}(field: value, ...)`")),
+        }
+    }
+
+    fn deserialize_enum<V: Visitor<'a>>(
+        self,
+        name: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Outcome<V::Value> {
+        if self.name().is_none() {
+            let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
+            return self.wrong(format!("a {name}: one of {}", known.join(", ")));
+        }
+        self.here(visitor.visit_enum(Variant { value: self }))
+    }
+
+    fn deserialize_ignored_any<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        visitor.visit_unit()
+    }
+
+    serde::forward_to_deserialize_any! {
+        <V: Visitor<'a>>
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf identifier
+    }
+}
+
+/// A name as serde reads the keys of fields and variants.
+pub(super) fn key(name: &str) -> StrDeserializer<'_, Error> {
+    name.into_deserializer()
+}

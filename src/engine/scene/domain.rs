@@ -1,0 +1,50 @@
+//! The box in which particles may be, and what happens at its sides.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Vec3;
+
+/// The box in which particles may be.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Corner with the smallest coordinates \[m\].
+    pub min: Vec3,
+    /// Corner with the largest coordinates \[m\].
+    pub max: Vec3,
+    /// Axes along which the domain repeats itself; a particle that leaves on one side enters on the other.
+    #[serde(default)]
+    pub periodic: Vec<Axis>,
+    /// What happens to a particle that leaves along an axis that is not periodic.
+    #[serde(default)]
+    pub outside: Outside,
+}
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+pub enum Axis {
+    /// The first axis.
+    X,
+    /// The second axis.
+    Y,
+    /// The third axis.
+    Z,
+}
+
+impl Axis {
+    /// The place of the axis in a vector: 0, 1 or 2.
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// What happens to a particle that leaves the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Outside {
+    /// The run stops and names the particle.
+    #[default]
+    Error,
+    /// The particle is taken out of the simulation.
+    Remove,
+}

@@ -1,0 +1,48 @@
+//! The constants and functions that an expression may name.
+
+/// Names of the variables, in the order in which an evaluation gets them.
+pub(super) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
+
+pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+
+pub(super) type Unary = fn(f64) -> f64;
+pub(super) type Binary = fn(f64, f64) -> f64;
+
+pub(super) const UNARY: [(&str, Unary); 19] = [
+    ("abs", f64::abs),
+    ("sqrt", f64::sqrt),
+    ("exp", f64::exp),
+    ("ln", f64::ln),
+    ("log10", f64::log10),
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("asin", f64::asin),
+    ("acos", f64::acos),
+    ("atan", f64::atan),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
+    ("floor", f64::floor),
+    ("sign", |s| if s == 0.0 { 0.0 } else { s.signum() }),
+    ("step", |s| if s < 0.0 { 0.0 } else { 1.0 }),
+    ("ramp", |s| s.clamp(0.0, 1.0)),
+    ("smoothstep", smoothstep),
+];
+
+pub(super) const BINARY: [(&str, Binary); 5] =
+    [("min", min), ("max", max), ("pow", f64::powf), ("atan2", f64::atan2), ("mod", f64::rem_euclid)];
+
+fn smoothstep(s: f64) -> f64 {
+    let s = s.clamp(0.0, 1.0);
+    s * s * (3.0 - 2.0 * s)
+}
+
+// Unlike `f64::min` and `f64::max` these keep a NaN, so that the watchdog sees it.
+fn min(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+fn max(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}

@@ -1,0 +1,160 @@
+//! Functions of place and time that a scene writes as text: `"-0.1*smoothstep(t/0.01)"`.
+
+mod compile;
+mod functions;
+
+use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use self::compile::{MAX_STACK, Op};
+use super::decode::text_error;
+
+/// A function of x, y, z \[m\] and t \[s\], compiled once and evaluated without allocation.
+///
+/// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt exp ln log10 sin cos tan
+/// asin acos atan sinh cosh tanh floor sign step ramp smoothstep` of one and `min max pow atan2 mod` of two arguments.
+/// `step` is 0 below 0 and 1 from there on; `ramp` and `smoothstep` go from 0 at 0 to 1 at 1 and stay there,
+/// linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2` is `-(x^2)`, and `a^b^c` is `a^(b^c)`.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    text: String,
+    program: Vec<Op>,
+}
+
+impl Expression {
+    /// The function that is `value` everywhere and always.
+    pub fn constant(value: f64) -> Self {
+        Self { text: format!("{value:?}"), program: vec![Op::Constant(value)] }
+    }
+
+    /// The value at place `x` \[m\] and time `t` \[s\].
+    pub fn eval(&self, x: DVec3, t: f64) -> f64 {
+        let variables = [x.x, x.y, x.z, t];
+        let mut stack = [0.0; MAX_STACK];
+        let mut top = 0;
+        for op in &self.program {
+            match *op {
+                Op::Constant(value) => {
+                    stack[top] = value;
+                    top += 1;
+                }
+                Op::Variable(index) => {
+                    stack[top] = variables[index];
+                    top += 1;
+                }
+                Op::Unary(function) => stack[top - 1] = function(stack[top - 1]),
+                Op::Binary(function) => {
+                    top -= 1;
+                    stack[top - 1] = function(stack[top - 1], stack[top]);
+                }
+            }
+        }
+        stack[0]
+    }
+
+    /// Whether the value is the same everywhere and always.
+    pub fn is_constant(&self) -> bool {
+        matches!(self.program.as_slice(), [Op::Constant(_)])
+    }
+
+    /// Whether the value changes with time.
+    pub fn depends_on_time(&self) -> bool {
+        self.program.iter().any(|op| matches!(op, Op::Variable(3)))
+    }
+
+    /// The text that the function was compiled from.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// A text that is not an expression: what is wrong with which of its bytes.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message} in the expression")]
+pub struct ExpressionError {
+    /// First byte that the error is about.
+    pub start: usize,
+    /// Byte after the last.
+    pub end: usize,
+    /// What was found.
+    pub message: String,
+    /// What would be right; may be empty.
+    pub help: String,
+}
+
+impl FromStr for Expression {
+    type Err = ExpressionError;
+
+    fn from_str(text: &str) -> Result<Self, ExpressionError> {
+        Ok(Self { text: text.to_owned(), program: compile::compile(text)? })
+    }
+}
+
+impl PartialEq for Expression {
+    /// Equal text.
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+struct TextOrNumber;
+
+impl Visitor<'_> for TextOrNumber {
+    type Value = Expression;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a number or an expression in double quotes")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Expression, E> {
+        text.parse().map_err(|error: ExpressionError| {
+            E::custom(text_error(error.start, error.end, &error.to_string(), &error.help))
+        })
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Expression, E> {
+        Ok(Expression::constant(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Expression, E> {
+        Ok(Expression::constant(value as f64))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Expression, E> {
+        Ok(Expression::constant(value as f64))
+    }
+}
+
+impl<'de> Deserialize<'de> for Expression {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TextOrNumber)
+    }
+}
+
+impl Serialize for Expression {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.text)
+    }
+}
+
+impl JsonSchema for Expression {
+    fn schema_name() -> Cow<'static, str> {
+        "Expression".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "A number, or a function of x, y, z [m] and t [s] in double quotes.",
+            "type": ["number", "string"],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

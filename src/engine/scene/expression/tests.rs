@@ -1,0 +1,89 @@
+use super::*;
+
+fn value(text: &str) -> f64 {
+    let x = DVec3::new(2.0, 3.0, 5.0);
+    text.parse::<Expression>().unwrap_or_else(|error| panic!("{text}: {error}")).eval(x, 0.5)
+}
+
+#[test]
+fn arithmetic() {
+    for (text, expected) in [
+        ("1 + 2*3 - 4/8", 6.5),
+        ("-x^2", -4.0),
+        ("2^-1", 0.5),
+        ("2^3^2", 512.0),
+        ("(-x)^2", 4.0),
+        ("1e-3 + 2.5E2", 250.001),
+        ("2*e-3", 2.0 * std::f64::consts::E - 3.0),
+        ("5*z/3", 25.0 / 3.0),
+        ("8 - 3 - 2", 3.0),
+        ("8/4/2", 1.0),
+        ("--2", 2.0),
+        ("x*-y", -6.0),
+        (".5", 0.5),
+    ] {
+        assert!((value(text) - expected).abs() < 1e-12, "{text} is {} not {expected}", value(text));
+    }
+}
+
+#[test]
+fn functions() {
+    for (text, expected) in [
+        ("-0.1*min(t/0.01, 1)", -0.1),
+        ("max(x, pow(y, 2))", 9.0),
+        ("sin(pi/2) + cos(pi)", 0.0),
+        ("tan(pi/4)*sqrt(16)", 4.0),
+        ("ln(exp(x))", 2.0),
+        ("abs(-3) + tanh(0)", 3.0),
+        ("step(-1e-9) + 2*step(0)", 2.0),
+        ("ramp(-1) + ramp(t) + ramp(7)", 1.5),
+        ("smoothstep(-1)", 0.0),
+        ("smoothstep(0.25)", 3.0 / 16.0 - 2.0 / 64.0),
+        ("smoothstep(t)", 0.5),
+        ("smoothstep(2)", 1.0),
+        ("mod(-1, 3)", 2.0),
+        ("atan2(1, 0)", std::f64::consts::FRAC_PI_2),
+        ("sign(-2) + sign(0)", -1.0),
+    ] {
+        assert!((value(text) - expected).abs() < 1e-12, "{text} is {} not {expected}", value(text));
+    }
+    assert!(value("min(1, sqrt(-x))").is_nan());
+    assert!(value("max(sqrt(-x), 1)").is_nan());
+}
+
+#[test]
+fn knows_what_it_depends_on() {
+    let of = |text: &str| text.parse::<Expression>().unwrap();
+    assert!(of("2*sin(pi/3)").is_constant());
+    assert!(!of("0*x").is_constant());
+    assert!(of("t").depends_on_time());
+    assert!(!of("x+y").depends_on_time());
+    assert!(Expression::constant(3.0).is_constant());
+}
+
+#[test]
+fn errors_point_at_their_place() {
+    for (text, start, end, message) in [
+        ("1 +", 3, 3, "found the end"),
+        ("2*q", 2, 3, "unknown name `q`"),
+        ("sinn(x)", 0, 4, "unknown name `sinn`"),
+        ("min(1)", 0, 3, "`min` takes two arguments, found 1"),
+        ("sin(x, y)", 0, 3, "`sin` takes one argument, found 2"),
+        ("sin x", 0, 3, "without its argument"),
+        ("(1 + 2", 6, 6, "where `)` was expected"),
+        ("2x", 1, 2, "where an operator or the end was expected"),
+        ("x**2", 1, 3, "found `**`"),
+        ("1.2.3", 0, 5, "not a number"),
+        ("1/0", 0, 3, "no finite value"),
+        ("", 0, 0, "found the end"),
+        ("1 § 2", 2, 4, "found `§`"),
+    ] {
+        let error = text.parse::<Expression>().expect_err(text);
+        assert_eq!((error.start, error.end), (start, end), "{text}: {error}");
+        assert!(error.message.contains(message), "{text}: {error}");
+    }
+    let nested = format!("{}1{}", "(".repeat(1000), ")".repeat(1000));
+    assert!(nested.parse::<Expression>().is_err());
+    let wide = format!("{}1{}", "x+(".repeat(40), ")".repeat(40));
+    assert!(wide.parse::<Expression>().is_err());
+}

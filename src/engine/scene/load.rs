@@ -1,0 +1,69 @@
+//! File or text -> scene.
+
+use std::path::Path;
+
+use super::check::check;
+use super::decode::{Decoded, decode};
+use super::{Problem, Scene, SceneError, Source};
+
+/// Reads a scene file, with some of its values replaced: `overrides` are pairs of path and value, as in
+/// `("time.end", "0.5")`.
+///
+/// # Errors
+/// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at once.
+pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
+    let name = path.display().to_string();
+    let read = std::fs::read(path).map_err(|error| {
+        let source = Source::new(name.clone(), "");
+        let problem = Problem::new(match error.kind() {
+            std::io::ErrorKind::NotFound => "the scene file does not exist".into(),
+            _ if path.is_dir() => "this is a folder, not a scene file".into(),
+            _ => format!("the scene file cannot be read: {error}"),
+        });
+        source.error(vec![problem])
+    })?;
+    let text = String::from_utf8(read).map_err(|error| {
+        let byte = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..byte].iter().filter(|&&byte| byte == b'\n').count();
+        let problem =
+            Problem::new(format!("the scene file is not UTF-8 text: line {line} has an invalid byte"));
+        Source::new(name.clone(), "").error(vec![problem])
+    })?;
+    let mut source = Source::new(name, text);
+    for (path, value) in overrides {
+        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
+    }
+    parse(source)
+}
+
+/// Reads a scene text.
+///
+/// # Errors
+/// The text is not a valid scene; all that is wrong at once.
+pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
+    let root = source.tree().map_err(|problem| source.error(vec![problem]))?;
+    let Decoded { value, mut problems } = decode::<Scene>(&root, &source.text, 0, false);
+    if let Some(scene) = &value {
+        problems.extend(check(scene));
+    }
+    problems.sort_by_key(|problem| problem.span(&source).map_or(0, |span| span.start));
+    match value {
+        Some(scene) if problems.is_empty() => Ok((scene, source)),
+        _ => Err(source.error(problems)),
+    }
+}
+
+impl Scene {
+    /// The scene as RON text that [`parse`] reads back: how a scene that a program puts together becomes one with
+    /// places for errors, and travels in checkpoints.
+    ///
+    /// # Errors
+    /// A value has no RON form.
+    pub fn to_source(&self, name: &str) -> Result<Source, ron::Error> {
+        let style = ron::ser::PrettyConfig::new()
+            .struct_names(true)
+            .extensions(ron::extensions::Extensions::empty())
+            .compact_arrays(true);
+        Ok(Source::new(name, ron::ser::to_string_pretty(self, style)?))
+    }
+}

@@ -1,0 +1,49 @@
+//! The nearest known name to a misspelt one.
+
+/// Message and help lines for a name that is not known: what was found, the nearest known name, all known names.
+/// `kind` says what is named, in the singular: `plugin`, `material`.
+pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, Vec<String>) {
+    let mut help = Vec::new();
+    if let Some(near) = nearest(name, known) {
+        help.push(format!("did you mean `{near}`?"));
+    }
+    if known.is_empty() {
+        help.push(format!("no {kind} is known here"));
+    } else {
+        let names: Vec<_> = known.iter().map(|known| format!("`{}`", known.as_ref())).collect();
+        help.push(format!("known here: {}", names.join(", ")));
+    }
+    (format!("unknown {kind} `{name}`"), help)
+}
+
+/// The known name that `name` was most likely meant to be, if any is near enough.
+pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
+    let wanted = name.to_lowercase();
+    let mut best: Option<(f64, &str)> = None;
+    for candidate in known.iter().map(AsRef::as_ref) {
+        let other = candidate.to_lowercase();
+        let edits = strsim::damerau_levenshtein(&wanted, &other);
+        let near =
+            edits <= (wanted.chars().count() / 3).max(1) || strsim::jaro_winkler(&wanted, &other) >= 0.88;
+        let likeness = strsim::normalized_damerau_levenshtein(&wanted, &other);
+        if near && best.is_none_or(|(most, _)| likeness > most) {
+            best = Some((likeness, candidate));
+        }
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_the_nearest() {
+        let known = ["hourglass_control", "artificial_viscosity", "xsph"];
+        assert_eq!(nearest("hourglas_control", &known), Some("hourglass_control"));
+        assert_eq!(nearest("HourglassControl", &known), Some("hourglass_control"));
+        assert_eq!(nearest("hourglass", &known), Some("hourglass_control"));
+        assert_eq!(nearest("spam", &known), None);
+        assert_eq!(nearest("colour", &["color", "count"]), Some("color"));
+    }
+}

@@ -1,0 +1,123 @@
+//! What is wrong with a scene, where, and what would be right.
+
+use std::fmt;
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+
+use super::Source;
+use super::path;
+
+/// One thing that is wrong with a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// What was found, lower case, without a full stop.
+    pub message: String,
+    /// Where it is.
+    pub at: Place,
+    /// What would be right, a line each.
+    pub help: Vec<String>,
+}
+
+/// A place in a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The scene as a whole.
+    Scene,
+    /// Bytes of the text.
+    Span(Range<usize>),
+    /// A value by its path, such as `bodies[1].shape.min` or `bodies.plate.spacing`; where the text does not contain
+    /// it, the nearest value above it that it does contain.
+    Path(String),
+}
+
+impl Problem {
+    /// A problem of the scene as a whole.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), at: Place::Scene, help: Vec::new() }
+    }
+
+    /// A problem at bytes of the text.
+    pub fn at_span(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { at: Place::Span(span), ..Self::new(message) }
+    }
+
+    /// A problem at a value by its path, such as `bodies[1].spacing`.
+    pub fn at_path(path: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { at: Place::Path(path.into()), ..Self::new(message) }
+    }
+
+    /// The same with a line that says what would be right.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help.push(help.into());
+        self
+    }
+
+    /// The same with several lines that say what would be right.
+    #[must_use]
+    pub fn helps(mut self, helps: impl IntoIterator<Item = String>) -> Self {
+        self.help.extend(helps);
+        self
+    }
+
+    /// The bytes of `source` that the problem is about; none if it is about the scene as a whole.
+    pub fn span(&self, source: &Source) -> Option<Range<usize>> {
+        match &self.at {
+            Place::Scene => None,
+            Place::Span(span) => Some(span.clone()),
+            Place::Path(path) => source.tree().ok().map(|tree| path::nearest(&tree, path)),
+        }
+    }
+
+    /// The problem as text: message, file, line, column, the line with carets, help.
+    pub fn render(&self, source: &Source) -> String {
+        let title = Level::ERROR.primary_title(&self.message);
+        let group = match self.span(source) {
+            Some(span) => title.element(
+                Snippet::source(source.text.as_str())
+                    .path(source.name.as_str())
+                    .annotation(AnnotationKind::Primary.span(first_line(&source.text, span))),
+            ),
+            None => title.element(Origin::path(source.name.as_str())),
+        };
+        let group = group.elements(self.help.iter().map(|help| Level::HELP.message(help)));
+        Renderer::plain().render(&[group])
+    }
+}
+
+/// The part of a span on its first line, at character boundaries.
+fn first_line(text: &str, span: Range<usize>) -> Range<usize> {
+    let boundary = |mut at: usize| {
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    };
+    let start = boundary(span.start.min(text.len()));
+    let end = boundary(span.end.clamp(start, text.len()));
+    start..text[start..end].find('\n').map_or(end, |newline| start + newline)
+}
+
+/// A scene that cannot be used: all that is wrong with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    /// The text that the problems are about.
+    pub source: Source,
+    /// What is wrong, in the order of the text.
+    pub problems: Vec<Problem>,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.problems.iter().enumerate() {
+            if i > 0 {
+                f.write_str("\n\n")?;
+            }
+            f.write_str(&problem.render(&self.source))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for SceneError {}

@@ -1,0 +1,39 @@
+//! Duration of the experiment and its time step.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Duration and time step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// Time at which the run ends \[s\]; it starts at 0.
+    pub end: f64,
+    /// How the time step is chosen.
+    #[serde(default)]
+    pub step: Step,
+}
+
+/// How the time step is chosen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Step {
+    /// The smallest of all stability limits, times a factor.
+    Adaptive {
+        /// Factor on the stability limit \[-\]; above 1 leaves the range in which the limits are known to be safe.
+        #[serde(default = "one")]
+        factor: f64,
+    },
+    /// The same step throughout \[s\].
+    Fixed(f64),
+}
+
+impl Default for Step {
+    fn default() -> Self {
+        Self::Adaptive { factor: one() }
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,106 @@
+//! A scene text as a tree of values that know their places in the text.
+
+use std::ops::Range;
+
+/// A name in the text: of a field, a struct or a variant.
+#[derive(Clone, Debug)]
+pub(super) struct Word {
+    pub text: String,
+    pub span: Range<usize>,
+}
+
+/// A value in the text.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// All bytes of the value, its name and brackets included.
+    pub span: Range<usize>,
+    /// The name before the brackets, or the whole of a bare word.
+    pub name: Option<Word>,
+    /// The byte after the opening bracket; the start of the value where it has none.
+    pub open: usize,
+    pub kind: Kind,
+}
+
+/// What a value is made of.
+#[derive(Clone, Debug)]
+pub(super) enum Kind {
+    /// A word without brackets: `None`, `true`, `Eulerian`.
+    Bare,
+    /// `(a: 1, b: 2)`.
+    Fields(Vec<Field>),
+    /// `(1, 2)`, and also `()`.
+    Tuple(Vec<Node>),
+    List(Vec<Node>),
+    Map(Vec<(Node, Node)>),
+    /// `content` is where the characters between the quotes start; it is `None` where escapes shift the places.
+    Text {
+        value: String,
+        content: Option<usize>,
+    },
+    Character(char),
+    Number {
+        value: f64,
+        integer: Option<i128>,
+    },
+}
+
+/// A field of a struct.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub name: Word,
+    pub value: Node,
+}
+
+impl Node {
+    /// The part that stands for the value in a message: its name, or its opening bracket, or all of a simple value.
+    pub fn head(&self) -> Range<usize> {
+        match (&self.name, &self.kind) {
+            (Some(name), _) => name.span.clone(),
+            (None, Kind::Fields(_) | Kind::Tuple(_) | Kind::List(_) | Kind::Map(_)) => {
+                self.span.start..self.span.start + 1
+            }
+            _ => self.span.clone(),
+        }
+    }
+
+    /// The fields; none for `()`, for a bare word and for what has no fields.
+    pub fn fields(&self) -> &[Field] {
+        match &self.kind {
+            Kind::Fields(fields) => fields,
+            _ => &[],
+        }
+    }
+
+    /// The value of a field.
+    pub fn field(&self, name: &str) -> Option<&Field> {
+        self.fields().iter().find(|field| field.name.text == name)
+    }
+
+    /// Whether this is the bare word `word`.
+    pub fn is_bare(&self, word: &str) -> bool {
+        matches!(self.kind, Kind::Bare) && self.name.as_ref().is_some_and(|name| name.text == word)
+    }
+
+    /// What a message calls the value.
+    pub fn describe(&self) -> String {
+        let name = self.name.as_ref().map(|name| name.text.as_str());
+        match &self.kind {
+            Kind::Bare => format!("`{}`", name.unwrap_or_default()),
+            Kind::Fields(_) | Kind::Tuple(_) if name.is_some() => {
+                format!("`{}(...)`", name.unwrap_or_default())
+            }
+            Kind::Fields(_) => "a struct `(name: ...)`".into(),
+            Kind::Tuple(entries) => match entries.len() {
+                0 => "`()`".into(),
+                1 => "a tuple of 1 entry".into(),
+                n => format!("a tuple of {n} entries"),
+            },
+            Kind::List(_) => "a list `[...]`".into(),
+            Kind::Map(_) => "a map `{...}`".into(),
+            Kind::Text { value, .. } => format!("the text {value:?}"),
+            Kind::Character(value) => format!("the character {value:?}"),
+            Kind::Number { value, integer: None } => format!("the number {value:?}"),
+            Kind::Number { integer: Some(integer), .. } => format!("the number {integer}"),
+        }
+    }
+}
