@@ -68,10 +68,13 @@ impl Item {
     }
 
     /// A problem with a parameter, such as `poisson` or `hardening.modulus`; where it is not written, with the item.
+    /// `help` says what would be right; it may be empty.
     pub fn problem(&self, parameter: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
         let at = self.tree().ok().and_then(|node| path::exact(&node, parameter));
         let at = at.unwrap_or(self.start..self.start + self.name.len());
-        Problem::at_span(at, message).help(help)
+        let problem = Problem::at_span(at, message);
+        let help = help.into();
+        if help.is_empty() { problem } else { problem.help(help) }
     }
 }
 

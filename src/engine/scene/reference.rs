@@ -149,9 +149,10 @@ fn simple_kind(name: &str, schema: &Value, definitions: &Definitions) -> String 
                 let entries: Vec<_> = entries.iter().map(|entry| kind(entry, definitions)).collect();
                 format!("({})", entries.join(", "))
             }
-            (None, Some(entry)) if is_tuple(schema) => {
-                format!("(x, y) or (x, y, z), each a {}", kind(entry, definitions))
-            }
+            (None, Some(entry)) if is_tuple(schema) => match kind(entry, definitions).as_str() {
+                "number" => "(x, y) or (x, y, z)".into(),
+                entry => format!("(x, y) or (x, y, z), each a {entry}"),
+            },
             (None, Some(entry)) => format!("list of {}", kind(entry, definitions)),
             (None, None) => "list".into(),
         },

@@ -1,5 +1,7 @@
 //! The text of a scene and the name under which messages show it.
 
+use std::path::Path;
+
 use super::syntax;
 use super::tree::Node;
 use super::{Problem, SceneError};
@@ -25,6 +27,11 @@ impl Source {
     /// The text is not RON.
     pub(super) fn tree(&self) -> Result<Node, Problem> {
         syntax::read(&self.text, 0)
+    }
+
+    /// The folder that files named in the scene are relative to.
+    pub fn folder(&self) -> &Path {
+        Path::new(&self.name).parent().unwrap_or(Path::new(""))
     }
 
     /// Line and column, both from 1, of a byte; the column counts characters.

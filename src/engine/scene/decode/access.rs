@@ -64,8 +64,12 @@ impl<'a> MapAccess<'a> for FieldValues<'a, '_> {
         let Some(field) = self.next else {
             return Err(Error::Message("a value was asked for before its key".into()));
         };
+        let known = self.context.bad_fields.borrow().len();
         seed.deserialize(value(&field.value, self.context)).map_err(|error| {
-            self.context.bad_fields.borrow_mut().insert(field.name.span.start);
+            // Where only a field within this one is bad, the next pass leaves out just that.
+            if self.context.bad_fields.borrow().len() == known {
+                self.context.bad_fields.borrow_mut().insert(field.name.span.start);
+            }
             error.report(&field.value, self.context)
         })
     }

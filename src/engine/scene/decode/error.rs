@@ -37,7 +37,8 @@ impl Error {
                 format!("expected {expected}, found {}", node.describe()),
             ),
             Self::Length { found, expected } => {
-                Problem::at_span(whole_or_head(node), format!("expected {expected}, found {found} entries"))
+                let found = if found == 1 { "1 entry".into() } else { format!("{found} entries") };
+                Problem::at_span(whole_or_head(node), format!("expected {expected}, found {found}"))
             }
             Self::Variant { found, known } => {
                 let (message, help) = unknown("variant", &found, known);

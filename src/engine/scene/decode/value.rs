@@ -99,7 +99,10 @@ impl<'a> Value<'a> {
             error => error,
         });
         if result.is_ok() && unread > 0 {
-            let expected = format!("{} entries", entries.len() - unread);
+            let expected = match entries.len() - unread {
+                1 => "1 entry".into(),
+                n => format!("{n} entries"),
+            };
             return self.here(Err(Error::Length { found: entries.len(), expected }));
         }
         self.here(result)

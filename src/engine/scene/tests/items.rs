@@ -94,6 +94,8 @@ fn all_problems_of_an_item_are_found() {
     let messages: Vec<_> =
         item.parse::<Control>().unwrap_err().iter().map(|problem| problem.render(&source)).collect();
     assert_eq!(messages.len(), 4, "{}", messages.join("\n"));
+    let (_, item) = plugin("control(inner: Other(x: 1), form: Paper(factor: no), alpha: no, only: no)");
+    assert_eq!(item.parse::<Control>().unwrap_err().len(), 3);
     let (_, item) = plugin("elastic(densty: 1.0)");
     let problems = item.parse::<Elastic>().unwrap_err();
     let messages: Vec<_> = problems.iter().map(|problem| problem.message.as_str()).collect();

@@ -103,6 +103,14 @@ fn places_are_lines_and_columns_of_characters() {
 }
 
 #[test]
+fn two_problems_of_one_block() {
+    let text = smallest_with("").text.replace("end: 1", "end: later, step: Adaptive(factor: high)");
+    let error = parse(Source::new("x.ron", text)).unwrap_err();
+    assert_eq!(error.problems.len(), 2, "{error}");
+    assert_eq!(error.source.folder(), std::path::Path::new(""));
+}
+
+#[test]
 fn deep_nesting_is_refused() {
     for (open, close) in [("(", ")"), ("[", "]"), ("a(b: ", ")")] {
         let text = format!("{}1{}", open.repeat(5000), close.repeat(5000));
