@@ -1,9 +1,33 @@
 //! Shapes and how particles fill them: what a scene writes under `shape`, `lattice` and `spacing`.
 
+mod block;
+mod boolean;
+mod build;
+mod cells;
+mod concentric;
+mod cylinder;
+mod error;
+mod fill;
 mod lattice;
+mod morton;
+mod points;
+mod polygon;
+mod quadrature;
+mod region;
+mod relaxed;
+mod ring;
 mod shape;
+mod sphere;
+mod tiling;
+mod transform;
+mod voronoi;
 
+pub use concentric::Rings;
+pub use error::{FillError, FillErrorKind};
+pub use fill::{Site, fill};
 pub use lattice::Lattice;
+pub use morton::morton_order;
+pub use region::{Aabb, Region};
 pub use shape::Shape;
 
 #[cfg(test)]

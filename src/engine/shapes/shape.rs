@@ -14,59 +14,59 @@ use crate::scene::Vec3;
 pub enum Shape {
     /// Box along the axes; a rectangle in two dimensions.
     Box {
-        /// Corner with the smallest coordinates [m].
+        /// Corner with the smallest coordinates \[m\].
         min: Vec3,
-        /// Corner with the largest coordinates [m].
+        /// Corner with the largest coordinates \[m\].
         max: Vec3,
     },
     /// Sphere; a disc in two dimensions.
     Sphere {
-        /// Centre [m].
+        /// Centre \[m\].
         center: Vec3,
-        /// Radius [m].
+        /// Radius \[m\].
         radius: f64,
     },
     /// Circular cylinder with flat ends (three dimensions; in two use `Sphere` or `Box`).
     Cylinder {
-        /// Centre of one end [m].
+        /// Centre of one end \[m\].
         from: Vec3,
-        /// Centre of the other end [m].
+        /// Centre of the other end \[m\].
         to: Vec3,
-        /// Radius [m].
+        /// Radius \[m\].
         radius: f64,
     },
     /// Region between two concentric circles (two dimensions; in three use `Tube`).
     Ring {
-        /// Centre [m].
+        /// Centre \[m\].
         center: Vec3,
-        /// Radius of the hole [m].
+        /// Radius of the hole \[m\].
         inner: f64,
-        /// Outer radius [m].
+        /// Outer radius \[m\].
         outer: f64,
     },
     /// Hollow circular cylinder (three dimensions; in two use `Ring`).
     Tube {
-        /// Centre of one end [m].
+        /// Centre of one end \[m\].
         from: Vec3,
-        /// Centre of the other end [m].
+        /// Centre of the other end \[m\].
         to: Vec3,
-        /// Radius of the bore [m].
+        /// Radius of the bore \[m\].
         inner: f64,
-        /// Outer radius [m].
+        /// Outer radius \[m\].
         outer: f64,
     },
     /// Polygon that does not cross itself (two dimensions; in three use `Extrusion`).
     Polygon {
-        /// Corners (x, y) in order, either way round; the first is not repeated at the end [m].
+        /// Corners (x, y) in order, either way round; the first is not repeated at the end \[m\].
         points: Vec<(f64, f64)>,
     },
     /// Prism: a polygon in x-y drawn out along z (three dimensions).
     Extrusion {
-        /// Corners (x, y) of the polygon in order, either way round [m].
+        /// Corners (x, y) of the polygon in order, either way round \[m\].
         polygon: Vec<(f64, f64)>,
-        /// Lower end, z coordinate [m].
+        /// Lower end, z coordinate \[m\].
         from: f64,
-        /// Upper end, z coordinate [m].
+        /// Upper end, z coordinate \[m\].
         to: f64,
     },
     /// What is in any of the shapes. The lattice of the first one goes on through all.
@@ -79,19 +79,19 @@ pub enum Shape {
     Translate {
         /// What is moved.
         shape: Box<Shape>,
-        /// Displacement [m].
+        /// Displacement \[m\].
         by: Vec3,
     },
     /// The shape turned, its lattice with it.
     Rotate {
         /// What is turned.
         shape: Box<Shape>,
-        /// Direction of the axis, of any length; z in two dimensions [-].
+        /// Direction of the axis, of any length; z in two dimensions \[-\].
         #[serde(default = "z_axis")]
         axis: Vec3,
-        /// Angle, counter-clockwise seen against the axis [degrees].
+        /// Angle, counter-clockwise seen against the axis \[degrees\].
         angle_degrees: f64,
-        /// A point of the axis [m].
+        /// A point of the axis \[m\].
         #[serde(default)]
         about: Vec3,
     },
@@ -99,9 +99,9 @@ pub enum Shape {
     Scale {
         /// What is stretched.
         shape: Box<Shape>,
-        /// Factors along x, y, z; z is not used in two dimensions [-].
+        /// Factors along x, y, z; z is not used in two dimensions \[-\].
         by: Vec3,
-        /// The point that stays where it is [m].
+        /// The point that stays where it is \[m\].
         #[serde(default)]
         about: Vec3,
     },

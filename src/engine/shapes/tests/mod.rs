@@ -1,3 +1,56 @@
 //! Tests of shapes and filling against closed forms and naive second implementations.
 
+mod concentric;
+mod errors;
+mod hexagonal;
+mod order;
+mod points;
+mod regions;
+mod regular;
+mod relaxed;
 mod text;
+
+use std::path::Path;
+
+use super::{FillError, FillErrorKind, Lattice, Shape, Site, fill};
+use crate::scene::Dimension;
+
+fn shape(text: &str) -> Shape {
+    ron::from_str(text).unwrap()
+}
+
+fn try_fill(
+    text: &str,
+    lattice: Lattice,
+    spacing: f64,
+    dimension: Dimension,
+) -> Result<Vec<Site>, FillError> {
+    fill(&shape(text), lattice, spacing, dimension, Path::new("."), 1_000_000)
+}
+
+fn filled(text: &str, lattice: Lattice, spacing: f64, dimension: Dimension) -> Vec<Site> {
+    try_fill(text, lattice, spacing, dimension).unwrap()
+}
+
+fn total(sites: &[Site]) -> f64 {
+    sites.iter().map(|site| site.volume).sum()
+}
+
+fn assert_close(value: f64, expected: f64, relative: f64) {
+    assert!((value - expected).abs() <= relative * expected.abs(), "{value} is not {expected}");
+}
+
+fn least_distance(sites: &[Site]) -> f64 {
+    let mut least = f64::INFINITY;
+    for (n, a) in sites.iter().enumerate() {
+        for b in &sites[..n] {
+            least = least.min(a.position.distance(b.position));
+        }
+    }
+    least
+}
+
+fn kind(text: &str, spacing: f64, dimension: Dimension) -> (String, FillErrorKind) {
+    let FillError { path, kind } = try_fill(text, Lattice::Regular, spacing, dimension).unwrap_err();
+    (path, kind)
+}

@@ -1,0 +1,49 @@
+//! Circular cylinders with flat ends, solid (`Cylinder`) or hollow (`Tube`).
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::concentric::Rings;
+use super::region::{Aabb, Region, capped};
+
+/// A circular cylinder with flat ends; `inner` is 0 where it is solid.
+pub(super) struct Cylinder {
+    pub from: DVec3,
+    pub to: DVec3,
+    pub inner: f64,
+    pub outer: f64,
+}
+
+impl Region for Cylinder {
+    fn distance(&self, point: DVec3) -> f64 {
+        let half = 0.5 * (self.to - self.from);
+        let length = half.length();
+        let axis = half / length;
+        let from_middle = point - self.from - half;
+        let along = from_middle.dot(axis);
+        let r = (from_middle - along * axis).length();
+        let bore = if self.inner > 0.0 { self.inner - r } else { f64::NEG_INFINITY };
+        capped((r - self.outer).max(bore), along.abs() - length)
+    }
+
+    fn bounds(&self) -> Aabb {
+        let axis = (self.to - self.from).normalize();
+        let reach = self.outer * (DVec3::ONE - axis * axis).max(DVec3::ZERO).map(f64::sqrt);
+        Aabb { min: self.from.min(self.to) - reach, max: self.from.max(self.to) + reach }
+    }
+
+    fn volume(&self) -> Option<f64> {
+        let area = PI * (self.outer - self.inner) * (self.outer + self.inner);
+        Some(area * self.from.distance(self.to))
+    }
+
+    fn walls(&self) -> Vec<(&'static str, f64)> {
+        let across = if self.inner > 0.0 { self.outer - self.inner } else { 2.0 * self.outer };
+        vec![("the axis", self.from.distance(self.to)), ("the radius", across)]
+    }
+
+    fn rings(&self) -> Option<Rings> {
+        Some(Rings::Axial { from: self.from, to: self.to, inner: self.inner, outer: self.outer })
+    }
+}

@@ -1,0 +1,162 @@
+//! What can be wrong with a shape, a spacing or a particle file.
+
+use thiserror::Error;
+
+/// Why a shape cannot be filled with particles or used as a selection.
+#[derive(Debug, Error)]
+#[error("{path}: {kind}{}", .kind.help().map_or(String::new(), |help| format!("; {help}")))]
+pub struct FillError {
+    /// The field that is wrong, from the body on: `spacing`, `shape.max`, `shape[0].radius` (an argument without a name), `shape[0][2]`
+    /// (an element of a list).
+    pub path: String,
+    /// What is wrong with it.
+    pub kind: FillErrorKind,
+}
+
+impl FillError {
+    pub(super) fn new(path: impl Into<String>, kind: FillErrorKind) -> Self {
+        Self { path: path.into(), kind }
+    }
+}
+
+/// What is wrong with a field of a shape, or with the particles that would fill it.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FillErrorKind {
+    /// Infinite or not a number.
+    #[error("expected a finite number, found {0}")]
+    NotFinite(f64),
+    /// Zero or negative where only a positive number makes sense.
+    #[error("must be greater than 0, found {0}")]
+    NotPositive(f64),
+    /// Two ends in the wrong order, or equal.
+    #[error("the {axis} range is empty: the lower end {min} is not below the upper end {max}")]
+    EmptyRange {
+        /// Name of the axis.
+        axis: char,
+        /// Lower end \[m\].
+        min: f64,
+        /// Upper end \[m\].
+        max: f64,
+    },
+    /// A hole as wide as the body, or wider.
+    #[error("the inner radius {inner} m must be less than the outer radius {outer} m")]
+    Radii {
+        /// Radius of the hole \[m\].
+        inner: f64,
+        /// Outer radius \[m\].
+        outer: f64,
+    },
+    /// Two ends of an axis coincide.
+    #[error("`from` and `to` are the same point")]
+    NoLength,
+    /// A z coordinate in two dimensions.
+    #[error("z must be left out or 0 in two dimensions, found {0}")]
+    NotFlat(f64),
+    /// A shape of three dimensions in a scene of two, or the other way round.
+    #[error("`{shape}` is a shape of {needs} dimensions only")]
+    WrongDimension {
+        /// Name of the shape.
+        shape: &'static str,
+        /// The dimensions it needs, `two` or `three`.
+        needs: &'static str,
+        /// What to write in its place.
+        instead: &'static str,
+    },
+    /// A polygon with too few corners.
+    #[error("a polygon needs at least 3 points, found {0}")]
+    FewPoints(usize),
+    /// A polygon with an edge of no length.
+    #[error("points {0} and {1} of the polygon (counted from 0) are the same")]
+    EqualPoints(usize, usize),
+    /// A polygon that crosses or touches itself.
+    #[error(
+        "the polygon crosses or touches itself: the edges that start at points {0} and {1} (counted from 0) meet"
+    )]
+    Crossing(usize, usize),
+    /// A combination of nothing.
+    #[error("needs at least one shape")]
+    NoShapes,
+    /// A rotation axis of no length.
+    #[error("the axis has no length")]
+    NoAxis,
+    /// A rotation out of the plane.
+    #[error("in two dimensions the axis must be along z")]
+    AxisNotZ,
+    /// A particle file where a region is needed.
+    #[error("a particle file has no inside")]
+    NoInside,
+    /// A lattice that does not fit the shape.
+    #[error("a concentric lattice does not fit this shape")]
+    NotConcentric,
+    /// The shape is empty.
+    #[error("the shape is empty: no particle of spacing {0} m lies in it")]
+    NoParticle(f64),
+    /// A wall that two particles cannot resolve.
+    #[error("the body is {:.3} spacings thick along {direction}, at least 2 are needed", .thickness / .spacing)]
+    Thin {
+        /// Name of the direction: `x`, `y`, `z`, `the axis` or `the radius`.
+        direction: &'static str,
+        /// Thickness of the body in this direction \[m\].
+        thickness: f64,
+        /// Spacing of the particles \[m\].
+        spacing: f64,
+    },
+    /// More particles than the caller has memory for.
+    #[error("about {estimate:.3e} particles, more than the {limit} there is memory for")]
+    TooMany {
+        /// Estimated number of particles.
+        estimate: f64,
+        /// Allowed number of particles.
+        limit: usize,
+    },
+    /// A particle file that cannot be opened.
+    #[error("cannot read `{file}`: {source}")]
+    File {
+        /// The file as looked for.
+        file: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A particle file with wrong content.
+    #[error("`{file}`, line {line}: {message}")]
+    Csv {
+        /// The file as looked for.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// What was found and what would be right.
+        message: String,
+    },
+}
+
+impl FillErrorKind {
+    /// What would be right, where the message does not say it.
+    pub fn help(&self) -> Option<String> {
+        Some(match self {
+            Self::WrongDimension { instead, .. } => format!("use {instead}"),
+            Self::EqualPoints(..) => {
+                "leave one of them out; the first point is not repeated at the end".into()
+            }
+            Self::NoInside => {
+                "it can fill a body, but not be combined with shapes, nor select particles".into()
+            }
+            Self::NotConcentric => {
+                "it fits `Sphere`, `Ring`, `Cylinder` and `Tube`; use `Regular` here".into()
+            }
+            Self::Thin { thickness, .. } => {
+                format!("use a spacing of at most {} m", rounded_down(thickness / 2.0))
+            }
+            Self::TooMany { .. } => "use a larger spacing".into(),
+            _ => return None,
+        })
+    }
+}
+
+/// Three digits, never above the value.
+fn rounded_down(value: f64) -> f64 {
+    let shown = |value: f64| format!("{value:.2e}").parse().unwrap_or(value);
+    // Round-off of the thickness itself must not turn 0.05 into 0.0499.
+    let nearest: f64 = shown(value);
+    if nearest <= value * (1.0 + 1e-9) { nearest } else { shown(value * 0.995) }
+}

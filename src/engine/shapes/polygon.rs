@@ -1,0 +1,134 @@
+//! Polygons in the plane, and the prisms over them (`Extrusion`).
+
+use glam::{DVec2, DVec3};
+
+use super::error::FillErrorKind;
+use super::region::{Aabb, Region, capped};
+
+/// A polygon in x-y that does not cross itself.
+pub(super) struct Polygon {
+    corners: Vec<DVec2>,
+}
+
+/// A prism over a polygon between two heights.
+pub(super) struct Extrusion {
+    pub polygon: Polygon,
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Polygon {
+    /// Checks that the edges have a length and meet only at the corners that they share.
+    pub fn new(points: &[(f64, f64)]) -> Result<Self, FillErrorKind> {
+        let corners: Vec<DVec2> = points.iter().map(|&(x, y)| DVec2::new(x, y)).collect();
+        let n = corners.len();
+        if n < 3 {
+            return Err(FillErrorKind::FewPoints(n));
+        }
+        for i in 0..n {
+            let next = (i + 1) % n;
+            if corners[i] == corners[next] {
+                return Err(FillErrorKind::EqualPoints(i, next));
+            }
+        }
+        let polygon = Self { corners };
+        for i in 0..n {
+            for j in i + 1..n {
+                if polygon.edges_meet(i, j) {
+                    return Err(FillErrorKind::Crossing(i, j));
+                }
+            }
+        }
+        Ok(polygon)
+    }
+
+    fn edge(&self, i: usize) -> (DVec2, DVec2) {
+        (self.corners[i], self.corners[(i + 1) % self.corners.len()])
+    }
+
+    fn edges_meet(&self, i: usize, j: usize) -> bool {
+        let n = self.corners.len();
+        let ((a, b), (c, d)) = (self.edge(i), self.edge(j));
+        if (i + 1) % n == j {
+            return folds_back(b - a, d - c);
+        }
+        if (j + 1) % n == i {
+            return folds_back(d - c, b - a);
+        }
+        let side = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p);
+        let within = |p: DVec2, q: DVec2, r: DVec2| r.cmpge(p.min(q)).all() && r.cmple(p.max(q)).all();
+        let (c_side, d_side) = (side(a, b, c), side(a, b, d));
+        let (a_side, b_side) = (side(c, d, a), side(c, d, b));
+        (c_side * d_side < 0.0 && a_side * b_side < 0.0)
+            || (c_side == 0.0 && within(a, b, c))
+            || (d_side == 0.0 && within(a, b, d))
+            || (a_side == 0.0 && within(c, d, a))
+            || (b_side == 0.0 && within(c, d, b))
+    }
+
+    fn area(&self) -> f64 {
+        // Relative to a corner: far from the origin the products would cancel.
+        let origin = self.corners[0];
+        let twice: f64 = (0..self.corners.len())
+            .map(|i| {
+                let (a, b) = self.edge(i);
+                (a - origin).perp_dot(b - origin)
+            })
+            .sum();
+        0.5 * twice.abs()
+    }
+
+    fn distance(&self, point: DVec2) -> f64 {
+        let mut nearest = f64::INFINITY;
+        let mut inside = false;
+        for i in 0..self.corners.len() {
+            let (a, b) = self.edge(i);
+            let edge = b - a;
+            let part = ((point - a).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min(point.distance_squared(a + part * edge));
+            if (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / edge.y * edge.x {
+                inside = !inside;
+            }
+        }
+        if inside { -nearest.sqrt() } else { nearest.sqrt() }
+    }
+
+    fn bounds(&self) -> (DVec2, DVec2) {
+        let first = self.corners[0];
+        self.corners.iter().fold((first, first), |(min, max), &corner| (min.min(corner), max.max(corner)))
+    }
+}
+
+fn folds_back(edge: DVec2, next: DVec2) -> bool {
+    edge.perp_dot(next) == 0.0 && edge.dot(next) < 0.0
+}
+
+impl Region for Polygon {
+    fn distance(&self, point: DVec3) -> f64 {
+        self.distance(point.truncate())
+    }
+
+    fn bounds(&self) -> Aabb {
+        let (min, max) = self.bounds();
+        Aabb { min: min.extend(0.0), max: max.extend(0.0) }
+    }
+
+    fn volume(&self) -> Option<f64> {
+        Some(self.area())
+    }
+}
+
+impl Region for Extrusion {
+    fn distance(&self, point: DVec3) -> f64 {
+        capped(self.polygon.distance(point.truncate()), (self.from - point.z).max(point.z - self.to))
+    }
+
+    fn bounds(&self) -> Aabb {
+        let (min, max) = self.polygon.bounds();
+        Aabb { min: min.extend(self.from), max: max.extend(self.to) }
+    }
+
+    fn volume(&self) -> Option<f64> {
+        Some(self.polygon.area() * (self.to - self.from))
+    }
+}

@@ -1,0 +1,107 @@
+//! A set of points: what every shape is once it is checked.
+
+use glam::DVec3;
+
+use super::concentric::Rings;
+
+/// A box along the axes, given by its corners \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Corner with the smallest coordinates \[m\].
+    pub min: DVec3,
+    /// Corner with the largest coordinates \[m\].
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The smallest box that holds all `points` \[m\]; around no points, one at the origin.
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        let of_point = |point| Self { min: point, max: point };
+        let all = points.into_iter().map(of_point).reduce(|bounds, point| bounds.union(&point));
+        all.unwrap_or(of_point(DVec3::ZERO))
+    }
+
+    /// Lengths of the sides \[m\].
+    pub fn extent(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The centre \[m\].
+    pub fn center(&self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    /// The smallest box that holds both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The common part; where there is none, a box of no extent.
+    pub fn intersection(&self, other: &Self) -> Self {
+        let min = self.min.max(other.min);
+        Self { min, max: self.max.min(other.max).max(min) }
+    }
+
+    /// Whether the boxes have no inner point in common. Only the first `axes` axes count.
+    pub(super) fn is_apart(&self, other: &Self, axes: usize) -> bool {
+        (0..axes).any(|k| self.max[k] <= other.min[k] || other.max[k] <= self.min[k])
+    }
+
+    /// The eight corners \[m\].
+    pub(super) fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|n| {
+            let pick = |k: usize| if n >> k & 1 == 0 { self.min[k] } else { self.max[k] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+/// A set of points with its boundary. In two dimensions the points lie in z = 0 and a volume is an area \[m²\].
+pub trait Region: Send + Sync {
+    /// Signed distance from `point` to the boundary \[m\], negative inside. The sign is exact, the magnitude never more
+    /// than the true distance (boolean combinations may give less).
+    fn distance(&self, point: DVec3) -> f64;
+
+    /// A box that holds the region, the smallest one except for rotated shapes and for combinations.
+    fn bounds(&self) -> Aabb;
+
+    /// Volume \[m³\], in two dimensions area \[m²\], where it is known in closed form.
+    fn volume(&self) -> Option<f64>;
+
+    /// Whether `point` is inside or on the boundary. Points closer to the boundary than 1e-9 of the diagonal of the bounding box
+    /// are on it, so that round-off decides nothing.
+    fn contains(&self, point: DVec3) -> bool {
+        self.distance(point) <= self.tolerance()
+    }
+
+    /// The distance below which a point counts as on the boundary \[m\].
+    fn tolerance(&self) -> f64 {
+        1e-9 * self.bounds().extent().length()
+    }
+
+    /// The box whose sides the cells of a lattice divide evenly: for a combination that of its first shape.
+    fn frame(&self) -> Aabb {
+        self.bounds()
+    }
+
+    /// Thicknesses that the bounding box does not show, with the name of their direction \[m\].
+    fn walls(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
+    /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes alone.
+    fn box_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
+        false
+    }
+
+    /// The rings or shells of a concentric lattice, for shapes that have them.
+    fn rings(&self) -> Option<Rings> {
+        None
+    }
+}
+
+/// Signed distance to what is both within a prism and between its ends, from the distance to the side of the prism and that to the
+/// ends \[m\].
+pub(super) fn capped(side: f64, ends: f64) -> f64 {
+    side.max(ends).min(0.0) + side.max(0.0).hypot(ends.max(0.0))
+}

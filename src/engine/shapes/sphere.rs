@@ -1,0 +1,38 @@
+//! Spheres; discs in two dimensions.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::concentric::Rings;
+use super::region::{Aabb, Region};
+
+/// A sphere; in two dimensions a disc.
+pub(super) struct Sphere {
+    pub center: DVec3,
+    pub radius: f64,
+    pub axes: usize,
+}
+
+impl Region for Sphere {
+    fn distance(&self, point: DVec3) -> f64 {
+        point.distance(self.center) - self.radius
+    }
+
+    fn bounds(&self) -> Aabb {
+        let reach = DVec3::new(self.radius, self.radius, if self.axes == 3 { self.radius } else { 0.0 });
+        Aabb { min: self.center - reach, max: self.center + reach }
+    }
+
+    fn volume(&self) -> Option<f64> {
+        Some(if self.axes == 3 { 4.0 / 3.0 * PI * self.radius.powi(3) } else { PI * self.radius.powi(2) })
+    }
+
+    fn rings(&self) -> Option<Rings> {
+        Some(if self.axes == 3 {
+            Rings::Shells { center: self.center, radius: self.radius }
+        } else {
+            Rings::Plane { center: self.center, inner: 0.0, outer: self.radius }
+        })
+    }
+}

@@ -1,0 +1,117 @@
+//! Which points a shape contains, its bounds, its distance.
+
+use glam::DVec3;
+use proptest::prelude::*;
+
+use super::shape;
+use crate::scene::Dimension::{self, Three, Two};
+use crate::shapes::{Aabb, Region};
+
+fn region(text: &str, dimension: Dimension) -> Box<dyn Region> {
+    shape(text).region(dimension, "shape").unwrap()
+}
+
+/// Shapes with a second, plain statement of what is inside.
+type Inside = fn(DVec3) -> bool;
+const PLANE: [(&str, Inside); 8] = [
+    ("Box(min: (-1, 0), max: (1, 0.5))", |p| p.x.abs() <= 1.0 && p.y >= 0.0 && p.y <= 0.5),
+    ("Sphere(center: (0.5, 0), radius: 1)", |p| (p.x - 0.5).hypot(p.y) <= 1.0),
+    ("Ring(center: (0, 0.5), inner: 0.5, outer: 1)", |p| (0.5..=1.0).contains(&p.x.hypot(p.y - 0.5))),
+    ("Polygon(points: [(-1, -1), (1, -1), (1, 1), (0, 0), (-1, 1)])", |p| {
+        p.x.abs() <= 1.0 && p.y >= -1.0 && p.y <= p.x.abs()
+    }),
+    ("Union([Box(min: (-1, -1), max: (0, 0)), Sphere(center: (0, 0), radius: 0.5)])", |p| {
+        (p.x <= 0.0 && p.x >= -1.0 && p.y <= 0.0 && p.y >= -1.0) || p.x.hypot(p.y) <= 0.5
+    }),
+    ("Difference(Box(min: (-1, -1), max: (1, 1)), Sphere(center: (1, 1), radius: 1))", |p| {
+        p.x.abs() <= 1.0 && p.y.abs() <= 1.0 && (p.x - 1.0).hypot(p.y - 1.0) >= 1.0
+    }),
+    ("Rotate(shape: Box(min: (0, 0), max: (1, 1)), angle_degrees: 45)", |p| {
+        (0.0..=2f64.sqrt()).contains(&(p.x + p.y)) && (0.0..=2f64.sqrt()).contains(&(p.y - p.x))
+    }),
+    ("Scale(shape: Translate(shape: Sphere(center: (0, 0), radius: 1), by: (0.2, 0)), by: (1, 0.5))", |p| {
+        (p.x - 0.2).hypot(2.0 * p.y) <= 1.0
+    }),
+];
+const SPACE: [(&str, Inside); 5] = [
+    ("Sphere(center: (0.5, 0, 0), radius: 1)", |p| p.distance(0.5 * DVec3::X) <= 1.0),
+    ("Cylinder(from: (0, 0, -1), to: (0, 0, 0.5), radius: 1)", |p| {
+        p.x.hypot(p.y) <= 1.0 && p.z >= -1.0 && p.z <= 0.5
+    }),
+    ("Tube(from: (1, 0, 0), to: (-1, 0, 0), inner: 0.4, outer: 1)", |p| {
+        p.x.abs() <= 1.0 && (0.4..=1.0).contains(&p.y.hypot(p.z))
+    }),
+    ("Extrusion(polygon: [(-1, -1), (1, -1), (-1, 1)], from: 0, to: 1)", |p| {
+        p.x >= -1.0 && p.y >= -1.0 && p.x + p.y <= 0.0 && p.z >= 0.0 && p.z <= 1.0
+    }),
+    ("Intersection([Box(min: (-1, -1, -1), max: (1, 1, 1)), Sphere(center: (0, 0, 0), radius: 1.2)])", |p| {
+        p.abs().max_element() <= 1.0 && p.length() <= 1.2
+    }),
+];
+
+proptest! {
+    #[test]
+    fn contains_what_it_should(x in -1.5..1.5, y in -1.5..1.5, z in -1.5..1.5) {
+        for (text, inside) in PLANE {
+            let point = DVec3::new(x, y, 0.0);
+            prop_assert_eq!(region(text, Two).contains(point), inside(point), "{} {}", text, point);
+        }
+        for (text, inside) in SPACE {
+            let point = DVec3::new(x, y, z);
+            prop_assert_eq!(region(text, Three).contains(point), inside(point), "{} {}", text, point);
+        }
+    }
+
+    #[test]
+    fn distance_is_never_more_than_the_true_one(p in [-1.5..1.5, -1.5..1.5, -1.5..1.5], q in [-1.5..1.5, -1.5..1.5, -1.5..1.5]) {
+        // Holds exactly if going from any point p by any step changes the distance by at most its length.
+        let (p, q) = (DVec3::from_array(p), DVec3::from_array(q));
+        for (text, _) in SPACE {
+            let region = region(text, Three);
+            prop_assert!((region.distance(p) - region.distance(q)).abs() <= p.distance(q) + 1e-12, "{}", text);
+        }
+        let (p, q) = (p * DVec3::new(1.0, 1.0, 0.0), q * DVec3::new(1.0, 1.0, 0.0));
+        for (text, _) in PLANE {
+            let region = region(text, Two);
+            prop_assert!((region.distance(p) - region.distance(q)).abs() <= p.distance(q) + 1e-12, "{}", text);
+            let bounds = region.bounds();
+            if region.contains(p) {
+                let slack = DVec3::splat(region.tolerance());
+                prop_assert!(p.cmpge(bounds.min - slack).all() && p.cmple(bounds.max + slack).all(), "{}", text);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_boundary_is_inside() {
+    let wall =
+        region("Difference(Box(min: (0, 0), max: (1, 1)), Box(min: (0.1, 0.1), max: (0.9, 0.9)))", Two);
+    for (x, y) in [(0.0, 0.0), (1.0, 0.3), (0.1, 0.5), (0.30000000000000004 - 0.2, 0.5), (0.9, 0.9)] {
+        assert!(wall.contains(DVec3::new(x, y, 0.0)), "{x} {y}");
+    }
+    for (x, y) in [(-1e-6, 0.0), (0.100001, 0.5), (0.5, 0.5)] {
+        assert!(!wall.contains(DVec3::new(x, y, 0.0)), "{x} {y}");
+    }
+}
+
+#[test]
+fn bounds_are_tight() {
+    let slanted = region("Cylinder(from: (0, 0, 0), to: (3, 4, 0), radius: 1)", Three).bounds();
+    let expected = Aabb { min: DVec3::new(-0.8, -0.6, -1.0), max: DVec3::new(3.8, 4.6, 1.0) };
+    assert!(slanted.min.distance(expected.min) < 1e-12 && slanted.max.distance(expected.max) < 1e-12);
+    let turned = region("Rotate(shape: Box(min: (0, 0), max: (1, 1)), angle_degrees: 90)", Two).bounds();
+    assert!(turned.min.distance(DVec3::new(-1.0, 0.0, 0.0)) < 1e-12);
+}
+
+#[test]
+fn volumes_of_nested_boxes_are_exact() {
+    let frame = "Difference(Box(min: (0, 0, 0), max: (3, 3, 3)), Union([
+        Box(min: (1, 1, -1), max: (2, 2, 4)), Box(min: (-1, 1, 1), max: (4, 2, 2)), Box(min: (1, -1, 1), max: (2, 4, 2))]))";
+    // A cube of 27 without its middle and the middles of its six faces.
+    let volume = region(frame, Three).volume().unwrap();
+    assert!((volume - 20.0).abs() < 1e-12);
+    let moved = format!("Scale(shape: Translate(shape: {frame}, by: (1, 0, 0)), by: (1, 2, 3))");
+    let both = format!("Intersection([{moved}, {moved}])");
+    assert!((region(&both, Three).volume().unwrap() - 120.0).abs() < 1e-10);
+}

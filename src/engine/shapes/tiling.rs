@@ -1,0 +1,132 @@
+//! Cells that tile a region: the frame of regular lattices, of numerical volumes and of neighbour look-ups.
+
+use glam::DVec3;
+
+use super::region::{Aabb, Region};
+
+/// A grid of equal cells. In two dimensions it is one cell of no height at z = 0.
+pub(super) struct Tiling {
+    /// Where the cell with index 0 begins \[m\].
+    origin: DVec3,
+    /// Index of the first cell along each axis: negative where the grid reaches out below `origin`.
+    first: [i64; 3],
+    /// Number of cells along each axis.
+    pub counts: [usize; 3],
+    /// Sides of a cell \[m\]; z is 0 in two dimensions.
+    pub cell: DVec3,
+    pub axes: usize,
+}
+
+/// A box of cells, `low <= index < high`, that is not wholly outside a region.
+pub(super) struct Block {
+    pub low: [usize; 3],
+    pub high: [usize; 3],
+    /// All of it is inside the region.
+    pub inside: bool,
+}
+
+impl Tiling {
+    /// Cells of about the size `spacing` that divide `frame` evenly and go on until they cover `bounds`.
+    pub fn new(frame: &Aabb, bounds: &Aabb, spacing: DVec3, axes: usize) -> Self {
+        let mut tiling = Self { origin: frame.min, first: [0; 3], counts: [1; 3], cell: DVec3::ZERO, axes };
+        for k in 0..axes {
+            let side = frame.max[k] - frame.min[k];
+            let cell = side / (side / spacing[k]).round().max(1.0);
+            // The small number keeps round-off from adding a layer of cells where both ends agree.
+            let first = ((bounds.min[k] - frame.min[k]) / cell + 1e-6).floor();
+            let last = ((bounds.max[k] - frame.min[k]) / cell - 1e-6).ceil();
+            tiling.cell[k] = cell;
+            tiling.first[k] = first as i64;
+            tiling.counts[k] = (last - first).max(1.0) as usize;
+        }
+        tiling
+    }
+
+    /// Volume of a cell \[m³\], in two dimensions its area \[m²\].
+    pub fn cell_volume(&self) -> f64 {
+        (0..self.axes).map(|k| self.cell[k]).product()
+    }
+
+    /// The point of cell `index` at the given parts of its sides (0.5: the centre) \[m\].
+    pub fn point(&self, index: [usize; 3], part: DVec3) -> DVec3 {
+        let along =
+            |k: usize| self.origin[k] + ((self.first[k] + index[k] as i64) as f64 + part[k]) * self.cell[k];
+        DVec3::new(along(0), along(1), along(2))
+    }
+
+    /// Number of layers, rows or columns of cells between this cell and the origin of the frame.
+    pub fn steps_from_origin(&self, index: [usize; 3]) -> [i64; 3] {
+        [0, 1, 2].map(|k| self.first[k] + index[k] as i64)
+    }
+
+    /// The cell that holds `point`, or the nearest one.
+    pub fn index(&self, point: DVec3) -> [usize; 3] {
+        [0, 1, 2].map(|k| {
+            if k >= self.axes {
+                return 0;
+            }
+            let cells = ((point[k] - self.origin[k]) / self.cell[k]).floor() - self.first[k] as f64;
+            (cells.max(0.0) as usize).min(self.counts[k] - 1)
+        })
+    }
+
+    /// Blocks of at most `leaf` cells a side that together hold all cells which touch the region. Blocks inside may be
+    /// as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each other.
+    pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<Block> {
+        let side = self.counts.iter().copied().max().unwrap_or(1).next_power_of_two();
+        let mut blocks = Vec::new();
+        self.split(region, [0; 3], side, leaf, inside_leaf, false, &mut blocks);
+        blocks
+    }
+
+    #[allow(clippy::too_many_arguments)] // the state of a recursion, private to this file
+    fn split(
+        &self,
+        region: &dyn Region,
+        low: [usize; 3],
+        side: usize,
+        leaf: usize,
+        inside_leaf: usize,
+        known_inside: bool,
+        blocks: &mut Vec<Block>,
+    ) {
+        if (0..3).any(|k| low[k] >= self.counts[k]) {
+            return;
+        }
+        let high = [0, 1, 2].map(|k| (low[k] + side).min(self.counts[k]));
+        let mut inside = known_inside;
+        if !inside {
+            let (start, end) = (self.point(low, DVec3::ZERO), self.point(high, DVec3::ZERO));
+            let reach = 0.5 * (end - start).length();
+            let center = 0.5 * (start + end);
+            let distance = region.distance(center);
+            if distance > reach * (1.0 + 1e-9) + region.tolerance() {
+                return;
+            }
+            inside = distance < -reach;
+        }
+        if side <= if inside { inside_leaf.max(leaf) } else { leaf } {
+            blocks.push(Block { low, high, inside });
+            return;
+        }
+        let half = side / 2;
+        for child in 0..1 << self.axes {
+            let start = [0, 1, 2].map(|k| low[k] + half * (child >> k & 1));
+            self.split(region, start, half, leaf, inside_leaf, inside, blocks);
+        }
+    }
+}
+
+impl Block {
+    /// The cells of the block, x fastest.
+    pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let (low, high) = (self.low, self.high);
+        (low[2]..high[2])
+            .flat_map(move |z| (low[1]..high[1]).flat_map(move |y| (low[0]..high[0]).map(move |x| [x, y, z])))
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        (0..3).map(|k| self.high[k] - self.low[k]).product()
+    }
+}

@@ -1,0 +1,155 @@
+//! Volumes and centroids of the Voronoi cells of scattered points inside a region, by sampling.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::region::Region;
+use super::tiling::{Block, Tiling};
+
+/// Volume and first moment of what lies nearer to one point than to any other.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Moments {
+    /// Volume \[m³\] (area \[m²\]).
+    pub volume: f64,
+    /// Integral of the position \[m⁴\] (\[m³\]).
+    pub first: DVec3,
+}
+
+/// Points sorted by the cell of a tiling that they are in. Only cells with points take memory.
+struct Buckets<'a> {
+    tiling: &'a Tiling,
+    /// Cell as z, y, x, and number of the point, in this order.
+    sorted: Vec<([usize; 3], u32)>,
+}
+
+impl<'a> Buckets<'a> {
+    fn new(tiling: &'a Tiling, points: &[DVec3]) -> Self {
+        let entry = |(n, &point): (usize, &DVec3)| {
+            let [x, y, z] = tiling.index(point);
+            ([z, y, x], n as u32)
+        };
+        let mut sorted: Vec<_> = points.par_iter().enumerate().map(entry).collect();
+        sorted.par_sort_unstable();
+        Self { tiling, sorted }
+    }
+
+    /// The points in the cells up to `reach` cells away.
+    fn around(&self, cell: [usize; 3], reach: usize) -> impl Iterator<Item = u32> {
+        let low = cell.map(|n| n.saturating_sub(reach));
+        let high = [0, 1, 2].map(|k| (cell[k] + reach + 1).min(self.tiling.counts[k]));
+        (low[2]..high[2]).flat_map(move |z| (low[1]..high[1]).map(move |y| (z, y))).flat_map(move |(z, y)| {
+            let start = self.sorted.partition_point(|&(at, _)| at < [z, y, low[0]]);
+            let row = self.sorted[start..].iter().take_while(move |&&(at, _)| at < [z, y, high[0]]);
+            row.map(|&(_, n)| n)
+        })
+    }
+}
+
+/// Moments of the Voronoi cells of `points`, cut off at the boundary of `region`; each cell of `tiling` is sampled `samples` times along each
+/// axis.
+pub(super) fn moments(
+    region: &dyn Region,
+    tiling: &Tiling,
+    points: &[DVec3],
+    samples: usize,
+) -> Vec<Moments> {
+    let buckets = Buckets::new(tiling, points);
+    let leaf = if tiling.axes == 2 { 8 } else { 4 };
+    let blocks = tiling.blocks(region, leaf, leaf);
+    let of_block = |block: &Block| {
+        let mut found = Vec::new();
+        block
+            .cells()
+            .for_each(|cell| of_cell(region, &buckets, points, samples, cell, block.inside, &mut found));
+        found
+    };
+    let found: Vec<Vec<(u32, Moments)>> = blocks.par_iter().map(of_block).collect();
+    let mut moments = vec![Moments::default(); points.len()];
+    // In the order of the blocks, so that the sums do not depend on the threads.
+    for (n, part) in found.into_iter().flatten() {
+        moments[n as usize].volume += part.volume;
+        moments[n as usize].first += part.first;
+    }
+    moments
+}
+
+fn of_cell(
+    region: &dyn Region,
+    buckets: &Buckets,
+    points: &[DVec3],
+    samples: usize,
+    cell: [usize; 3],
+    inside: bool,
+    found: &mut Vec<(u32, Moments)>,
+) {
+    let tiling = buckets.tiling;
+    let step = 1.0 / samples as f64;
+    let width = tiling.cell.max_element() * step;
+    let volume = tiling.cell_volume() * step.powi(tiling.axes as i32);
+    let safe = (0..tiling.axes).map(|k| tiling.cell[k]).fold(f64::INFINITY, f64::min);
+    let near: Vec<(DVec3, u32)> = buckets.around(cell, 1).map(|n| (points[n as usize], n)).collect();
+    let mut sums = vec![Moments::default(); near.len()];
+    let layers = if tiling.axes == 3 { samples } else { 1 };
+    for z in 0..layers {
+        for y in 0..samples {
+            for x in 0..samples {
+                let point = tiling.point(cell, step * (DVec3::new(x as f64, y as f64, z as f64) + 0.5));
+                let part = if inside { 1.0 } else { (0.5 - region.distance(point) / width).clamp(0.0, 1.0) };
+                if part == 0.0 {
+                    continue;
+                }
+                let (mut nearest, mut second) = ((f64::INFINITY, 0), (f64::INFINITY, 0));
+                for (n, &(other, _)) in near.iter().enumerate() {
+                    let distance = other.distance_squared(point);
+                    if distance < nearest.0 {
+                        second = nearest;
+                        nearest = (distance, n);
+                    } else if distance < second.0 {
+                        second = (distance, n);
+                    }
+                }
+                let weight = part * volume;
+                // Every point within one cell's side is in the cells around.
+                if nearest.0 > safe * safe {
+                    let far = nearest_far(buckets, points, cell, point, safe);
+                    found.push((far, Moments { volume: weight, first: weight * point }));
+                    continue;
+                }
+                let mut add = |n: usize, weight: f64| {
+                    sums[n].volume += weight;
+                    sums[n].first += weight * point;
+                };
+                // A sample that the plane between the two nearest points cuts is shared, as if the plane were along a face of it:
+                // the error falls with the square of the sample's size.
+                let share = if second.0.is_finite() {
+                    let apart = near[nearest.1].0.distance(near[second.1].0);
+                    let to_plane = (second.0 - nearest.0) / (2.0 * apart);
+                    (0.5 + to_plane / width).min(1.0)
+                } else {
+                    1.0
+                };
+                add(nearest.1, share * weight);
+                if share < 1.0 {
+                    add(second.1, (1.0 - share) * weight);
+                }
+            }
+        }
+    }
+    found.extend(near.iter().zip(sums).filter(|(_, sum)| sum.volume > 0.0).map(|(&(_, n), sum)| (n, sum)));
+}
+
+/// The nearest of `points`, in rings of cells that widen until none outside can be nearer.
+fn nearest_far(buckets: &Buckets, points: &[DVec3], cell: [usize; 3], point: DVec3, safe: f64) -> u32 {
+    let widest = buckets.tiling.counts.iter().copied().max().unwrap_or(1);
+    let mut best = (f64::INFINITY, 0);
+    for reach in 2..=widest.max(2) {
+        best = buckets.around(cell, reach).fold((f64::INFINITY, 0), |best, n| {
+            let distance = points[n as usize].distance(point);
+            if distance < best.0 { (distance, n) } else { best }
+        });
+        if best.0 <= reach as f64 * safe {
+            break;
+        }
+    }
+    best.1
+}
