@@ -21,7 +21,7 @@ impl MomentMatrix {
         Self { matrix: Sym3::ZERO, dimension }
     }
 
-    /// Adds a neighbour by `V_j w_ij` [m^-2] and `x_ij` [m]; neighbours are to come in the order of their row.
+    /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their row.
     #[inline]
     pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {
         self.matrix += Sym3::dyad(x_ij) * volume_weight;

@@ -41,17 +41,17 @@ impl Kernel {
         self.dimension as usize
     }
 
-    /// Support radius H [m] of a smoothing length [m].
+    /// Support radius H (m) of a smoothing length (m).
     pub fn support_radius(&self, smoothing_length: f64) -> f64 {
         self.name.support() * smoothing_length
     }
 
-    /// Smoothing length h [m] of a support radius [m].
+    /// Smoothing length h (m) of a support radius (m).
     pub fn smoothing_length(&self, support_radius: f64) -> f64 {
         support_radius / self.name.support()
     }
 
-    /// `W(r, h)` [1/m^d].
+    /// `W(r, h)` (1/m^d).
     pub fn w(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Value(f64, f64);
         impl KernelVisitor for Value {
@@ -63,7 +63,7 @@ impl Kernel {
         self.dispatch(Value(r, smoothing_length))
     }
 
-    /// `dW/dr <= 0` [1/m^(d+1)].
+    /// `dW/dr <= 0` (1/m^(d+1)).
     pub fn dw_dr(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Slope(f64, f64);
         impl KernelVisitor for Slope {
@@ -75,7 +75,7 @@ impl Kernel {
         self.dispatch(Slope(r, smoothing_length))
     }
 
-    /// `d2W/dr2` [1/m^(d+2)].
+    /// `d2W/dr2` (1/m^(d+2)).
     pub fn d2w_dr2(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Curvature(f64, f64);
         impl KernelVisitor for Curvature {
@@ -87,7 +87,7 @@ impl Kernel {
         self.dispatch(Curvature(r, smoothing_length))
     }
 
-    /// Pair weight `w = |dW/dr| / r >= 0` [1/m^(d+2)], so that `grad_i W = w x_ij`. At r = 0: the limit, and zero for
+    /// Pair weight `w = |dW/dr| / r >= 0` (1/m^(d+2)), so that `grad_i W = w x_ij`. At r = 0: the limit, and zero for
     /// the spiky kernel, which has none.
     pub fn pair_weight(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Weight(f64, f64);
@@ -114,7 +114,7 @@ pub struct ProfiledKernel<K: KernelProfile> {
 }
 
 impl<K: KernelProfile> ProfiledKernel<K> {
-    /// The kernel of one smoothing length [m]. Costs two divisions: outside the loop where h is the same for all.
+    /// The kernel of one smoothing length (m). Costs two divisions: outside the loop where h is the same for all.
     #[inline]
     pub fn scaled(&self, smoothing_length: f64) -> ScaledKernel<K> {
         let inverse_h = 1.0 / smoothing_length;
@@ -127,7 +127,7 @@ impl<K: KernelProfile> ProfiledKernel<K> {
     }
 }
 
-/// Kernel of one smoothing length: functions of the distance r [m] alone.
+/// Kernel of one smoothing length: functions of the distance r (m) alone.
 #[derive(Debug, Clone, Copy)]
 pub struct ScaledKernel<K: KernelProfile> {
     inverse_h: f64,
@@ -136,25 +136,25 @@ pub struct ScaledKernel<K: KernelProfile> {
 }
 
 impl<K: KernelProfile> ScaledKernel<K> {
-    /// `W(r)` [1/m^d].
+    /// `W(r)` (1/m^d).
     #[inline]
     pub fn w(&self, r: f64) -> f64 {
         self.scale * K::value(r * self.inverse_h)
     }
 
-    /// `dW/dr <= 0` [1/m^(d+1)].
+    /// `dW/dr <= 0` (1/m^(d+1)).
     #[inline]
     pub fn dw_dr(&self, r: f64) -> f64 {
         self.scale * self.inverse_h * K::derivative(r * self.inverse_h)
     }
 
-    /// `d2W/dr2` [1/m^(d+2)].
+    /// `d2W/dr2` (1/m^(d+2)).
     #[inline]
     pub fn d2w_dr2(&self, r: f64) -> f64 {
         self.scale * self.inverse_h * self.inverse_h * K::second_derivative(r * self.inverse_h)
     }
 
-    /// Pair weight `|dW/dr| / r >= 0` [1/m^(d+2)].
+    /// Pair weight `|dW/dr| / r >= 0` (1/m^(d+2)).
     #[inline]
     pub fn pair_weight(&self, r: f64) -> f64 {
         self.scale * self.inverse_h * self.inverse_h * K::weight(r * self.inverse_h)

@@ -7,29 +7,29 @@ use rayon::prelude::*;
 /// Support radii of a set of particles.
 #[derive(Debug, Clone, Copy)]
 pub enum Support<'a> {
-    /// One support radius [m] for all: the faster case.
+    /// One support radius (m) for all: the faster case.
     Uniform(f64),
-    /// One support radius [m] a particle. Cells are as large as the largest: the cost grows with the cube of the ratio
+    /// One support radius (m) a particle. Cells are as large as the largest: the cost grows with the cube of the ratio
     /// of largest to usual support.
     PerParticle(&'a [f64]),
 }
 
-/// Positions [m] and support radii of a set of particles, in row order.
+/// Positions (m) and support radii of a set of particles, in row order.
 #[derive(Debug, Clone, Copy)]
 pub struct Cloud<'a> {
-    /// Positions [m].
+    /// Positions (m).
     pub positions: &'a [DVec3],
-    /// Support radii [m].
+    /// Support radii (m).
     pub support: Support<'a>,
 }
 
 impl<'a> Cloud<'a> {
-    /// Particles that share one support radius [m].
+    /// Particles that share one support radius (m).
     pub const fn uniform(positions: &'a [DVec3], support_radius: f64) -> Self {
         Self { positions, support: Support::Uniform(support_radius) }
     }
 
-    /// Particles with a support radius [m] each.
+    /// Particles with a support radius (m) each.
     pub const fn per_particle(positions: &'a [DVec3], support_radii: &'a [f64]) -> Self {
         Self { positions, support: Support::PerParticle(support_radii) }
     }

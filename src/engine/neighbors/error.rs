@@ -12,7 +12,7 @@ pub enum NeighborError {
         set: &'static str,
         /// Row of the particle in its set.
         index: usize,
-        /// The position [m].
+        /// The position (m).
         position: DVec3,
     },
     /// A support radius is not a positive finite number.
@@ -22,7 +22,7 @@ pub enum NeighborError {
         set: &'static str,
         /// Row of the particle in its set; 0 where all share one.
         index: usize,
-        /// The support radius [m].
+        /// The support radius (m).
         value: f64,
     },
     /// Not one support radius for each particle.
@@ -46,9 +46,9 @@ pub enum NeighborError {
     PeriodicTooShort {
         /// "x", "y" or "z".
         axis: char,
-        /// Length of the domain [m].
+        /// Length of the domain (m).
         length: f64,
-        /// Least length [m].
+        /// Least length (m).
         needed: f64,
     },
     /// The bounds of a periodic axis do not make an interval.
@@ -58,9 +58,9 @@ pub enum NeighborError {
     PeriodicBounds {
         /// "x", "y" or "z".
         axis: char,
-        /// Start [m].
+        /// Start (m).
         min: f64,
-        /// End [m].
+        /// End (m).
         max: f64,
     },
     /// Rows are numbered in 32 bits.

@@ -112,7 +112,7 @@ pub(super) struct Grid {
     starts: Vec<u32>,
     /// Row of the particle.
     pub(super) rows: Vec<u32>,
-    pub(super) positions: Vec<[f64; 3]>,
+    coordinates: [Vec<f64>; 3],
     /// Support radii; empty where not asked for.
     pub(super) supports: Vec<f64>,
 }
@@ -137,10 +137,12 @@ impl Grid {
         let buckets = (x.buckets * y.buckets * z.buckets) as usize;
 
         self.keys.resize(count, 0);
-        self.keys.par_iter_mut().with_min_len(4096).zip(sources.positions).for_each(|(key, p)| {
-            let (cx, cy, cz) = (x.cell(p.x), y.cell(p.y), z.cell(p.z));
-            *key = ((z.bucket(cz) * y.buckets + y.bucket(cy)) * x.buckets + x.bucket(cx)) as u32;
-        });
+        let mut keys = std::mem::take(&mut self.keys);
+        keys.par_iter_mut()
+            .with_min_len(4096)
+            .zip(sources.positions)
+            .for_each(|(key, p)| *key = self.key(*p));
+        self.keys = keys;
 
         // starts[b + 1] serves as the write position of bucket b and ends as the start of b + 1.
         self.starts.clear();
@@ -158,20 +160,39 @@ impl Grid {
             *at += 1;
         }
 
-        self.positions.resize(count, [0.0; 3]);
-        self.positions
-            .par_iter_mut()
-            .with_min_len(4096)
-            .zip(&self.rows)
-            .for_each(|(p, &row)| *p = sources.positions[row as usize].to_array());
+        for (a, coordinate) in self.coordinates.iter_mut().enumerate() {
+            coordinate.resize(count, 0.0);
+            coordinate
+                .par_iter_mut()
+                .with_min_len(4096)
+                .zip(&self.rows)
+                .for_each(|(x, &row)| *x = sources.positions[row as usize][a]);
+        }
         self.supports.clear();
         if with_supports {
             self.supports.extend(self.rows.iter().map(|&row| sources.support_of(row as usize)));
         }
     }
 
-    /// Calls `visit` with ranges of the sorted arrays that hold all sources in the cells around `position`, each once.
+    /// Bucket of a position: where a source is, and a sensible order for targets, which may lie outside.
     #[inline]
+    pub(super) fn key(&self, position: DVec3) -> u32 {
+        let at = |a: usize| {
+            let axis = &self.axes[a];
+            axis.bucket(axis.cell(position[a]).clamp(0, axis.cells - 1))
+        };
+        ((at(2) * self.axes[1].buckets + at(1)) * self.axes[0].buckets + at(0)) as u32
+    }
+
+    /// Coordinates of a range of the sorted particles.
+    #[inline(always)]
+    pub(super) fn coordinates(&self, range: std::ops::Range<usize>) -> [&[f64]; 3] {
+        let [x, y, z] = &self.coordinates;
+        [&x[range.clone()], &y[range.clone()], &z[range]]
+    }
+
+    /// Calls `visit` with ranges of the sorted arrays that hold all sources in the cells around `position`, each once.
+    #[inline(always)]
     pub(super) fn around(&self, position: DVec3, mut visit: impl FnMut(std::ops::Range<usize>)) {
         let [x, y, z] = &self.axes;
         let columns = x.around(x.cell(position.x));

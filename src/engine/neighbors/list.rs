@@ -82,7 +82,7 @@ impl NeighborList {
         self.counts().max().unwrap_or(0)
     }
 
-    /// Memory held [B].
+    /// Memory held (B).
     pub fn memory_bytes(&self) -> usize {
         self.offsets.capacity() * size_of::<usize>() + self.indices.capacity() * size_of::<u32>()
     }

@@ -13,6 +13,7 @@ mod error;
 mod grid;
 mod list;
 mod periodic;
+mod rows;
 mod search;
 #[cfg(test)]
 mod tests;

@@ -20,7 +20,7 @@ impl Periodic {
     pub const NONE: Self =
         Self { min: DVec3::ZERO, axes: [false; 3], length: DVec3::ZERO, inverse_length: DVec3::ZERO };
 
-    /// A box from `min` to `max` [m], periodic along the `axes` that are true; bounds of other axes are not used.
+    /// A box from `min` to `max` (m), periodic along the `axes` that are true; bounds of other axes are not used.
     ///
     /// # Errors
     /// [`NeighborError::PeriodicBounds`] where a periodic axis has no positive finite length.
@@ -48,12 +48,17 @@ impl Periodic {
         self.axes != [false; 3]
     }
 
-    /// Lengths [m] of the periodic axes, zero on the others.
+    /// Lengths (m) of the periodic axes, zero on the others.
     pub const fn lengths(&self) -> DVec3 {
         self.length
     }
 
-    /// Start [m] of the periodic axes, zero on the others.
+    /// One over the length (1/m) of the periodic axes, zero on the others.
+    pub(super) const fn inverse_lengths(&self) -> DVec3 {
+        self.inverse_length
+    }
+
+    /// Start (m) of the periodic axes, zero on the others.
     pub const fn min(&self) -> DVec3 {
         self.min
     }
@@ -61,7 +66,7 @@ impl Periodic {
     /// `x_ij` to the nearest image of j: every periodic component in -L/2 ..= L/2.
     #[inline]
     pub fn minimal_image(&self, x_ij: DVec3) -> DVec3 {
-        x_ij - self.length * nearest_integer(x_ij * self.inverse_length)
+        x_ij - self.length * (x_ij * self.inverse_length).map(nearest_integer)
     }
 
     /// The image of a position inside the box, `min <= x < max` on periodic axes.
@@ -77,9 +82,9 @@ impl Periodic {
     }
 }
 
-/// Rounds to the nearest integer without a call per component: in this range of magnitudes the spacing of doubles is one.
-#[inline]
-fn nearest_integer(v: DVec3) -> DVec3 {
-    const SHIFT: DVec3 = DVec3::splat(6755399441055744.0);
-    (v + SHIFT) - SHIFT
+/// Rounds to the nearest integer without a call: between 2^52 and 2^53 the spacing of doubles is one.
+#[inline(always)]
+pub(super) fn nearest_integer(x: f64) -> f64 {
+    const SHIFT: f64 = 6755399441055744.0;
+    (x + SHIFT) - SHIFT
 }

@@ -21,7 +21,7 @@ pub struct VerletList {
 }
 
 impl VerletList {
-    /// An empty list, to be built by the first [`VerletList::update`]. Skin [m].
+    /// An empty list, to be built by the first [`VerletList::update`]. Skin (m).
     pub fn new(skin: f64) -> Self {
         Self {
             skin,
@@ -96,7 +96,7 @@ impl VerletList {
         &self.list
     }
 
-    /// Skin [m].
+    /// Skin (m).
     pub fn skin(&self) -> f64 {
         self.skin
     }
@@ -106,12 +106,12 @@ impl VerletList {
         self.builds
     }
 
-    /// Target positions [m] that the list was built from: what a checkpoint keeps.
+    /// Target positions (m) that the list was built from: what a checkpoint keeps.
     pub fn built_targets(&self) -> &[DVec3] {
         &self.targets
     }
 
-    /// Source positions [m] that the list was built from, empty where the sources are the targets.
+    /// Source positions (m) that the list was built from, empty where the sources are the targets.
     pub fn built_sources(&self) -> &[DVec3] {
         &self.sources
     }
