@@ -89,6 +89,14 @@ pub enum FillErrorKind {
     /// A lattice that does not fit the shape.
     #[error("a concentric lattice does not fit this shape")]
     NotConcentric,
+    /// A relaxation that would never end.
+    #[error("expected at most {limit} iterations, found {found}")]
+    Iterations {
+        /// What the scene asks for.
+        found: u32,
+        /// The most that is allowed.
+        limit: u32,
+    },
     /// The shape is empty.
     #[error("the shape is empty: no particle of spacing {0} m lies in it")]
     NoParticle(f64),

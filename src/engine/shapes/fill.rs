@@ -14,6 +14,9 @@ use super::transform::Rotated;
 use super::{concentric, morton_order, points, quadrature, relaxed};
 use crate::scene::Dimension;
 
+/// Steps of relaxation after which particles hardly move any more.
+const MAX_ITERATIONS: u32 = 1000;
+
 /// Where a particle is, and how much of the shape it takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
@@ -99,11 +102,17 @@ impl Filling<'_> {
 
     fn of_region(&self, region: &dyn Region, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
         let axes = self.dimension.count();
+        let within_limit = |volume: f64, factor: f64| {
+            let estimate = volume / spacing.powi(axes as i32);
+            if estimate <= factor * self.limit as f64 {
+                return Ok(());
+            }
+            Err(FillError::new("spacing", FillErrorKind::TooMany { estimate, limit: self.limit }))
+        };
+        // The exact volume may take long where the spacing is far too small: a rough one is looked at first.
+        within_limit(quadrature::volume(region, f64::INFINITY, axes), 2.0)?;
         let volume = quadrature::volume(region, spacing, axes);
-        let estimate = volume / spacing.powi(axes as i32);
-        if !estimate.is_finite() || estimate > self.limit as f64 {
-            return Err(FillError::new("spacing", FillErrorKind::TooMany { estimate, limit: self.limit }));
-        }
+        within_limit(volume, 1.0)?;
         if volume <= 0.0 {
             return Err(FillError::new(path, FillErrorKind::NoParticle(spacing)));
         }
@@ -119,6 +128,10 @@ impl Filling<'_> {
         let packing = if self.lattice == Lattice::Hexagonal { Packing::Hexagonal } else { Packing::Centered };
         let positions = cells::points(region, packing, spacing, axes).map_err(at)?;
         if let Lattice::Relaxed { seed, iterations } = self.lattice {
+            if iterations > MAX_ITERATIONS {
+                let kind = FillErrorKind::Iterations { found: iterations, limit: MAX_ITERATIONS };
+                return Err(FillError::new("lattice.iterations", kind));
+            }
             return Ok(relaxed::sites(region, volume, spacing, axes, seed, iterations));
         }
         let share = volume / positions.len() as f64;

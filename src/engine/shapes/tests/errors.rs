@@ -250,3 +250,54 @@ fn the_limit_is_kept() {
     let error = fill(&cube, Lattice::Regular, 0.1, Three, Path::new("."), 999).unwrap_err();
     assert!(matches!(error.kind, FillErrorKind::TooMany { limit: 999, .. }));
 }
+
+#[test]
+fn endless_relaxation_is_refused() {
+    let lattice = Lattice::Relaxed { seed: 0, iterations: u32::MAX };
+    let error = try_fill("Sphere(center: (0, 0), radius: 1)", lattice, 0.1, Two).unwrap_err();
+    assert_eq!(error.to_string(), "lattice.iterations: expected at most 1000 iterations, found 4294967295");
+}
+
+/// Numbers that a slip of the finger or a wrong unit makes.
+const ODD: [f64; 12] =
+    [0.0, -1.0, 1.0, 0.5, 2.0, 1e-3, 1e-320, 1e16, -1e200, f64::MAX, f64::INFINITY, f64::NAN];
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(20))]
+    #[test]
+    fn odd_numbers_give_particles_or_an_error(n in proptest::array::uniform8(0usize..12), s in 0usize..12) {
+        let v = n.map(|n| ODD[n]);
+        let three = |a: usize, b: usize, c: usize| format!("({:?}, {:?}, {:?})", v[a], v[b], v[c]);
+        let two = |a: usize, b: usize| format!("({:?}, {:?})", v[a], v[b]);
+        let plane = [
+            format!("Box(min: {}, max: {})", two(0, 1), two(2, 3)),
+            format!("Sphere(center: {}, radius: {:?})", two(0, 1), v[2]),
+            format!("Ring(center: {}, inner: {:?}, outer: {:?})", two(0, 1), v[2], v[3]),
+            format!("Polygon(points: [{}, {}, {}, {}])", two(0, 1), two(2, 3), two(4, 5), two(6, 7)),
+        ];
+        let space = [
+            format!("Box(min: {}, max: {})", three(0, 1, 2), three(3, 4, 5)),
+            format!("Sphere(center: {}, radius: {:?})", three(0, 1, 2), v[3]),
+            format!("Cylinder(from: {}, to: {}, radius: {:?})", three(0, 1, 2), three(3, 4, 5), v[6]),
+            format!("Tube(from: {}, to: {}, inner: {:?}, outer: {:?})", three(0, 1, 2), three(3, 4, 5), v[6], v[7]),
+            format!("Extrusion(polygon: [{}, {}, {}], from: {:?}, to: {:?})", two(0, 1), two(2, 3), two(4, 5), v[6], v[7]),
+        ];
+        for (shapes, dimension) in [(&plane[..], Two), (&space[..], Three)] {
+            for simple in shapes {
+                for text in [
+                    simple.clone(),
+                    format!("Difference({simple}, Sphere(center: (0, 0), radius: 0.5))"),
+                    format!("Rotate(shape: {simple}, axis: {}, angle_degrees: {:?})", three(5, 6, 7), v[4]),
+                    format!("Scale(shape: {simple}, by: {})", three(5, 6, 7)),
+                ] {
+                    for lattice in [Lattice::Regular, Lattice::Hexagonal, Lattice::Concentric, Lattice::Relaxed { seed: 0, iterations: 1 }] {
+                        let filled = fill(&shape(&text), lattice, ODD[s], dimension, Path::new("."), 300);
+                        for site in filled.unwrap_or_default() {
+                            assert!(site.position.is_finite() && site.volume > 0.0, "{text} {lattice:?} {}", ODD[s]);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

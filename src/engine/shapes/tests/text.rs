@@ -74,3 +74,30 @@ fn lattices() {
     }
     assert_eq!(Lattice::default(), Lattice::Regular);
 }
+
+#[test]
+fn errors_point_at_the_text_of_the_scene() {
+    use crate::scene::{Problem, Source, parse};
+    for (shape, wrong) in [
+        ("Box(min: (0, 0), max: (0, 1))", "(0, 1)"),
+        ("Union([Sphere(center: (0, 0), radius: 1), Sphere(center: (9, 0), radius: -2)])", "-2"),
+        ("Difference(Box(min: (0, 0), max: (1, 1)), Ring(center: (0, 0), inner: 5, outer: 4))", "5"),
+        ("Translate(shape: Intersection([Sphere(center: (0, 0), radius: -3)]), by: (1, 1))", "-3"),
+        ("Rotate(shape: Sphere(center: (0, 0), radius: 1), axis: (0, 0, 0), angle_degrees: 5)", "(0, 0, 0)"),
+        ("Polygon(points: [(0, 0), (1, 0)])", "[(0, 0), (1, 0)]"),
+        ("Points(file: \"none.csv\")", "\"none.csv\""),
+    ] {
+        let text = format!(
+            "Scene(dimension: Two, materials: {{\"m\": A()}}, time: (end: 1.0),
+            bodies: [Body(name: \"b\", material: \"m\", shape: {shape}, spacing: 0.1, lattice: Square, formulation: B())])"
+        );
+        let (scene, source) = parse(Source::new("test.ron", text)).unwrap();
+        let body = &scene.bodies[0];
+        let folder = std::path::Path::new(".");
+        let error =
+            crate::shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, 1000)
+                .unwrap_err();
+        let problem = Problem::at_path(format!("bodies[0].{}", error.path), error.kind.to_string());
+        assert_eq!(&source.text[problem.span(&source).unwrap()], wrong, "{}", error.path);
+    }
+}
