@@ -1,2 +1,2 @@
 //! meshless
-fn main(){}
+fn main() {}

@@ -7,11 +7,26 @@
 //! x-y with z = 0), pair vectors point from i to j, `x_ij = x_j - x_i`, and the pair weight is
 //! `w_ij = |W'(r)| / r > 0`, so that `grad_i W = w_ij x_ij`.
 
+extern crate self as meshless_engine;
+
+pub use bytemuck;
+pub use glam;
+pub use schemars;
+pub use serde;
+
+pub mod boundaries;
 pub mod correction;
+pub mod formulations;
+pub mod integrate;
 pub mod kernels;
 pub mod linalg;
 pub mod materials;
 pub mod neighbors;
+pub mod parallel;
+pub mod plugin;
 pub mod record;
 pub mod scene;
+pub mod schedule;
 pub mod shapes;
+pub mod simulation;
+pub mod world;

@@ -1,1 +1,62 @@
-//! hourglass_control
+//! Hourglass control of total-Lagrangian bodies.
+//!
+//! The deformation gradient of a particle is a mean over its neighbourhood; motions that leave the mean as it is, the
+//! zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of the mean,
+//! `e_ij = F_i X_ij - x_ij`.
+
+mod variational;
+
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use variational::Variational;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<HourglassControl>();
+}
+
+/// Resists hourglass modes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct HourglassControl {
+    /// How the error of the mean deformation is resisted.
+    pub form: Form,
+    /// Coefficient alpha of the resistance. Default: 5 of `Variational`, 25 of `Ganzenmueller2015`.
+    pub alpha: Option<f64>,
+}
+
+impl Default for HourglassControl {
+    fn default() -> Self {
+        Self { form: Form::Variational, alpha: None }
+    }
+}
+
+/// Forms of the control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Form {
+    /// The whole error vector, with the weights of the deformation gradient: the exact gradient of an energy.
+    Variational,
+    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work.
+    Ganzenmueller2015,
+}
+
+impl Plugin for HourglassControl {
+    const NAME: &'static str = "hourglass_control";
+    const REFERENCE: &'static str = "hourglass control: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106, in variational form";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let bodies = sim.scope_of("TotalLagrangian");
+        let alpha = self.alpha.unwrap_or(5.0);
+        if !(alpha >= 0.0 && alpha.is_finite()) {
+            return Err(SetupError::parameter(
+                "alpha",
+                format!("`alpha` is {alpha}"),
+                "give a number not below zero",
+            ));
+        }
+        sim.add_bond_term(bodies, "hourglass", Variational { alpha });
+        Ok(())
+    }
+}

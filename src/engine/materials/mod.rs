@@ -1,1 +1,20 @@
-//! Placeholder.
+//! Materials: laws as functions of small matrices, without any knowledge of particles.
+
+mod decoupled_neo_hookean;
+mod elastic_constants;
+mod law;
+mod neo_hookean;
+mod st_venant_kirchhoff;
+
+pub use decoupled_neo_hookean::DecoupledNeoHookean;
+pub use elastic_constants::ElasticConstants;
+pub use law::{Hyperelastic, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
+pub use neo_hookean::NeoHookean;
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+
+use crate::plugin::Registry;
+
+/// Registers all materials of the engine.
+pub fn register(registry: &mut Registry) {
+    registry.material::<StVenantKirchhoff>().material::<NeoHookean>().material::<DecoupledNeoHookean>();
+}

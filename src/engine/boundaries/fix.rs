@@ -1,0 +1,48 @@
+//! Particles that do not move.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Axis, Select};
+use crate::world::Velocity;
+
+/// Holds particles where they are at the start.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fix {
+    /// Particles.
+    pub on: Select,
+    /// Axes along which they are held.
+    #[serde(default = "all_axes")]
+    pub axes: Vec<Axis>,
+}
+
+fn all_axes() -> Vec<Axis> {
+    vec![Axis::X, Axis::Y, Axis::Z]
+}
+
+impl Plugin for Fix {
+    const NAME: &'static str = "Fix";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let held = [Axis::X, Axis::Y, Axis::Z].map(|axis| self.axes.contains(&axis));
+        // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to run.
+        sim.prescribe(&selection, held, Self::NAME)?;
+        sim.add_setup(move |setup| {
+            for (body, rows) in &selection.parts {
+                let (view, _) = setup.world.body_view(*body);
+                let mut velocity = view.write::<Velocity>().map_err(|error| SetupError::internal(&error))?;
+                for &row in rows {
+                    for axis in (0..3).filter(|&axis| held[axis]) {
+                        velocity[row as usize].0[axis] = 0.0;
+                    }
+                }
+            }
+            Ok(())
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,10 @@
+//! Formulations: how a body's equation of motion is discretised.
+
+pub mod total_lagrangian;
+
+use crate::plugin::Registry;
+
+/// Registers all formulations of the engine.
+pub fn register(registry: &mut Registry) {
+    registry.formulation::<total_lagrangian::TotalLagrangian>();
+}

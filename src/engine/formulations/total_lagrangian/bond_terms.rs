@@ -1,0 +1,32 @@
+//! The open slots of the hot passes: what is linear in X_ij or x_ij costs nothing per pair.
+
+use glam::DMat3;
+
+use super::rows::PairStressRows;
+
+/// A block of particles of one body, after their stress is known and before the pass over pairs that makes the force.
+/// All slices have one length.
+pub struct BondRows<'a> {
+    /// Deformation gradient F_i.
+    pub deformation: &'a [DMat3],
+    /// Modulus that the material offers to resist with, E_i, Pa: Young's modulus, the yield stress after yield.
+    pub modulus: &'a [f64],
+    /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
+    pub misfit: &'a [f64],
+    /// Reference volume V_i, m3.
+    pub volume: &'a [f64],
+    /// Pair stress A_i and bond stiffness k_i, to be added to.
+    pub pair_stress: PairStressRows<'a>,
+}
+
+/// A force term of total-Lagrangian bodies that is linear in the pair vectors: it adds to the pair stress A_i and to
+/// the bond stiffness k_i of every particle, and the engine's own pass over pairs applies it (see
+/// [`PairStress`](super::PairStress)).
+pub trait BondTerm: Send + Sync + 'static {
+    /// Adds the term to a block; returns the energy that it stores there, J.
+    fn add(&self, rows: &mut BondRows<'_>) -> f64;
+
+    /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
+    /// step follows from it.
+    fn stiffness_factor(&self) -> f64;
+}

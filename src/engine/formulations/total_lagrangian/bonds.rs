@@ -1,0 +1,171 @@
+//! The bonds of the reference configuration: neighbours, weights, and the inverse moment matrix of every particle.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::stable_step::StepEstimate;
+use crate::correction::MomentMatrix;
+use crate::kernels::Kernel;
+use crate::linalg::Sym3;
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+
+/// Why the bonds of a body cannot be made.
+#[derive(Debug, Error)]
+pub enum BondError {
+    /// The neighbour search failed.
+    #[error(transparent)]
+    Search(#[from] NeighborError),
+    /// Every particle is free: the body has no stiffness at all.
+    #[error(
+        "no particle of the body has enough neighbours for a deformation gradient (at most {most} neighbours)"
+    )]
+    NoStiffness {
+        /// Largest number of neighbours.
+        most: usize,
+    },
+}
+
+/// The bonds of all total-Lagrangian bodies; rows are rows of the phase.
+#[derive(Debug, Default)]
+pub struct Bonds {
+    /// Where the neighbours of each row start.
+    pub(super) offsets: Vec<u32>,
+    /// Row of the neighbour.
+    pub(super) neighbors: Vec<u32>,
+    /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
+    /// deformation gradient of an affine map stays exact.
+    pub(super) weights: Vec<f32>,
+    /// Inverse of M_i = sum_j V_j w_ij X_ij (x) X_ij; zero for a free particle.
+    pub(super) inverse_moment: Vec<Sym3>,
+    /// `sum_j V_j w_ij`, 1/m2.
+    weight_sum: Vec<f64>,
+    /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
+    pub(super) free: Vec<u32>,
+}
+
+/// The reference configuration of one body.
+pub(super) struct BodyBonds<'a> {
+    /// Rows of the body in the phase.
+    pub rows: Range<usize>,
+    /// Reference positions of the whole phase, m.
+    pub position: &'a [DVec3],
+    /// Reference volumes of the whole phase, m3.
+    pub volume: &'a [f64],
+    /// Support radii of the whole phase, m.
+    pub support: &'a [f64],
+    /// Kernel.
+    pub kernel: Kernel,
+}
+
+impl Bonds {
+    /// Appends the bonds of the next body; bodies must come in the order of their rows.
+    pub(super) fn append(
+        &mut self,
+        body: &BodyBonds<'_>,
+        search: &mut NeighborSearch,
+    ) -> Result<(), BondError> {
+        let rows = body.rows.clone();
+        let mut list = NeighborList::default();
+        let support = Support::PerParticle(&body.support[rows.clone()]);
+        let cloud = Cloud { positions: &body.position[rows.clone()], support };
+        search.within(cloud, 0.0, &Periodic::NONE, &mut list)?;
+        if self.offsets.is_empty() {
+            self.offsets.push(0);
+        }
+        let first_bond = self.neighbors.len();
+        let start = u32::try_from(rows.start).unwrap_or(u32::MAX);
+        for k in 0..rows.len() {
+            self.neighbors.extend(list.row(k).iter().map(|j| j + start));
+            self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
+        }
+        self.weights.resize(self.neighbors.len(), 0.0);
+        self.weigh(body, first_bond);
+        self.correct(body);
+        let free = self.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
+        if free == rows.len() {
+            return Err(BondError::NoStiffness { most: list.max_count() });
+        }
+        Ok(())
+    }
+
+    fn weigh(&mut self, body: &BodyBonds<'_>, first_bond: usize) {
+        let kernel = body.kernel;
+        let ratio = kernel.smoothing_length(1.0);
+        let mut rest = &mut self.weights[first_bond..];
+        let mut parts = Vec::with_capacity(body.rows.len());
+        for i in body.rows.clone() {
+            let bonds = (self.offsets[i + 1] - self.offsets[i]) as usize;
+            let (part, tail) = rest.split_at_mut(bonds);
+            parts.push((i, part));
+            rest = tail;
+        }
+        let (offsets, neighbors) = (&self.offsets, &self.neighbors);
+        parts.par_iter_mut().for_each(|(i, weights)| {
+            let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
+            for (weight, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
+                let j = j as usize;
+                let distance = body.position[j].distance(body.position[*i]);
+                let smoothing_length = 0.5 * (body.support[*i] + body.support[j]) * ratio;
+                *weight = kernel.pair_weight(distance, smoothing_length) as f32;
+            }
+        });
+    }
+
+    fn correct(&mut self, body: &BodyBonds<'_>) {
+        let rows = body.rows.clone();
+        let corrected: Vec<(Option<Sym3>, f64)> = rows
+            .clone()
+            .into_par_iter()
+            .map(|i| {
+                let mut moment = MomentMatrix::new(body.kernel.dimension());
+                let mut weight_sum = 0.0;
+                for (j, weight) in self.row(i) {
+                    let volume_weight = body.volume[j] * f64::from(weight);
+                    moment.add(volume_weight, body.position[j] - body.position[i]);
+                    weight_sum += volume_weight;
+                }
+                (moment.inverse(), weight_sum)
+            })
+            .collect();
+        for (i, (inverse, weight_sum)) in rows.zip(corrected) {
+            if inverse.is_none() {
+                self.free.push(u32::try_from(i).unwrap_or(u32::MAX));
+            }
+            self.inverse_moment.push(inverse.unwrap_or_default());
+            self.weight_sum.push(weight_sum);
+        }
+    }
+
+    /// The smallest stable step of the given rows, s.
+    pub(super) fn stable_step(&self, rows: Range<usize>, axes: usize, estimate: &StepEstimate) -> f64 {
+        let particle =
+            |i: usize| estimate.stable_step(self.weight_sum[i], self.inverse_moment[i].trace() / axes as f64);
+        rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Neighbours and weights of a row.
+    pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let bonds = self.offsets[i] as usize..self.offsets[i + 1] as usize;
+        self.neighbors[bonds.clone()].iter().map(|&j| j as usize).zip(self.weights[bonds].iter().copied())
+    }
+
+    /// Number of directed bonds.
+    pub fn len(&self) -> usize {
+        self.neighbors.len()
+    }
+
+    /// Whether there is no bond.
+    pub fn is_empty(&self) -> bool {
+        self.neighbors.is_empty()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.offsets.len() * 4
+            + self.neighbors.len() * 8
+            + self.inverse_moment.len() * (size_of::<Sym3>() + size_of::<f64>())
+    }
+}

@@ -1,0 +1,225 @@
+//! First pass over pairs: the deformation gradient, then, while a block is in cache, stress and pair stress.
+//!
+//! `F_i = (sum_j V_j w_ij x_ij (x) X_ij) M_i^-1` is the weighted least-squares fit of the current pair vectors
+//! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse). In plane strain the third row
+//! and column are those of the identity.
+
+use glam::{DMat3, DVec3};
+
+use super::bond_terms::{BondRows, BondTerm};
+use super::bonds::Bonds;
+use super::rows::{PairStress, PairStressRows, Site};
+use crate::linalg::Sym3;
+use crate::materials::{SolidLaw, StressRows};
+use crate::parallel::{Arithmetic, BLOCK, BlockSum, HotLoop, Lanes4, Split, for_each_block, run_hot};
+
+/// Largest number of bond terms on one body.
+pub(super) const MAX_TERMS: usize = 4;
+
+/// What the pass learns of a body.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DeformationSum {
+    /// Strain energy, J.
+    pub strain: f64,
+    /// Energy stored by each bond term, J.
+    pub terms: [f64; MAX_TERMS],
+    /// Row with det F <= 0 that comes first, counted from one; zero if there is none.
+    pub inverted: usize,
+}
+
+impl BlockSum for DeformationSum {
+    fn add(&mut self, next: &Self) {
+        self.strain += next.strain;
+        for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
+            *sum += next;
+        }
+        if self.inverted == 0 {
+            self.inverted = next.inverted;
+        }
+    }
+}
+
+/// What the pass writes, cut by rows of one body.
+pub(super) struct DeformationRows<'a> {
+    pub deformation: &'a mut [DMat3],
+    pub stress: &'a mut [DMat3],
+    pub pair_stress: &'a mut [PairStress],
+}
+
+impl Split for DeformationRows<'_> {
+    fn rows(&self) -> usize {
+        self.deformation.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
+        let (stress, stress_rest) = self.stress.split_at_mut(at);
+        let (pair_stress, pair_stress_rest) = self.pair_stress.split_at_mut(at);
+        (
+            Self { deformation, stress, pair_stress },
+            Self { deformation: deformation_rest, stress: stress_rest, pair_stress: pair_stress_rest },
+        )
+    }
+}
+
+/// The pass over one body.
+pub(super) struct DeformationPass<'a> {
+    pub bonds: &'a Bonds,
+    pub sites: &'a [Site],
+    pub law: &'a dyn SolidLaw,
+    pub terms: &'a [&'a dyn BondTerm],
+    /// First row of the body in the phase.
+    pub first_row: usize,
+    /// Plane strain.
+    pub plane: bool,
+}
+
+impl DeformationPass<'_> {
+    /// Runs the pass over all rows of the body.
+    pub fn run(&self, rows: DeformationRows<'_>, sums: &mut Vec<DeformationSum>) -> DeformationSum {
+        for_each_block(rows, sums, &|first, block| self.block(self.first_row + first, block))
+    }
+
+    fn block(&self, first: usize, rows: DeformationRows<'_>) -> DeformationSum {
+        let n = rows.deformation.len();
+        let mut misfit = [0.0; BLOCK];
+        let mut volume = [0.0; BLOCK];
+        let mut energy = [0.0; BLOCK];
+        let mut modulus = [0.0; BLOCK];
+        let (bonds, sites) = (self.bonds, self.sites);
+        let gather = Gather {
+            bonds,
+            sites,
+            first,
+            deformation: rows.deformation,
+            misfit: &mut misfit,
+            volume: &mut volume,
+        };
+        if self.plane {
+            run_hot(Plane(gather))
+        } else {
+            run_hot(Solid(gather))
+        };
+        let (stress, energy, modulus) = (rows.stress, &mut energy[..n], &mut modulus[..n]);
+        self.law.stress(&mut StressRows {
+            deformation: rows.deformation,
+            stress: &mut *stress,
+            energy: &mut *energy,
+            modulus: &mut *modulus,
+        });
+        let inverse_moment = &bonds.inverse_moment[first..first + n];
+        run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
+        let mut sum = DeformationSum::default();
+        for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
+            *sum = term.add(&mut BondRows {
+                deformation: rows.deformation,
+                modulus,
+                misfit: &misfit[..n],
+                volume: &volume[..n],
+                pair_stress: PairStressRows(rows.pair_stress),
+            });
+        }
+        for k in 0..n {
+            sum.strain += energy[k] * volume[k];
+        }
+        let inverted = rows.deformation.iter().position(|f| f.determinant() <= 0.0);
+        sum.inverted = inverted.map_or(0, |k| first + k + 1);
+        sum
+    }
+}
+
+struct Gather<'a> {
+    bonds: &'a Bonds,
+    sites: &'a [Site],
+    first: usize,
+    deformation: &'a mut [DMat3],
+    misfit: &'a mut [f64; BLOCK],
+    volume: &'a mut [f64; BLOCK],
+}
+
+struct Plane<'a>(Gather<'a>);
+struct Solid<'a>(Gather<'a>);
+
+impl HotLoop for Plane<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.0.run::<A, 2>();
+    }
+}
+
+impl HotLoop for Solid<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.0.run::<A, 3>();
+    }
+}
+
+impl Gather<'_> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self) {
+        let Self { bonds, sites, first, deformation, misfit, volume } = self;
+        for (k, f_i) in deformation.iter_mut().enumerate() {
+            let i = first + k;
+            let site = sites[i];
+            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+            // Columns of sum_j V_j w_ij x_ij (x) X_ij, and the sum of V_j w_ij x_ij^2 per component.
+            let mut spread = [Lanes4::default(); D];
+            let mut square = Lanes4::default();
+            for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
+                let other = &sites[j as usize];
+                let reference = other.reference.minus(site.reference);
+                let current = other.current.minus(site.current);
+                let weighted = current.scale(f64::from(weight) * other.reference.0[3]);
+                for (axis, column) in spread.iter_mut().enumerate() {
+                    *column = weighted.scale_add::<A>(reference.0[axis], *column);
+                }
+                square = current.multiply_add::<A>(weighted, square);
+            }
+            let inverse = &bonds.inverse_moment[i];
+            let f = fit::<A, D>(&spread, inverse);
+            // sum V w |F X - x|^2 = sum V w x^2 - F : (sum V w x (x) X), because F is the least-squares fit.
+            let fitted: f64 = (0..D).map(|axis| f[axis].dot3(spread[axis])).sum();
+            misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
+            volume[k] = site.reference.0[3];
+            let free = inverse.trace() == 0.0;
+            let third = if D == 3 { f[2].xyz() } else { DVec3::Z };
+            *f_i = if free { DMat3::IDENTITY } else { DMat3::from_cols(f[0].xyz(), f[1].xyz(), third) };
+        }
+    }
+}
+
+/// The columns of F: the weighted sum times the inverse moment matrix.
+#[inline(always)]
+fn fit<A: Arithmetic, const D: usize>(spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
+    let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
+    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let mut f = [Lanes4::default(); 3];
+    for c in 0..D {
+        for axis in 0..D {
+            f[c] = spread[axis].scale_add::<A>(rows[axis][c], f[c]);
+        }
+    }
+    f
+}
+
+struct MakePairStress<'a> {
+    stress: &'a [DMat3],
+    inverse_moment: &'a [Sym3],
+    pair_stress: &'a mut [PairStress],
+}
+
+impl HotLoop for MakePairStress<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
+            let columns = [p.x_axis, p.y_axis, p.z_axis].map(|column| Lanes4::new(column, 0.0));
+            out.0 = fit::<A, 3>(&columns, inverse);
+        }
+    }
+}

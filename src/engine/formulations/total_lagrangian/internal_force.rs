@@ -1,0 +1,87 @@
+//! Second pass over pairs: the force of stress and bond terms on every particle.
+//!
+//! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) x_ij]` (see [`PairStress`]): swapping i and j turns the sign
+//! of every product, so momentum is kept to round-off.
+
+use glam::DVec3;
+
+use super::bonds::Bonds;
+use super::rows::{PairStress, Site};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot};
+use crate::world::Force;
+
+/// The pass over all bodies of the phase.
+pub(super) struct InternalForce<'a> {
+    pub bonds: &'a Bonds,
+    pub sites: &'a [Site],
+    pub pair_stress: &'a [PairStress],
+    /// Mass of every particle, kg.
+    pub mass: &'a [f64],
+    /// Acceleration of gravity, m/s2.
+    pub gravity: DVec3,
+    /// Plane strain.
+    pub plane: bool,
+}
+
+impl InternalForce<'_> {
+    /// Writes the force on every particle: gravity plus internal force, N.
+    pub fn run(&self, force: &mut [Force]) {
+        for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
+            let rows = ForceRows { pass: self, first, force };
+            if self.plane { run_hot(Plane(rows)) } else { run_hot(Solid(rows)) }
+        });
+    }
+}
+
+struct ForceRows<'a> {
+    pass: &'a InternalForce<'a>,
+    first: usize,
+    force: &'a mut [Force],
+}
+
+struct Plane<'a>(ForceRows<'a>);
+struct Solid<'a>(ForceRows<'a>);
+
+impl HotLoop for Plane<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.0.run::<A, 2>();
+    }
+}
+
+impl HotLoop for Solid<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.0.run::<A, 3>();
+    }
+}
+
+impl ForceRows<'_> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self) {
+        let InternalForce { bonds, sites, pair_stress, mass, gravity, .. } = *self.pass;
+        for (k, force) in self.force.iter_mut().enumerate() {
+            let i = self.first + k;
+            let site = sites[i];
+            let own = pair_stress[i];
+            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+            let mut sum = Lanes4::default();
+            for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
+                let other = &sites[j as usize];
+                let stress = &pair_stress[j as usize];
+                let reference = other.reference.minus(site.reference);
+                let current = other.current.minus(site.current);
+                let mut pull = current.scale(own.stiffness() + stress.stiffness());
+                for axis in 0..D {
+                    pull = own.0[axis].plus(stress.0[axis]).scale_add::<A>(reference.0[axis], pull);
+                }
+                sum = pull.scale_add::<A>(f64::from(weight) * other.reference.0[3], sum);
+            }
+            *force = Force(sum.xyz() * site.reference.0[3] + gravity * mass[i]);
+        }
+    }
+}

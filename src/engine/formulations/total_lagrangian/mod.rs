@@ -1,0 +1,18 @@
+//! Total-Lagrangian smoothed particle hydrodynamics of solids (Ganzenmueller 2015).
+//!
+//! Neighbours, weights and corrections belong to the reference configuration and are built once. A step is two passes
+//! over pairs: [`deformation`] makes F and, block by block while the rows are in cache, the stress and the pair stress;
+//! [`internal_force`] makes the force.
+
+mod bond_terms;
+mod bonds;
+mod deformation;
+mod formulation;
+mod internal_force;
+mod rows;
+mod stable_step;
+
+pub use bond_terms::{BondRows, BondTerm};
+pub use bonds::{BondError, Bonds};
+pub use formulation::TotalLagrangian;
+pub use rows::{PairStress, PairStressRows, Site};

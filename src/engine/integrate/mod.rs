@@ -1,0 +1,5 @@
+//! Time integration: kick, drift, kick for every phase, with the work of constraints and gravity booked.
+
+mod leapfrog;
+
+pub use leapfrog::{DRIFT, KICK, add_systems};

@@ -1,0 +1,70 @@
+//! Neo-Hookean law with decoupled shape and volume change.
+
+use std::sync::Arc;
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::elastic_constants::ElasticConstants;
+use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+
+/// Decoupled neo-Hookean elasticity, tau = mu J^(-2/3) (b - tr(b)/3 I) + K J (J - 1) I with b = F F^T.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DecoupledNeoHookean {
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+    /// Young's modulus E, Pa. Goes with `poisson`.
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Bulk modulus K, Pa. Goes with `shear`.
+    #[serde(default)]
+    pub bulk: Option<f64>,
+    /// Shear modulus mu, Pa. Goes with `bulk`.
+    #[serde(default)]
+    pub shear: Option<f64>,
+}
+
+impl MaterialModel for DecoupledNeoHookean {
+    const NAME: &'static str = "DecoupledNeoHookean";
+    const REFERENCE: &'static str =
+        "Vidal, Bonet and Huerta 2007, section 2; Bonet and Wood 2008, section 6.5";
+
+    fn build(self) -> Result<Material, ParameterError> {
+        ParameterError::require_positive("density", self.density)?;
+        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        Ok(Material { density: self.density, law: Arc::new(DecoupledNeoHookeanLaw(elastic)) })
+    }
+}
+
+/// The law of [`DecoupledNeoHookean`].
+#[derive(Clone, Copy, Debug)]
+struct DecoupledNeoHookeanLaw(ElasticConstants);
+
+impl Hyperelastic for DecoupledNeoHookeanLaw {
+    const NEEDS_POSITIVE_VOLUME: bool = true;
+
+    fn elastic(&self) -> &ElasticConstants {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn stress_and_energy(&self, f: &DMat3) -> (DMat3, f64) {
+        let (bulk, mu) = (self.0.bulk, self.0.shear);
+        let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
+        let cofactor = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        let jacobian = a.dot(cofactor.x_axis);
+        // ln and exp instead of powf: det F <= 0 gives NaN here too, and the watchdog stops.
+        let isochoric = mu * (-2.0 / 3.0 * jacobian.ln()).exp();
+        let invariant = a.dot(a) + b.dot(b) + c.dot(c);
+        let volumetric = bulk * (jacobian - 1.0);
+        // P = tau F^-T, and b F^-T = F: no inverse is needed but the cofactor.
+        let p = *f * isochoric + cofactor * (volumetric - isochoric * invariant / (3.0 * jacobian));
+        let energy = 0.5 * (isochoric * invariant - 3.0 * mu) + 0.5 * bulk * (jacobian - 1.0).powi(2);
+        (p, energy)
+    }
+}

@@ -1,0 +1,152 @@
+//! What a material is to the engine, and what a hyperelastic law has to provide.
+
+use std::sync::Arc;
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+use super::elastic_constants::ElasticConstants;
+use crate::parallel::{Arithmetic, HotLoop, run_hot};
+
+/// A parameter that is out of its range.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{message}")]
+pub struct ParameterError {
+    /// Name of the parameter; empty if the fault lies in no single one.
+    pub field: &'static str,
+    /// What was found.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+impl ParameterError {
+    /// An error at a parameter.
+    pub fn new(field: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self { field, message: message.into(), help: help.into() }
+    }
+
+    /// An error unless the value is finite and above zero.
+    pub fn require_positive(field: &'static str, value: f64) -> Result<(), Self> {
+        if value.is_finite() && value > 0.0 {
+            return Ok(());
+        }
+        Err(Self::new(field, format!("`{field}` is {value}, not above zero"), "give a positive number"))
+    }
+
+    /// An error unless the value is finite and not below zero.
+    pub fn require_not_negative(field: &'static str, value: f64) -> Result<(), Self> {
+        if value.is_finite() && value >= 0.0 {
+            return Ok(());
+        }
+        Err(Self::new(field, format!("`{field}` is {value}, below zero"), "give zero or a positive number"))
+    }
+}
+
+/// A material of a scene, ready for use.
+#[derive(Clone)]
+pub struct Material {
+    /// Density in the reference configuration rho_0, kg/m3.
+    pub density: f64,
+    /// The law of a solid.
+    pub law: Arc<dyn SolidLaw>,
+}
+
+/// A material as a scene names it: its fields are its parameters.
+pub trait MaterialModel: DeserializeOwned + JsonSchema + 'static {
+    /// Name in scenes.
+    const NAME: &'static str;
+    /// Source of the law.
+    const REFERENCE: &'static str;
+
+    /// Checks the parameters and makes the material.
+    fn build(self) -> Result<Material, ParameterError>;
+}
+
+/// A block of particles of one material: deformation in, stress out. All slices have one length.
+pub struct StressRows<'a> {
+    /// Deformation gradient F; in plane strain F_33 = 1.
+    pub deformation: &'a [DMat3],
+    /// First Piola-Kirchhoff stress P, Pa: to be written.
+    pub stress: &'a mut [DMat3],
+    /// Strain energy per reference volume, J/m3: to be written.
+    pub energy: &'a mut [f64],
+    /// Modulus that hourglass control resists with, Pa: Young's modulus, the yield stress after yield; to be written.
+    pub modulus: &'a mut [f64],
+}
+
+/// A solid law, called once for every block of particles.
+pub trait SolidLaw: Send + Sync {
+    /// Elastic constants at small strain.
+    fn elastic(&self) -> &ElasticConstants;
+
+    /// Whether the law has no meaning for a particle that is turned inside out (det F <= 0).
+    fn needs_positive_volume(&self) -> bool;
+
+    /// Factor of the stable time step at the smallest and largest principal stretch of a body.
+    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64;
+
+    /// Computes stress, energy and modulus of a block.
+    fn stress(&self, rows: &mut StressRows<'_>);
+}
+
+/// A hyperelastic law: stress and energy are functions of the deformation gradient. Every such law is a [`SolidLaw`].
+pub trait Hyperelastic: Copy + Send + Sync + 'static {
+    /// Whether the law has no meaning for det F <= 0.
+    const NEEDS_POSITIVE_VOLUME: bool;
+
+    /// Elastic constants at small strain.
+    fn elastic(&self) -> &ElasticConstants;
+
+    /// Factor of the stable time step at the smallest and largest principal stretch of a body. Lateral contraction
+    /// raises the stiffness seen from the reference configuration as 1/stretch^2.
+    fn stable_step_factor(&self, smallest: f64, _largest: f64) -> f64 {
+        smallest.min(1.0)
+    }
+
+    /// First Piola-Kirchhoff stress P = d psi / d F, Pa, and strain energy per reference volume psi, J/m3.
+    ///
+    /// Mark it `#[inline(always)]`: it is compiled into the hot loop of every instruction path.
+    fn stress_and_energy(&self, f: &DMat3) -> (DMat3, f64);
+}
+
+struct StressLoop<'a, 'r, H> {
+    law: H,
+    rows: &'a mut StressRows<'r>,
+}
+
+impl<H: Hyperelastic> HotLoop for StressLoop<'_, '_, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        let young = self.law.elastic().young;
+        let StressRows { deformation, stress, energy, modulus } = self.rows;
+        let n = deformation.len();
+        let (stress, energy) = (&mut stress[..n], &mut energy[..n]);
+        for k in 0..n {
+            (stress[k], energy[k]) = self.law.stress_and_energy(&deformation[k]);
+        }
+        modulus.fill(young);
+    }
+}
+
+impl<H: Hyperelastic> SolidLaw for H {
+    fn elastic(&self) -> &ElasticConstants {
+        Hyperelastic::elastic(self)
+    }
+
+    fn needs_positive_volume(&self) -> bool {
+        H::NEEDS_POSITIVE_VOLUME
+    }
+
+    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64 {
+        Hyperelastic::stable_step_factor(self, smallest, largest)
+    }
+
+    fn stress(&self, rows: &mut StressRows<'_>) {
+        run_hot(StressLoop { law: *self, rows });
+    }
+}

@@ -1,0 +1,78 @@
+//! St Venant-Kirchhoff: linear between Green-Lagrange strain and second Piola-Kirchhoff stress.
+
+use std::sync::Arc;
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::elastic_constants::ElasticConstants;
+use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+
+/// St Venant-Kirchhoff elasticity, S = lambda tr(E) I + 2 mu E with E = (F^T F - I) / 2.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StVenantKirchhoff {
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+    /// Young's modulus E, Pa. Goes with `poisson`.
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Bulk modulus K, Pa. Goes with `shear`.
+    #[serde(default)]
+    pub bulk: Option<f64>,
+    /// Shear modulus mu, Pa. Goes with `bulk`.
+    #[serde(default)]
+    pub shear: Option<f64>,
+}
+
+impl MaterialModel for StVenantKirchhoff {
+    const NAME: &'static str = "StVenantKirchhoff";
+    const REFERENCE: &'static str =
+        "Ganzenmueller 2015, eqs. 17-19; eq. 19 lacks the identity (see docs/materials.md)";
+
+    fn build(self) -> Result<Material, ParameterError> {
+        ParameterError::require_positive("density", self.density)?;
+        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        Ok(Material { density: self.density, law: Arc::new(StVenantKirchhoffLaw(elastic)) })
+    }
+}
+
+/// The law of [`StVenantKirchhoff`].
+#[derive(Clone, Copy, Debug)]
+struct StVenantKirchhoffLaw(ElasticConstants);
+
+impl Hyperelastic for StVenantKirchhoffLaw {
+    const NEEDS_POSITIVE_VOLUME: bool = false;
+
+    fn elastic(&self) -> &ElasticConstants {
+        &self.0
+    }
+
+    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64 {
+        // The law stiffens in tension: dP/dF along the stretch grows as its square.
+        smallest.min(1.0) / largest.max(1.0)
+    }
+
+    #[inline(always)]
+    fn stress_and_energy(&self, f: &DMat3) -> (DMat3, f64) {
+        let (lambda, mu) = (self.0.lambda, self.0.shear);
+        let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
+        let (exx, eyy, ezz) = (0.5 * (a.dot(a) - 1.0), 0.5 * (b.dot(b) - 1.0), 0.5 * (c.dot(c) - 1.0));
+        let (exy, exz, eyz) = (0.5 * a.dot(b), 0.5 * a.dot(c), 0.5 * b.dot(c));
+        let trace = exx + eyy + ezz;
+        let mean = lambda * trace;
+        let (sxx, syy, szz) = (mean + 2.0 * mu * exx, mean + 2.0 * mu * eyy, mean + 2.0 * mu * ezz);
+        let (sxy, sxz, syz) = (2.0 * mu * exy, 2.0 * mu * exz, 2.0 * mu * eyz);
+        let p = DMat3::from_cols(
+            a * sxx + b * sxy + c * sxz,
+            a * sxy + b * syy + c * syz,
+            a * sxz + b * syz + c * szz,
+        );
+        let squares = exx * exx + eyy * eyy + ezz * ezz + 2.0 * (exy * exy + exz * exz + eyz * eyz);
+        (p, 0.5 * lambda * trace * trace + mu * squares)
+    }
+}

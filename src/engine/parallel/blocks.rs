@@ -1,0 +1,159 @@
+//! Loops over blocks of rows: a block is always the same rows, whichever thread runs it, and sums are taken in block
+//! order, so that every result is independent of the number of threads.
+
+/// Rows per block: its columns fit the first-level cache between the steps of a fused pass.
+pub const BLOCK: usize = 64;
+
+/// Number of blocks of `len` rows.
+pub fn block_count(len: usize) -> usize {
+    len.div_ceil(BLOCK)
+}
+
+/// A bundle of slices over the same rows that can be cut in two, so that each half goes to its own thread.
+pub trait Split: Sized + Send {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+    /// The rows before `at` and the rows from `at` on.
+    fn split(self, at: usize) -> (Self, Self);
+}
+
+impl<T: Sync> Split for &[T] {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at(at)
+    }
+}
+
+impl<T: Send> Split for &mut [T] {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        self.split_at_mut(at)
+    }
+}
+
+macro_rules! split_tuple {
+    ($($name:ident $k:tt),+) => {
+        impl<$($name: Split),+> Split for ($($name,)+) {
+            fn rows(&self) -> usize {
+                self.0.rows()
+            }
+
+            fn split(self, at: usize) -> (Self, Self) {
+                let parts = ($(self.$k.split(at),)+);
+                (($(parts.$k.0,)+), ($(parts.$k.1,)+))
+            }
+        }
+    };
+}
+split_tuple!(A 0);
+split_tuple!(A 0, B 1);
+split_tuple!(A 0, B 1, C 2);
+split_tuple!(A 0, B 1, C 2, D 3);
+split_tuple!(A 0, B 1, C 2, D 3, E 4);
+split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6);
+split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7);
+
+/// What a block contributes to a reduction over all rows.
+pub trait BlockSum: Copy + Default + Send {
+    /// Adds the contribution of the next block.
+    fn add(&mut self, next: &Self);
+}
+
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what the blocks
+/// return, taken in block order. `sums` is scratch memory, kept by the caller so that a step does not allocate.
+pub fn for_each_block<S: Split, R: BlockSum>(
+    rows: S,
+    sums: &mut Vec<R>,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    let count = block_count(rows.rows());
+    sums.clear();
+    sums.resize(count, R::default());
+    if count > 0 {
+        divide(0, rows, sums, body);
+    }
+    let mut total = R::default();
+    sums.iter().for_each(|sum| total.add(sum));
+    total
+}
+
+/// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the hand-over.
+const BLOCKS_PER_TASK: usize = 16;
+
+fn divide<S: Split, R: BlockSum>(
+    first_row: usize,
+    rows: S,
+    sums: &mut [R],
+    body: &(impl Fn(usize, S) -> R + Sync),
+) {
+    if sums.len() > BLOCKS_PER_TASK {
+        let half = sums.len() / 2;
+        let (left, right) = rows.split(half * BLOCK);
+        let (left_sums, right_sums) = sums.split_at_mut(half);
+        rayon::join(
+            || divide(first_row, left, left_sums, body),
+            || divide(first_row + half * BLOCK, right, right_sums, body),
+        );
+        return;
+    }
+    let mut rest = rows;
+    let mut first = first_row;
+    let last = sums.len() - 1;
+    for sum in &mut sums[..last] {
+        let (block, tail) = rest.split(BLOCK);
+        *sum = body(first, block);
+        rest = tail;
+        first += BLOCK;
+    }
+    sums[last] = body(first, rest);
+}
+
+impl BlockSum for () {
+    fn add(&mut self, (): &Self) {}
+}
+
+impl BlockSum for f64 {
+    fn add(&mut self, next: &Self) {
+        *self += next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum_of(values: &[f64], threads: usize) -> f64 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let mut sums = Vec::new();
+        pool.install(|| for_each_block(values, &mut sums, &|_, rows: &[f64]| rows.iter().sum::<f64>()))
+    }
+
+    #[test]
+    fn sums_are_the_same_on_any_number_of_threads() {
+        let values: Vec<f64> = (0..10_007).map(|k| (f64::from(k) * 0.7).sin() * 1e3).collect();
+        let blocked: f64 = values.chunks(BLOCK).map(|c| c.iter().sum::<f64>()).sum();
+        for threads in [1, 2, 7] {
+            assert_eq!(sum_of(&values, threads).to_bits(), blocked.to_bits());
+        }
+    }
+
+    #[test]
+    fn every_row_is_visited_once_with_its_own_index() {
+        for len in [0, 1, BLOCK - 1, BLOCK, BLOCK + 1, 40 * BLOCK + 3] {
+            let mut rows = vec![0_usize; len];
+            for_each_block(&mut rows[..], &mut Vec::new(), &|first, block: &mut [usize]| {
+                for (k, row) in block.iter_mut().enumerate() {
+                    *row += first + k + 1;
+                }
+            });
+            assert!(rows.iter().enumerate().all(|(k, &row)| row == k + 1));
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The instruction path: one binary runs on any x86-64 machine and uses AVX2 and FMA where the processor has them.
+//!
+//! A hot loop is written once, generic over [`Arithmetic`], and compiled for both paths. The two differ in the last
+//! bits (a fused multiply-add rounds once), so the path is part of a checkpoint.
+
+/// How a product is added to a sum.
+pub trait Arithmetic: Copy + Send + Sync + 'static {
+    /// `a b + c`.
+    fn mul_add(a: f64, b: f64, c: f64) -> f64;
+}
+
+/// Product and sum, rounded once.
+#[derive(Clone, Copy)]
+struct Fused;
+
+/// Product and sum, rounded twice.
+#[derive(Clone, Copy)]
+struct Portable;
+
+impl Arithmetic for Fused {
+    #[inline(always)]
+    fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+        a.mul_add(b, c)
+    }
+}
+
+impl Arithmetic for Portable {
+    #[inline(always)]
+    fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+        a * b + c
+    }
+}
+
+/// A loop that is compiled once for every instruction path.
+///
+/// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it stays behind on the portable path.
+pub trait HotLoop {
+    /// What the loop returns.
+    type Output;
+    /// The loop.
+    fn run<A: Arithmetic>(self) -> Self::Output;
+}
+
+#[cfg(target_arch = "x86_64")]
+mod detected {
+    use std::sync::OnceLock;
+
+    use pulp::NullaryFnOnce;
+    use pulp::x86::V3;
+
+    use super::{Fused, HotLoop, Portable};
+
+    struct WithFma<L>(L);
+
+    impl<L: HotLoop> NullaryFnOnce for WithFma<L> {
+        type Output = L::Output;
+
+        #[inline(always)]
+        fn call(self) -> L::Output {
+            self.0.run::<Fused>()
+        }
+    }
+
+    fn v3() -> Option<V3> {
+        static V3_PATH: OnceLock<Option<V3>> = OnceLock::new();
+        *V3_PATH.get_or_init(V3::try_new)
+    }
+
+    pub fn run<L: HotLoop>(hot: L) -> L::Output {
+        match v3() {
+            Some(v3) => v3.vectorize(WithFma(hot)),
+            None => hot.run::<Portable>(),
+        }
+    }
+
+    pub fn name() -> &'static str {
+        if v3().is_some() { "x86-64-v3" } else { "x86-64" }
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+mod detected {
+    use super::{Fused, HotLoop, Portable};
+
+    /// Other processors that this runs on have a fused multiply-add in their base instruction set, or emulate it too
+    /// slowly to be used.
+    pub fn run<L: HotLoop>(hot: L) -> L::Output {
+        if cfg!(target_arch = "aarch64") { hot.run::<Fused>() } else { hot.run::<Portable>() }
+    }
+
+    pub fn name() -> &'static str {
+        std::env::consts::ARCH
+    }
+}
+
+/// Runs a hot loop on the best path of this processor.
+pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
+    detected::run(hot)
+}
+
+/// Name of the instruction path in use, such as `x86-64-v3`.
+pub fn instruction_path() -> &'static str {
+    detected::name()
+}

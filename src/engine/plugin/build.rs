@@ -1,0 +1,185 @@
+//! Scene to simulation: materials, particles, plugins, systems, columns.
+
+use std::any::Any;
+use std::path::Path;
+
+use super::builder::SimBuilder;
+use super::memory;
+use super::overlap;
+use super::plan::BodyPlan;
+use super::registry::{FormulationEntry, Kind, Registry};
+use super::setup::Setup;
+use super::spawn;
+use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
+use crate::schedule::{Resources, Schedule};
+use crate::shapes;
+use crate::simulation::Simulation;
+use crate::world::{BodyId, BodySet, ColumnSet, PhaseId};
+
+/// Makes a simulation out of a scene. Nothing is written, and nothing is kept where something is wrong.
+///
+/// # Errors
+/// All that is wrong with the scene, each with its place in the file.
+pub fn build(scene: &Scene, source: &Source, registry: &Registry) -> Result<Simulation, SceneError> {
+    build_in(scene, source, registry).map_err(|problems| SceneError { source: source.clone(), problems })
+}
+
+type Parsed<'r> = (&'r FormulationEntry, Box<dyn Any>);
+
+fn build_in(scene: &Scene, source: &Source, registry: &Registry) -> Result<Simulation, Vec<Problem>> {
+    let (bodies, phases, parsed) = place_bodies(scene, source, registry)?;
+    let overlaps = overlap::problems(&bodies);
+    if !overlaps.is_empty() {
+        return Err(overlaps);
+    }
+    let mut sim = SimBuilder::new(scene, bodies, phases);
+    build_plugins(scene, registry, &mut sim)?;
+    assemble(scene, parsed, &mut sim)?;
+    crate::integrate::add_systems(&mut sim);
+    let world = spawn::spawn(&sim);
+    let mut resources = Resources::default();
+    for step in std::mem::take(&mut sim.setup) {
+        let mut setup = Setup { world: &world, resources: &mut resources, warnings: &mut sim.warnings };
+        step(&mut setup).map_err(|error| at_scene(scene, error))?;
+    }
+    let schedule =
+        Schedule::new(std::mem::take(&mut sim.systems)).map_err(|e| vec![Problem::new(e.to_string())])?;
+    Ok(Simulation::new(world, resources, schedule, scene, sim.warnings, sim.references))
+}
+
+/// A fault that belongs to no item, such as one of a set-up step.
+fn at_scene(scene: &Scene, error: super::SetupError) -> Vec<Problem> {
+    match error {
+        super::SetupError::Problems(problems) => problems,
+        super::SetupError::Parameter { field, message, help } => {
+            let place =
+                if field.is_empty() && scene.bodies.len() == 1 { "bodies[0]".to_owned() } else { field };
+            let problem = Problem::new(message).help(help);
+            vec![Problem { at: if place.is_empty() { Place::Scene } else { Place::Path(place) }, ..problem }]
+        }
+    }
+}
+
+type Placed<'r> = (Vec<BodyPlan>, Vec<(&'static str, ColumnSet)>, Vec<Parsed<'r>>);
+
+fn place_bodies<'r>(
+    scene: &Scene,
+    source: &Source,
+    registry: &'r Registry,
+) -> Result<Placed<'r>, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let mut materials = Vec::new();
+    for (name, item) in &scene.materials {
+        match registry.build_material(item) {
+            Ok(material) => materials.push((name.as_str(), material)),
+            Err(found) => problems.extend(found),
+        }
+    }
+    let folder = Path::new(&source.name).parent().unwrap_or(Path::new("."));
+    let mut room = memory::particle_limit();
+    let mut bodies: Vec<BodyPlan> = Vec::new();
+    let mut phases: Vec<(&'static str, ColumnSet)> = Vec::new();
+    let mut lens: Vec<usize> = Vec::new();
+    let mut parsed = Vec::new();
+    for (k, body) in scene.bodies.iter().enumerate() {
+        let formulation = match parse_formulation(registry, &body.formulation) {
+            Ok(formulation) => formulation,
+            Err(found) => {
+                problems.extend(found);
+                continue;
+            }
+        };
+        let filled = shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room);
+        let region = body.shape.region(scene.dimension, "shape");
+        let (sites, bounds) = match (filled, region) {
+            (Ok(sites), Ok(region)) => (sites, region.bounds()),
+            (Ok(sites), Err(_)) => {
+                let bounds = shapes::Aabb::around(sites.iter().map(|site| site.position));
+                (sites, bounds)
+            }
+            (Err(error), _) => {
+                let path = format!("bodies[{k}].{}", error.path);
+                problems.push(Problem::at_path(path, error.kind.to_string()).helps(error.kind.help()));
+                continue;
+            }
+        };
+        let Some((_, material)) = materials.iter().find(|(name, _)| *name == body.material) else { continue };
+        room = room.saturating_sub(sites.len());
+        let name = formulation.0.name;
+        let phase = phases.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
+            let mut columns = ColumnSet::default();
+            spawn::standard_columns(&mut columns);
+            (formulation.0.columns)(&mut columns);
+            phases.push((name, columns));
+            lens.push(0);
+            phases.len() - 1
+        });
+        let start = lens[phase];
+        lens[phase] += sites.len();
+        bodies.push(BodyPlan {
+            id: BodyId(k),
+            name: body.name.clone(),
+            phase: PhaseId(phase),
+            formulation: name,
+            rows: start..lens[phase],
+            spacing: body.spacing,
+            material_name: body.material.clone(),
+            material: material.clone(),
+            sites,
+            bounds,
+            velocity: body.velocity,
+        });
+        parsed.push(formulation);
+    }
+    if problems.is_empty() { Ok((bodies, phases, parsed)) } else { Err(problems) }
+}
+
+fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {
+    let entry = registry.find_formulation(item)?;
+    Ok((entry, (entry.parse)(item)?))
+}
+
+/// Builds the plugins of bodies and of the scene, then the conditions; collects what is wrong with any of them.
+fn build_plugins(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+    let mut problems = Vec::new();
+    let mut build = |kind, item: &Item, scope, sim: &mut SimBuilder<'_>| {
+        sim.scope = scope;
+        match registry.build_plugin(kind, item, sim) {
+            Ok(reference) => sim.cite(reference),
+            Err(found) => problems.extend(found),
+        }
+    };
+    for (k, body) in scene.bodies.iter().enumerate() {
+        for item in &body.plugins {
+            build(Kind::Plugin, item, BodySet::new([BodyId(k)]), sim);
+        }
+    }
+    for item in &scene.plugins {
+        let own = |body: &&crate::scene::Body| !body.plugins.iter().any(|other| other.name() == item.name());
+        let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
+        build(Kind::Plugin, item, BodySet::new(ids), sim);
+    }
+    let all = BodySet::new((0..scene.bodies.len()).map(BodyId));
+    for item in &scene.conditions {
+        build(Kind::Condition, item, all.clone(), sim);
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn assemble(scene: &Scene, parsed: Vec<Parsed<'_>>, sim: &mut SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+    let mut groups: Vec<(&FormulationEntry, Vec<(BodyId, Box<dyn Any>)>)> = Vec::new();
+    for (k, (entry, parameters)) in parsed.into_iter().enumerate() {
+        match groups.iter_mut().find(|(known, _)| known.name == entry.name) {
+            Some((_, bodies)) => bodies.push((BodyId(k), parameters)),
+            None => groups.push((entry, vec![(BodyId(k), parameters)])),
+        }
+    }
+    for (entry, bodies) in groups {
+        let first = bodies[0].0;
+        sim.scope = BodySet::new(bodies.iter().map(|(id, _)| *id));
+        sim.cite(entry.reference);
+        let item = &scene.bodies[first.0].formulation;
+        (entry.assemble)(bodies, sim).map_err(|error| error.into_problems(item))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,173 @@
+//! What a plugin sees while a simulation is built.
+
+use std::any::{Any, TypeId};
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+
+use super::error::SetupError;
+use super::plan::BodyPlan;
+use super::selection::{self, Selection};
+use super::setup::{Setup, SetupStep};
+use crate::scene::{Dimension, Scene, Select};
+use crate::schedule::System;
+use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
+
+/// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms, columns.
+pub struct SimBuilder<'s> {
+    pub(super) scene: &'s Scene,
+    pub(super) bodies: Vec<BodyPlan>,
+    pub(super) phases: Vec<(&'static str, ColumnSet)>,
+    pub(super) systems: Vec<System>,
+    pub(super) setup: Vec<SetupStep>,
+    pub(super) scope: BodySet,
+    pub(super) warnings: Vec<String>,
+    pub(super) references: Vec<String>,
+    pub(super) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
+    extensions: BTreeMap<TypeId, Vec<Box<dyn Any>>>,
+}
+
+impl<'s> SimBuilder<'s> {
+    pub(super) fn new(
+        scene: &'s Scene,
+        bodies: Vec<BodyPlan>,
+        phases: Vec<(&'static str, ColumnSet)>,
+    ) -> Self {
+        Self {
+            scene,
+            bodies,
+            phases,
+            systems: Vec::new(),
+            setup: Vec::new(),
+            scope: BodySet::default(),
+            warnings: Vec::new(),
+            references: Vec::new(),
+            prescribed: BTreeMap::new(),
+            extensions: BTreeMap::new(),
+        }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'s Scene {
+        self.scene
+    }
+
+    /// Plane strain or three dimensions.
+    pub fn dimension(&self) -> Dimension {
+        self.scene.dimension
+    }
+
+    /// Acceleration of gravity, m/s2.
+    pub fn gravity(&self) -> DVec3 {
+        self.scene.gravity.0
+    }
+
+    /// All bodies in scene order.
+    pub fn bodies(&self) -> &[BodyPlan] {
+        &self.bodies
+    }
+
+    /// A body.
+    pub fn body(&self, id: BodyId) -> &BodyPlan {
+        &self.bodies[id.0]
+    }
+
+    /// The bodies that the plugin being built is meant for: one body for a plugin of a body, else all bodies that do
+    /// not have a plugin of that name themselves.
+    pub fn scope(&self) -> &BodySet {
+        &self.scope
+    }
+
+    /// The bodies of the scope that move by the formulation of that name.
+    pub fn scope_of(&self, formulation: &str) -> BodySet {
+        BodySet::new(self.scope.iter().filter(|&id| self.body(id).formulation == formulation))
+    }
+
+    /// The phases of the bodies of the scope.
+    pub fn phases_of(&self, bodies: &BodySet) -> Vec<PhaseId> {
+        let mut phases: Vec<PhaseId> = bodies.iter().map(|id| self.body(id).phase).collect();
+        phases.sort_unstable();
+        phases.dedup();
+        phases
+    }
+
+    /// Gives all particles of the phases of the scope a column, zero at the start.
+    pub fn add_column<T: Column>(&mut self) {
+        for phase in self.phases_of(&self.scope.clone()) {
+            self.phases[phase.0].1.add::<T>();
+        }
+    }
+
+    /// Adds a system.
+    pub fn add_system(&mut self, system: System) {
+        self.systems.push(system);
+    }
+
+    /// Adds something to do once, after the particles are spawned and before the first step.
+    pub fn add_setup(&mut self, step: impl FnOnce(&mut Setup<'_>) -> Result<(), SetupError> + 'static) {
+        self.setup.push(Box::new(step));
+    }
+
+    /// The rows that a selection means; `field` is its name among the parameters, for errors.
+    pub fn select(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
+        selection::resolve(select, field, &self.bodies, self.scene.dimension)
+    }
+
+    /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that the
+    /// condition named `by` can prescribe it. Two conditions on one axis of one particle are an error.
+    pub fn prescribe(
+        &mut self,
+        selection: &Selection,
+        axes: [bool; 3],
+        by: &'static str,
+    ) -> Result<(), SetupError> {
+        for (id, rows) in &selection.parts {
+            let phase = self.body(*id).phase;
+            for &row in rows {
+                let taken = self.prescribed.entry((phase, row)).or_default();
+                for axis in (0..3).filter(|&axis| axes[axis]) {
+                    if let Some(other) = taken[axis].replace(by) {
+                        let body = self.body(*id);
+                        let number = row as usize - body.rows.start;
+                        let name = ["x", "y", "z"][axis];
+                        return Err(SetupError::parameter(
+                            "on",
+                            format!(
+                                "two conditions prescribe the {name} motion of one particle: `{other}` and `{by}` \
+                                 both hold particle {number} of body `{}` at {}",
+                                body.name, body.sites[number].position
+                            ),
+                            "let the selections not overlap, or leave the axis to one of them",
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds to a slot that other parts of the engine have opened, such as the bond terms of a formulation. Things of
+    /// one type are kept in the order in which they are added.
+    pub fn extend<T: 'static>(&mut self, value: T) {
+        self.extensions.entry(TypeId::of::<T>()).or_default().push(Box::new(value));
+    }
+
+    /// Takes everything out of the slot of type `T`.
+    pub fn take_extensions<T: 'static>(&mut self) -> Vec<T> {
+        let all = self.extensions.remove(&TypeId::of::<T>()).unwrap_or_default();
+        all.into_iter().filter_map(|any| any.downcast().ok()).map(|boxed| *boxed).collect()
+    }
+
+    /// Tells the user something that is worth looking at; repeated at the end of the run.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        self.warnings.push(text.into());
+    }
+
+    /// States the source of a method in use.
+    pub fn cite(&mut self, reference: impl Into<String>) {
+        let reference = reference.into();
+        if !reference.is_empty() && !self.references.contains(&reference) {
+            self.references.push(reference);
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Why a plugin, a condition or a formulation cannot be built.
+
+use thiserror::Error;
+
+use crate::materials::ParameterError;
+use crate::scene::{Item, Problem};
+
+/// A fault found while the scene is made into a simulation.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum SetupError {
+    /// A parameter is out of its range, or asks for what is not there.
+    #[error("{message}")]
+    Parameter {
+        /// Path of the parameter within the item, such as `alpha` or `on.body`; empty for the item as a whole.
+        field: String,
+        /// What was found.
+        message: String,
+        /// What would be right.
+        help: String,
+    },
+    /// Faults that already know their place in the scene.
+    #[error("{} problems in the scene", .0.len())]
+    Problems(Vec<Problem>),
+}
+
+impl SetupError {
+    /// A fault at a parameter of the item.
+    pub fn parameter(field: impl Into<String>, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Parameter { field: field.into(), message: message.into(), help: help.into() }
+    }
+
+    /// A fault of the engine or of a plugin, not of the scene.
+    pub fn internal(error: &dyn std::error::Error) -> Self {
+        Self::parameter("", error.to_string(), "this is a fault of the program, not of the scene")
+    }
+
+    /// The problems with their place, `item` being what was built.
+    pub(super) fn into_problems(self, item: &Item) -> Vec<Problem> {
+        match self {
+            Self::Parameter { field, message, help } => vec![item.problem(&field, message, help)],
+            Self::Problems(problems) => problems,
+        }
+    }
+}
+
+impl From<ParameterError> for SetupError {
+    fn from(error: ParameterError) -> Self {
+        Self::Parameter { field: error.field.to_owned(), message: error.message, help: error.help }
+    }
+}

@@ -1,0 +1,105 @@
+//! Selections: the rows that a condition or a probe acts on.
+
+use glam::DVec3;
+
+use super::error::SetupError;
+use super::plan::BodyPlan;
+use crate::scene::{Dimension, Face, Select, unknown};
+use crate::world::BodyId;
+
+/// The rows that a [`Select`] means, body by body in scene order; rows are rows of the body's phase.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Bodies with their selected rows, ascending; no entry is empty.
+    pub parts: Vec<(BodyId, Vec<u32>)>,
+}
+
+impl Selection {
+    /// Number of selected particles.
+    pub fn len(&self) -> usize {
+        self.parts.iter().map(|(_, rows)| rows.len()).sum()
+    }
+
+    /// Whether nothing is selected.
+    pub fn is_empty(&self) -> bool {
+        self.parts.is_empty()
+    }
+}
+
+/// Finds what a selection means; `field` is its path in the item that holds it, for errors.
+pub(super) fn resolve(
+    select: &Select,
+    field: &str,
+    bodies: &[BodyPlan],
+    dimension: Dimension,
+) -> Result<Selection, SetupError> {
+    let path = |name: &str| if field.is_empty() { name.to_owned() } else { format!("{field}.{name}") };
+    if let Some(name) = &select.body
+        && !bodies.iter().any(|body| body.name == *name)
+    {
+        let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+        let (message, helps) = unknown("body", name, &known);
+        return Err(SetupError::parameter(path("body"), message, helps.join("; ")));
+    }
+    let within = match &select.within {
+        Some(shape) => Some(shape.region(dimension, &path("within")).map_err(|error| {
+            SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")
+        })?),
+        None => None,
+    };
+    let mut parts = Vec::new();
+    for body in bodies.iter().filter(|body| select.body.as_ref().is_none_or(|name| body.name == *name)) {
+        let chosen = |p: DVec3| {
+            within.as_ref().is_none_or(|region| region.contains(p))
+                && select.face.is_none_or(|face| on_face(face, body, p))
+        };
+        let rows: Vec<u32> = (body.rows.start..)
+            .zip(&body.sites)
+            .filter(|(_, site)| chosen(site.position))
+            .map(|(row, _)| row as u32)
+            .collect();
+        if !rows.is_empty() {
+            parts.push((body.id, rows));
+        }
+    }
+    if let Some(point) = &select.nearest {
+        parts = nearest(parts, bodies, point.0);
+    }
+    if parts.is_empty() {
+        let extents = bodies.iter().filter(|body| select.body.as_ref().is_none_or(|name| body.name == *name));
+        let extents: Vec<String> = extents
+            .map(|body| format!("`{}` extends from {} to {}", body.name, body.bounds.min, body.bounds.max))
+            .collect();
+        return Err(SetupError::parameter(field, "the selection is empty", extents.join("; ")));
+    }
+    Ok(Selection { parts })
+}
+
+/// Whether a particle belongs to the outermost layer: closer to the face of the body's box than one spacing.
+fn on_face(face: Face, body: &BodyPlan, p: DVec3) -> bool {
+    let layer = body.spacing * (1.0 - 1e-6);
+    let (min, max) = (body.bounds.min, body.bounds.max);
+    match face {
+        Face::MinX => p.x - min.x < layer,
+        Face::MaxX => max.x - p.x < layer,
+        Face::MinY => p.y - min.y < layer,
+        Face::MaxY => max.y - p.y < layer,
+        Face::MinZ => p.z - min.z < layer,
+        Face::MaxZ => max.z - p.z < layer,
+    }
+}
+
+/// The one particle nearest to a point; of equally near ones the first.
+fn nearest(parts: Vec<(BodyId, Vec<u32>)>, bodies: &[BodyPlan], point: DVec3) -> Vec<(BodyId, Vec<u32>)> {
+    let mut best: Option<(f64, BodyId, u32)> = None;
+    for (id, rows) in &parts {
+        let body = &bodies[id.0];
+        for &row in rows {
+            let distance = body.sites[row as usize - body.rows.start].position.distance_squared(point);
+            if best.is_none_or(|(least, ..)| distance < least) {
+                best = Some((distance, *id, row));
+            }
+        }
+    }
+    best.map(|(_, id, row)| vec![(id, vec![row])]).unwrap_or_default()
+}

@@ -1,0 +1,35 @@
+//! The traits behind the names of a scene.
+
+use schemars::JsonSchema;
+use serde::de::DeserializeOwned;
+
+use super::builder::SimBuilder;
+use super::error::SetupError;
+use crate::world::{BodyId, ColumnSet};
+
+/// A plugin or a condition, named in scenes; its fields are its parameters, with units in their documentation.
+///
+/// Derive `Deserialize` with `deny_unknown_fields`, and `JsonSchema`.
+pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
+    /// Name in scenes.
+    const NAME: &'static str;
+    /// Source of the method, printed in the run log.
+    const REFERENCE: &'static str;
+
+    /// Adds systems, terms, columns, diagnostics and limits of the time step.
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError>;
+}
+
+/// How bodies move: the columns of their particles and the systems that make their rates.
+pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
+    /// Name in scenes.
+    const NAME: &'static str;
+    /// Source of the method.
+    const REFERENCE: &'static str;
+
+    /// Adds the columns that its particles have beside position, velocity, force, mass and mobility.
+    fn columns(columns: &mut ColumnSet);
+
+    /// Adds the systems of all bodies of this formulation, given in scene order.
+    fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError>;
+}

@@ -1,0 +1,117 @@
+//! Rows of several columns at once, for systems that are a function of one particle.
+
+use std::ops::Range;
+
+use super::system::{Access, Mode};
+use crate::parallel::{Split, for_each_block};
+use crate::world::{Column, MissingColumn, PhaseView};
+
+/// One column of a row: `&C` or `&mut C`.
+pub trait RowColumn {
+    /// The guard that borrows the column.
+    type Guard<'g>;
+    /// The column as a slice that can be cut for threads.
+    type Slice<'s>: Split;
+    /// One row of it.
+    type Item<'r>;
+
+    /// Declared access.
+    fn access() -> Access;
+    /// Borrows the column.
+    fn guard<'g>(phase: &PhaseView<'g>) -> Result<Self::Guard<'g>, MissingColumn>;
+    /// The rows of the borrowed column.
+    fn slice<'s>(guard: &'s mut Self::Guard<'_>, rows: Range<usize>) -> Self::Slice<'s>;
+    /// Row `k` of the slice.
+    fn item<'r>(slice: &'r mut Self::Slice<'_>, k: usize) -> Self::Item<'r>;
+}
+
+impl<C: Column> RowColumn for &C {
+    type Guard<'g> = hecs::ArchetypeColumn<'g, C>;
+    type Slice<'s> = &'s [C];
+    type Item<'r> = &'r C;
+
+    fn access() -> Access {
+        Access { column: C::NAME, mode: Mode::Reads }
+    }
+
+    fn guard<'g>(phase: &PhaseView<'g>) -> Result<Self::Guard<'g>, MissingColumn> {
+        phase.read()
+    }
+
+    fn slice<'s>(guard: &'s mut Self::Guard<'_>, rows: Range<usize>) -> Self::Slice<'s> {
+        &(**guard)[rows]
+    }
+
+    fn item<'r>(slice: &'r mut Self::Slice<'_>, k: usize) -> Self::Item<'r> {
+        &slice[k]
+    }
+}
+
+impl<C: Column> RowColumn for &mut C {
+    type Guard<'g> = hecs::ArchetypeColumnMut<'g, C>;
+    type Slice<'s> = &'s mut [C];
+    type Item<'r> = &'r mut C;
+
+    fn access() -> Access {
+        Access { column: C::NAME, mode: Mode::Writes }
+    }
+
+    fn guard<'g>(phase: &PhaseView<'g>) -> Result<Self::Guard<'g>, MissingColumn> {
+        phase.write()
+    }
+
+    fn slice<'s>(guard: &'s mut Self::Guard<'_>, rows: Range<usize>) -> Self::Slice<'s> {
+        &mut (**guard)[rows]
+    }
+
+    fn item<'r>(slice: &'r mut Self::Slice<'_>, k: usize) -> Self::Item<'r> {
+        &mut slice[k]
+    }
+}
+
+/// A tuple of up to five columns, `&C` to read and `&mut C` to write.
+pub trait EachRow {
+    /// One row of the columns.
+    type Row<'r>;
+
+    /// Declares the access to every column.
+    fn declare(access: &mut Vec<Access>);
+    /// Calls `f` for every row, in parallel.
+    fn for_each(
+        phase: &PhaseView<'_>,
+        rows: Range<usize>,
+        f: &(impl for<'r> Fn(Self::Row<'r>) + Sync),
+    ) -> Result<(), MissingColumn>;
+}
+
+macro_rules! each_row {
+    ($($name:ident $k:tt),+) => {
+        impl<$($name: RowColumn),+> EachRow for ($($name,)+) {
+            type Row<'r> = ($($name::Item<'r>,)+);
+
+            fn declare(access: &mut Vec<Access>) {
+                access.extend([$($name::access()),+]);
+            }
+
+            fn for_each(
+                phase: &PhaseView<'_>,
+                rows: Range<usize>,
+                f: &(impl for<'r> Fn(Self::Row<'r>) + Sync),
+            ) -> Result<(), MissingColumn> {
+                let mut guards = ($($name::guard(phase)?,)+);
+                let slices = ($($name::slice(&mut guards.$k, rows.clone()),)+);
+                for_each_block(slices, &mut Vec::new(), &|_, mut block: ($($name::Slice<'_>,)+)| {
+                    for k in 0..block.rows() {
+                        f(($($name::item(&mut block.$k, k),)+));
+                    }
+                });
+                Ok(())
+            }
+        }
+    };
+}
+each_row!(A 0);
+each_row!(A 0, B 1);
+each_row!(A 0, B 1, C 2);
+each_row!(A 0, B 1, C 2, D 3);
+each_row!(A 0, B 1, C 2, D 3, E 4);

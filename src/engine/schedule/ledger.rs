@@ -1,0 +1,151 @@
+//! The energy ledger: where every joule is, came from, and went, per body.
+
+use serde::{Deserialize, Serialize};
+
+use crate::world::BodyId;
+
+/// What kind of energy an account holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum AccountKind {
+    /// Energy held now: kinetic, strain, hourglass.
+    Stored,
+    /// Work done on the bodies since the start: gravity, prescribed motion, tractions.
+    Supplied,
+    /// Energy taken out of the motion since the start: damping, viscosity, plastic work.
+    Dissipated,
+}
+
+/// One account of the ledger.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Account {
+    /// Name, such as `kinetic` or `artificial_viscosity`.
+    pub name: String,
+    /// Kind.
+    pub kind: AccountKind,
+    per_body: Vec<f64>,
+}
+
+/// Index of an account.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AccountId(usize);
+
+/// All accounts, J. The balance `stored - stored at the start - supplied + dissipated` is the error of the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    accounts: Vec<Account>,
+    bodies: usize,
+    stored_at_start: f64,
+    largest: f64,
+}
+
+impl Ledger {
+    /// A ledger for that many bodies.
+    pub fn new(bodies: usize) -> Self {
+        Self { bodies, ..Self::default() }
+    }
+
+    /// The account of that name; it is opened if there is none.
+    pub fn account(&mut self, name: &str, kind: AccountKind) -> AccountId {
+        if let Some(k) = self.accounts.iter().position(|account| account.name == name) {
+            return AccountId(k);
+        }
+        self.accounts.push(Account { name: name.to_owned(), kind, per_body: vec![0.0; self.bodies] });
+        AccountId(self.accounts.len() - 1)
+    }
+
+    /// The accounts in the order in which they were opened.
+    pub fn accounts(&self) -> &[Account] {
+        &self.accounts
+    }
+
+    /// States the energy now held, J.
+    pub fn set(&mut self, account: AccountId, body: BodyId, energy: f64) {
+        self.accounts[account.0].per_body[body.0] = energy;
+    }
+
+    /// Adds work done or energy dissipated in this step, J.
+    pub fn add(&mut self, account: AccountId, body: BodyId, energy: f64) {
+        self.accounts[account.0].per_body[body.0] += energy;
+    }
+
+    /// The energy of an account, all bodies together, J.
+    pub fn total(&self, account: AccountId) -> f64 {
+        self.accounts[account.0].per_body.iter().sum()
+    }
+
+    /// The energy of the account of that name, all bodies together, J; zero if there is none.
+    pub fn total_named(&self, name: &str) -> f64 {
+        self.accounts.iter().filter(|a| a.name == name).flat_map(|a| &a.per_body).sum()
+    }
+
+    fn total_of(&self, kind: AccountKind) -> f64 {
+        self.accounts.iter().filter(|a| a.kind == kind).flat_map(|a| &a.per_body).sum()
+    }
+
+    /// All stored energy, J.
+    pub fn stored(&self) -> f64 {
+        self.total_of(AccountKind::Stored)
+    }
+
+    /// Opens the books: what is stored now is the energy at the start, and nothing is supplied or dissipated yet.
+    pub fn open(&mut self) {
+        for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
+            account.per_body.fill(0.0);
+        }
+        self.stored_at_start = self.stored();
+        self.close_step();
+    }
+
+    /// Closes a step: takes the scale of the balance error.
+    pub fn close_step(&mut self) {
+        let turnover = self.accounts.iter().map(|a| a.per_body.iter().sum::<f64>().abs());
+        self.largest = turnover.fold(self.largest, f64::max);
+    }
+
+    /// What the ledger cannot account for, J.
+    pub fn balance_error(&self) -> f64 {
+        self.stored() - self.stored_at_start - self.total_of(AccountKind::Supplied)
+            + self.total_of(AccountKind::Dissipated)
+    }
+
+    /// The balance error over the largest energy that any account has held.
+    pub fn relative_error(&self) -> f64 {
+        if self.largest > 0.0 { self.balance_error() / self.largest } else { 0.0 }
+    }
+}
+
+impl Account {
+    /// Energy of one body, J.
+    pub fn of(&self, body: BodyId) -> f64 {
+        self.per_body[body.0]
+    }
+
+    /// Energy of all bodies, J.
+    pub fn total(&self) -> f64 {
+        self.per_body.iter().sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_balance_closes_when_every_joule_is_booked() {
+        let mut ledger = Ledger::new(2);
+        let kinetic = ledger.account("kinetic", AccountKind::Stored);
+        let gravity = ledger.account("gravity", AccountKind::Supplied);
+        let damping = ledger.account("damping", AccountKind::Dissipated);
+        ledger.set(kinetic, BodyId(0), 3.0);
+        ledger.add(gravity, BodyId(0), 9.0);
+        ledger.open();
+        ledger.set(kinetic, BodyId(1), 4.0);
+        ledger.add(gravity, BodyId(1), 5.0);
+        ledger.add(damping, BodyId(1), 1.0);
+        ledger.close_step();
+        assert_eq!(ledger.balance_error(), 0.0);
+        ledger.add(gravity, BodyId(0), 0.7);
+        assert!((ledger.relative_error() + 0.1).abs() < 1e-12);
+        assert_eq!(ledger.account("kinetic", AccountKind::Stored), kinetic);
+    }
+}

@@ -1,0 +1,19 @@
+//! The step: stages, systems with declared access, their order, and what a system sees while it runs.
+
+mod each;
+mod ledger;
+mod limits;
+mod order;
+mod resources;
+mod stage;
+mod step;
+mod system;
+
+pub use each::EachRow;
+pub use ledger::{Account, AccountId, AccountKind, Ledger};
+pub use limits::{Limit, TimeStepLimits};
+pub use order::{Schedule, ScheduleError};
+pub use resources::Resources;
+pub use stage::Stage;
+pub use step::{Clock, Step, StepError};
+pub use system::{Access, Mode, Run, System};

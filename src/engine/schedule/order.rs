@@ -1,0 +1,202 @@
+//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use thiserror::Error;
+
+use super::stage::Stage;
+use super::step::{Step, StepError};
+use super::system::{Mode, System};
+
+/// Why the systems cannot be put in order.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum ScheduleError {
+    /// Two systems touch one column and no order is stated.
+    #[error(
+        "systems `{first}` and `{second}` of stage {stage:?} both touch `{column}` and neither says which runs first; \
+         add `.before(\"{second}\")` or `.after(\"{second}\")` to `{first}`"
+    )]
+    Ambiguous {
+        /// Label of one system.
+        first: String,
+        /// Label of the other.
+        second: String,
+        /// Stage of both.
+        stage: Stage,
+        /// Column that both touch.
+        column: &'static str,
+    },
+    /// The stated orders contradict each other.
+    #[error("systems of stage {stage:?} wait for each other: {systems}")]
+    Cycle {
+        /// Stage.
+        stage: Stage,
+        /// Labels of the systems.
+        systems: String,
+    },
+    /// A system names a system that its stage does not have.
+    #[error("system `{system}` wants to run {side} `{label}`, which stage {stage:?} does not have")]
+    UnknownLabel {
+        /// Label of the system.
+        system: String,
+        /// `before` or `after`.
+        side: &'static str,
+        /// The label that nothing has.
+        label: String,
+        /// Stage.
+        stage: Stage,
+    },
+}
+
+/// The systems in the order in which they run, with the time each has taken.
+#[derive(Default)]
+pub struct Schedule {
+    systems: Vec<System>,
+    times: Vec<Duration>,
+}
+
+impl Schedule {
+    /// Orders the systems; those without stated order keep the order in which they were added.
+    pub fn new(systems: Vec<System>) -> Result<Self, ScheduleError> {
+        let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
+        let mut ordered = Vec::with_capacity(slots.len());
+        for stage in Stage::ALL {
+            let members: Vec<usize> = (0..slots.len())
+                .filter(|&k| slots[k].as_ref().is_some_and(|system| system.stage == stage))
+                .collect();
+            let stage_systems: Vec<System> = members.iter().filter_map(|&k| slots[k].take()).collect();
+            ordered.extend(order_stage(stage, stage_systems)?);
+        }
+        let times = vec![Duration::ZERO; ordered.len()];
+        Ok(Self { systems: ordered, times })
+    }
+
+    /// Runs the systems of the stages that `wanted` accepts.
+    pub fn run(&mut self, step: &mut Step<'_>, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
+        for (system, time) in self.systems.iter_mut().zip(&mut self.times) {
+            if wanted(system.stage) {
+                let start = Instant::now();
+                system.work.run(step)?;
+                *time += start.elapsed();
+            }
+        }
+        Ok(())
+    }
+
+    /// Label, stage and total time of every system.
+    pub fn timers(&self) -> impl Iterator<Item = (&str, Stage, Duration)> {
+        self.systems.iter().zip(&self.times).map(|(s, &time)| (s.label.as_str(), s.stage, time))
+    }
+
+    /// Label and state of every system that has state.
+    pub fn save(&self) -> Vec<(String, Vec<u8>)> {
+        let states = self.systems.iter().map(|system| (system.label.clone(), system.work.save()));
+        states.filter(|(_, state)| !state.is_empty()).collect()
+    }
+
+    /// Gives a system the state it saved. Returns `false` if there is no such system or it refuses the state.
+    pub fn restore(&mut self, label: &str, state: &[u8]) -> bool {
+        let system = self.systems.iter_mut().find(|system| system.label == label);
+        system.is_some_and(|system| system.work.restore(state))
+    }
+
+    /// The order in words: a line per stage, a line per system with the columns it touches.
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        for stage in Stage::ALL {
+            let members: Vec<_> = self.systems.iter().filter(|system| system.stage == stage).collect();
+            if members.is_empty() {
+                continue;
+            }
+            let _ = writeln!(text, "{stage:?}");
+            for system in members {
+                let _ = write!(text, "  {}", system.label);
+                for (mode, verb) in
+                    [(Mode::Reads, "reads"), (Mode::Writes, "writes"), (Mode::Adds, "adds to")]
+                {
+                    let columns: Vec<_> =
+                        system.access.iter().filter(|a| a.mode == mode).map(|a| a.column).collect();
+                    if !columns.is_empty() {
+                        let _ = write!(text, "; {verb} {}", columns.join(", "));
+                    }
+                }
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+fn order_stage(stage: Stage, systems: Vec<System>) -> Result<Vec<System>, ScheduleError> {
+    let precedes = stated_order(stage, &systems)?;
+    let n = systems.len();
+    let mut order = Vec::with_capacity(n);
+    let mut placed = vec![false; n];
+    while order.len() < n {
+        let ready = (0..n).find(|&k| !placed[k] && (0..n).all(|p| placed[p] || !precedes[p][k]));
+        let Some(k) = ready else {
+            let waiting = (0..n).filter(|&k| !placed[k]).map(|k| systems[k].label.as_str());
+            return Err(ScheduleError::Cycle { stage, systems: waiting.collect::<Vec<_>>().join(", ") });
+        };
+        placed[k] = true;
+        order.push(k);
+    }
+    check_ambiguity(stage, &systems, &precedes)?;
+    let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
+    Ok(order.into_iter().filter_map(|k| slots[k].take()).collect())
+}
+
+/// `precedes[a][b]`: a runs before b, by a chain of stated orders.
+fn stated_order(stage: Stage, systems: &[System]) -> Result<Vec<Vec<bool>>, ScheduleError> {
+    let n = systems.len();
+    let mut precedes = vec![vec![false; n]; n];
+    for (k, system) in systems.iter().enumerate() {
+        for (labels, side) in [(&system.before, "before"), (&system.after, "after")] {
+            for label in labels {
+                let named: Vec<usize> = (0..n).filter(|&m| systems[m].label == *label).collect();
+                if named.is_empty() {
+                    return Err(ScheduleError::UnknownLabel {
+                        system: system.label.clone(),
+                        side,
+                        label: label.clone(),
+                        stage,
+                    });
+                }
+                for m in named {
+                    let (first, second) = if side == "before" { (k, m) } else { (m, k) };
+                    precedes[first][second] = true;
+                }
+            }
+        }
+    }
+    for via in 0..n {
+        for a in 0..n {
+            if precedes[a][via] {
+                for b in 0..n {
+                    precedes[a][b] |= precedes[via][b];
+                }
+            }
+        }
+    }
+    Ok(precedes)
+}
+
+fn check_ambiguity(stage: Stage, systems: &[System], precedes: &[Vec<bool>]) -> Result<(), ScheduleError> {
+    for a in 0..systems.len() {
+        for b in a + 1..systems.len() {
+            if precedes[a][b] || precedes[b][a] {
+                continue;
+            }
+            if let Some(column) = systems[a].conflict_with(&systems[b]) {
+                return Err(ScheduleError::Ambiguous {
+                    first: systems[a].label.clone(),
+                    second: systems[b].label.clone(),
+                    stage,
+                    column,
+                });
+            }
+        }
+    }
+    Ok(())
+}

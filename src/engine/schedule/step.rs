@@ -1,0 +1,97 @@
+//! What a system sees while it runs, and how it can fail.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::ledger::Ledger;
+use super::limits::TimeStepLimits;
+use super::resources::Resources;
+use crate::world::{MissingColumn, World};
+
+/// Where the run is in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Time at the start of the step, s.
+    pub time: f64,
+    /// Length of the step, s.
+    pub dt: f64,
+    /// Number of steps done before this one.
+    pub step: u64,
+}
+
+impl Clock {
+    /// Time at the end of the step, s.
+    pub fn end(&self) -> f64 {
+        self.time + self.dt
+    }
+
+    /// Time at mid-step, s.
+    pub fn middle(&self) -> f64 {
+        self.time + 0.5 * self.dt
+    }
+}
+
+/// What a system sees: the columns, what systems share, the clock, the ledger, the limits of the next time step.
+pub struct Step<'s> {
+    /// Columns and bodies.
+    pub world: &'s World,
+    /// Lists and tables that systems share.
+    pub resources: &'s Resources,
+    /// Time and step.
+    pub clock: Clock,
+    /// Energy ledger.
+    pub ledger: &'s mut Ledger,
+    /// Limits of the next time step.
+    pub limits: &'s mut TimeStepLimits,
+    /// Set it to end the run after this step; the text says why.
+    pub stop: &'s mut Option<String>,
+}
+
+/// Why a step cannot go on.
+#[derive(Debug, Error)]
+pub enum StepError {
+    /// A system needs a column that the phase does not have.
+    #[error(transparent)]
+    MissingColumn(#[from] MissingColumn),
+    /// A particle has left the range of what makes sense.
+    #[error("{what} at particle {particle} of body `{body}`, step {step}, time {time:.6e} s{detail}")]
+    Unstable {
+        /// What went wrong.
+        what: String,
+        /// Number of the particle in its body.
+        particle: usize,
+        /// Body.
+        body: String,
+        /// Step.
+        step: u64,
+        /// Time, s.
+        time: f64,
+        /// What is known about the cause; empty, or starting with `: `.
+        detail: String,
+    },
+    /// What the run writes could not be written.
+    #[error("{0}")]
+    Output(String),
+    /// A system of a plugin failed.
+    #[error("system `{system}` failed: {message}")]
+    System {
+        /// Label of the system.
+        system: String,
+        /// What went wrong.
+        message: String,
+    },
+}
+
+impl Step<'_> {
+    /// The error of a particle that has left the range of what makes sense; `particle` is its number in the body.
+    pub fn unstable(&self, what: &str, body: crate::world::BodyId, particle: usize) -> StepError {
+        StepError::Unstable {
+            what: what.to_owned(),
+            particle,
+            body: self.world.body(body).name.clone(),
+            step: self.clock.step,
+            time: self.clock.time,
+            detail: String::new(),
+        }
+    }
+}

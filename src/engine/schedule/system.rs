@@ -1,0 +1,166 @@
+//! A system: a piece of the step with a stage, a label, declared access to columns, and a place in the order.
+
+use super::each::EachRow;
+use super::stage::Stage;
+use super::step::{Step, StepError};
+use crate::world::{BodySet, Column, PhaseId};
+
+/// How a system touches a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// It reads the column.
+    Reads,
+    /// It overwrites or changes the column.
+    Writes,
+    /// It adds to an accumulator; additions commute, and run in the order of the scene.
+    Adds,
+}
+
+/// A declared access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    /// Name of the column.
+    pub column: &'static str,
+    /// How it is touched.
+    pub mode: Mode,
+}
+
+impl Access {
+    /// Whether two systems with these accesses need a stated order.
+    pub fn conflicts(&self, other: &Access) -> bool {
+        use Mode::{Adds, Reads};
+        self.column == other.column && !matches!((self.mode, other.mode), (Reads, Reads) | (Adds, Adds))
+    }
+}
+
+/// What a system does. A closure is enough for a system without state of its own.
+pub trait Run: Send {
+    /// Does the system's work in this step.
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError>;
+
+    /// State that must survive a restart and is in no column.
+    fn save(&self) -> Vec<u8> {
+        Vec::new()
+    }
+
+    /// Takes up what [`Run::save`] gave. Returns `false` where the bytes are not what it wrote.
+    fn restore(&mut self, state: &[u8]) -> bool {
+        state.is_empty()
+    }
+}
+
+impl<F: FnMut(&mut Step<'_>) -> Result<(), StepError> + Send> Run for F {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        self(step)
+    }
+}
+
+/// A system of the schedule.
+pub struct System {
+    pub(super) label: String,
+    pub(super) stage: Stage,
+    pub(super) access: Vec<Access>,
+    pub(super) phases: Option<Vec<PhaseId>>,
+    pub(super) before: Vec<String>,
+    pub(super) after: Vec<String>,
+    pub(super) work: Box<dyn Run>,
+}
+
+impl System {
+    /// A system that sees the whole step. Declare the columns it touches with [`System::reads`] and its siblings.
+    pub fn new(stage: Stage, label: impl Into<String>, work: impl Run + 'static) -> Self {
+        Self {
+            label: label.into(),
+            stage,
+            access: Vec::new(),
+            phases: None,
+            before: Vec::new(),
+            after: Vec::new(),
+            work: Box::new(work),
+        }
+    }
+
+    /// A system that calls `f` for every particle of the bodies, in parallel, with the columns named by `Q`: a tuple
+    /// of `&Column` and `&mut Column`. The access is declared by the types.
+    pub fn each<Q: EachRow>(
+        stage: Stage,
+        label: impl Into<String>,
+        bodies: BodySet,
+        f: impl for<'r> Fn(&super::step::Clock, Q::Row<'r>) + Send + Sync + 'static,
+    ) -> Self {
+        let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
+            let clock = step.clock;
+            for body in bodies.iter() {
+                let (phase, rows) = step.world.body_view(body);
+                Q::for_each(&phase, rows, &|row| f(&clock, row))?;
+            }
+            Ok(())
+        });
+        Q::declare(&mut system.access);
+        system
+    }
+
+    /// Declares that the system reads column `T`.
+    pub fn reads<T: Column>(self) -> Self {
+        self.touches(T::NAME, Mode::Reads)
+    }
+
+    /// Declares that the system writes column `T`.
+    pub fn writes<T: Column>(self) -> Self {
+        self.touches(T::NAME, Mode::Writes)
+    }
+
+    /// Declares that the system adds to column `T`.
+    pub fn adds<T: Column>(self) -> Self {
+        self.touches(T::NAME, Mode::Adds)
+    }
+
+    /// Declares access to the column of that name, or to something that systems share.
+    pub fn touches(mut self, column: &'static str, mode: Mode) -> Self {
+        self.access.push(Access { column, mode });
+        self
+    }
+
+    /// Declares that only these phases are touched: systems of different phases never conflict.
+    pub fn on_phases(mut self, phases: impl IntoIterator<Item = PhaseId>) -> Self {
+        self.phases = Some(phases.into_iter().collect());
+        self
+    }
+
+    /// Runs before every system of its stage with that label.
+    pub fn before(mut self, label: impl Into<String>) -> Self {
+        self.before.push(label.into());
+        self
+    }
+
+    /// Runs after every system of its stage with that label.
+    pub fn after(mut self, label: impl Into<String>) -> Self {
+        self.after.push(label.into());
+        self
+    }
+
+    /// Label.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Stage.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Declared access.
+    pub fn access(&self) -> &[Access] {
+        &self.access
+    }
+
+    pub(super) fn conflict_with(&self, other: &System) -> Option<&'static str> {
+        if let (Some(a), Some(b)) = (&self.phases, &other.phases)
+            && !a.iter().any(|phase| b.contains(phase))
+        {
+            return None;
+        }
+        let pairs = self.access.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));
+        pairs.filter(|(a, b)| a.conflicts(b)).map(|(a, _)| a.column).next()
+    }
+}

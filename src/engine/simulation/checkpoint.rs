@@ -1,0 +1,191 @@
+//! Saving and restoring the whole state, bit for bit.
+//!
+//! Every column goes into a section of its own, the rest (clock, ledger, next limit, states of systems, the scene) into
+//! one header section. Lists and packed rows are not saved: they are made again from the columns.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::Simulation;
+use crate::parallel::instruction_path;
+use crate::record::{Container, ContainerError, ContainerWriter, Existing, StateHash, StateHasher};
+use crate::scene::Source;
+use crate::schedule::{Clock, Ledger, Limit};
+use crate::world::{ColumnInfo, PhaseView};
+
+const STATE: &str = "state";
+
+/// Everything that is not in a column.
+#[derive(Serialize, Deserialize)]
+struct Header {
+    scene_name: String,
+    scene_text: String,
+    instruction_path: String,
+    clock: Clock,
+    ledger: Ledger,
+    next_limit: Option<Limit>,
+    warnings: Vec<String>,
+    systems: Vec<(String, Vec<u8>)>,
+}
+
+/// Why a checkpoint cannot be taken up.
+#[derive(Debug, Error)]
+pub enum RestoreError {
+    /// The file is missing, damaged, or of another version.
+    #[error(transparent)]
+    Container(#[from] ContainerError),
+    /// The file is whole, but it is not the checkpoint of a simulation.
+    #[error("{0}")]
+    Content(String),
+}
+
+/// A checkpoint that has been read and checked.
+pub struct Checkpoint {
+    container: Container,
+    header: Header,
+}
+
+impl Checkpoint {
+    /// Reads a checkpoint.
+    pub fn read(path: &Path) -> Result<Self, RestoreError> {
+        let container = Container::read(path)?;
+        let section = container.section(STATE).ok_or_else(|| content("it holds no simulation state"))?;
+        let header = postcard::from_bytes(&section.bytes).map_err(|error| content(error.to_string()))?;
+        Ok(Self { container, header })
+    }
+
+    /// The scene that the run was started with.
+    pub fn source(&self) -> Source {
+        Source::new(self.header.scene_name.clone(), self.header.scene_text.clone())
+    }
+
+    /// Time and step of the checkpoint.
+    pub fn clock(&self) -> Clock {
+        self.header.clock
+    }
+
+    /// A warning where the run was made on another instruction path, so that the last bits will differ.
+    pub fn path_warning(&self) -> Option<String> {
+        let (then, now) = (self.header.instruction_path.as_str(), instruction_path());
+        (then != now).then(|| {
+            format!("the checkpoint was written on the instruction path {then}, this machine uses {now}: the last bits will differ")
+        })
+    }
+}
+
+fn content(message: impl Into<String>) -> RestoreError {
+    RestoreError::Content(message.into())
+}
+
+impl Simulation {
+    /// Writes a checkpoint, in one piece or not at all; `source` is the scene that the simulation was built from.
+    pub fn save(&self, path: &Path, source: &Source) -> Result<(), ContainerError> {
+        let header = Header {
+            scene_name: source.name.clone(),
+            scene_text: source.text.clone(),
+            instruction_path: instruction_path().to_owned(),
+            clock: self.clock,
+            ledger: self.ledger.clone(),
+            next_limit: self.next_limit.clone(),
+            warnings: self.warnings.clone(),
+            systems: self.schedule.save(),
+        };
+        let bytes = postcard::to_stdvec(&header).unwrap_or_default();
+        let columns = all_columns(self);
+        with_columns(&columns, None, &|last| {
+            let mut writer = ContainerWriter::new();
+            writer.section(STATE, "header", 1, &bytes)?;
+            let mut next = last;
+            while let Some(Held { column, bytes, before }) = next {
+                writer.section(&column.path, column.info.unit, column.info.element_size, bytes)?;
+                next = *before;
+            }
+            writer.write(path, Existing::Replace)
+        })
+    }
+
+    /// Takes up the state of a checkpoint of the same scene.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
+        let Header { clock, ledger, next_limit, warnings, systems, .. } = &checkpoint.header;
+        for phase in self.world.phases() {
+            let view = self.world.phase(phase);
+            for column in view.columns().iter() {
+                let name = format!("{}/{}", view.name(), column.name);
+                let section = checkpoint.container.section(&name);
+                let section = section.ok_or_else(|| content(format!("column `{name}` is missing")))?;
+                let mut fits = false;
+                view.write_bytes(column, &mut |bytes| {
+                    fits = bytes.len() == section.bytes.len();
+                    if fits {
+                        bytes.copy_from_slice(&section.bytes);
+                    }
+                });
+                if !fits {
+                    return Err(content(format!("column `{name}` holds another number of particles")));
+                }
+            }
+        }
+        for (label, state) in systems {
+            if !self.schedule.restore(label, state) {
+                return Err(content(format!("the state of system `{label}` does not fit")));
+            }
+        }
+        self.clock = *clock;
+        self.ledger = ledger.clone();
+        self.next_limit = next_limit.clone();
+        self.warnings = warnings.clone();
+        self.started = true;
+        Ok(())
+    }
+}
+
+/// A column of a phase.
+struct PhaseColumn<'a> {
+    /// `phase/column`.
+    path: String,
+    view: PhaseView<'a>,
+    info: &'a ColumnInfo,
+}
+
+/// A column that is borrowed, and those borrowed before it.
+struct Held<'h> {
+    column: &'h PhaseColumn<'h>,
+    bytes: &'h [u8],
+    before: Option<&'h Held<'h>>,
+}
+
+fn all_columns(sim: &Simulation) -> Vec<PhaseColumn<'_>> {
+    let views = sim.world.phases().map(|phase| sim.world.phase(phase));
+    let columns = views.flat_map(|view| view.columns().iter().map(move |info| (view, info)));
+    columns
+        .map(|(view, info)| PhaseColumn { path: format!("{}/{}", view.name(), info.name), view, info })
+        .collect()
+}
+
+/// Borrows all columns at once, and calls `f` with the last of the chain.
+fn with_columns<R>(
+    columns: &[PhaseColumn<'_>],
+    before: Option<&Held<'_>>,
+    f: &dyn Fn(Option<&Held<'_>>) -> R,
+) -> R {
+    let Some((column, rest)) = columns.split_first() else { return f(before) };
+    let mut result = None;
+    column.view.read_bytes(column.info, &mut |bytes| {
+        result = Some(with_columns(rest, Some(&Held { column, bytes, before }), f));
+    });
+    result.unwrap_or_else(|| f(before))
+}
+
+/// Hash of all columns and of the clock.
+pub(super) fn state_hash(sim: &Simulation) -> StateHash {
+    let mut hasher = StateHasher::new();
+    for column in all_columns(sim) {
+        column.view.read_bytes(column.info, &mut |bytes| {
+            hasher.section(&column.path, bytes);
+        });
+    }
+    hasher.section("clock", &[sim.clock.time.to_bits(), sim.clock.dt.to_bits(), sim.clock.step]);
+    hasher.finish()
+}

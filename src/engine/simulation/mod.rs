@@ -1,0 +1,219 @@
+//! A simulation: the world, the schedule, the clock, and the loop over steps.
+
+use thiserror::Error;
+
+use crate::record::StateHash;
+use crate::scene::{self, Scene};
+use crate::schedule::{Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits};
+use crate::world::World;
+
+mod checkpoint;
+
+pub use checkpoint::{Checkpoint, RestoreError};
+
+/// A simulation that is ready to run.
+pub struct Simulation {
+    world: World,
+    resources: Resources,
+    schedule: Schedule,
+    clock: Clock,
+    end: f64,
+    step_rule: scene::Step,
+    ledger: Ledger,
+    limits: TimeStepLimits,
+    next_limit: Option<Limit>,
+    stop: Option<String>,
+    warnings: Vec<String>,
+    references: Vec<String>,
+    started: bool,
+}
+
+/// Why a time step cannot be chosen.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A system failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// No system proposes a limit, and the scene asks for an adaptive step.
+    #[error("nothing limits the time step; give `time: (step: Fixed(dt))`")]
+    NoLimit,
+    /// The step has become too small to go on.
+    #[error("the time step has fallen to {dt:.3e} s, limited by {by}: the run would not end")]
+    StepTooSmall {
+        /// Proposed step, s.
+        dt: f64,
+        /// What limits it.
+        by: String,
+    },
+}
+
+/// Least step, as a share of the whole duration.
+const LEAST_STEP: f64 = 1e-12;
+
+impl Simulation {
+    pub(crate) fn new(
+        world: World,
+        resources: Resources,
+        schedule: Schedule,
+        scene: &Scene,
+        warnings: Vec<String>,
+        references: Vec<String>,
+    ) -> Self {
+        Self {
+            ledger: Ledger::new(world.bodies().len()),
+            world,
+            resources,
+            schedule,
+            clock: Clock::default(),
+            end: scene.time.end,
+            step_rule: scene.time.step.clone(),
+            limits: TimeStepLimits::default(),
+            next_limit: None,
+            stop: None,
+            warnings,
+            references,
+            started: false,
+        }
+    }
+
+    /// Columns and bodies.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// What systems share.
+    pub fn resources(&self) -> &Resources {
+        &self.resources
+    }
+
+    /// The systems in their order.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// Time and step.
+    pub fn clock(&self) -> Clock {
+        self.clock
+    }
+
+    /// Time at which the run ends, s.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Energy ledger.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// What limits the next step.
+    pub fn limit(&self) -> Option<&Limit> {
+        self.next_limit.as_ref()
+    }
+
+    /// What the user should look at.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Sources of the methods in use.
+    pub fn references(&self) -> &[String] {
+        &self.references
+    }
+
+    /// Why the run stops before its end time, if a system has asked for that.
+    pub fn stop_reason(&self) -> Option<&str> {
+        self.stop.as_deref()
+    }
+
+    /// Whether the end is reached or a system has asked to stop.
+    pub fn is_finished(&self) -> bool {
+        self.stop.is_some() || self.clock.time >= self.end
+    }
+
+    /// Evaluates the right-hand side at the start and records the initial state. [`Simulation::step`] does this by
+    /// itself; call it to know the first limit before any step is done.
+    pub fn start(&mut self) -> Result<(), RunError> {
+        if self.started {
+            return Ok(());
+        }
+        self.started = true;
+        // With dt = 0 the last kick only sets prescribed velocities and takes the energies.
+        self.run_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
+        self.ledger.open();
+        self.next_limit = self.limits.take();
+        self.check_fixed_step();
+        self.run_stages(|stage| stage == Stage::Record)?;
+        Ok(())
+    }
+
+    /// Does one step.
+    pub fn step(&mut self) -> Result<(), RunError> {
+        self.start()?;
+        self.clock.dt = self.choose_step()?;
+        self.run_stages(|stage| stage != Stage::Record)?;
+        self.clock.time = if self.ends_here() { self.end } else { self.clock.end() };
+        self.clock.step += 1;
+        self.ledger.close_step();
+        self.next_limit = self.limits.take();
+        self.run_stages(|stage| stage == Stage::Record)?;
+        Ok(())
+    }
+
+    /// Does steps until the end, or until `go_on` says no; it is asked before every step.
+    pub fn run(&mut self, mut go_on: impl FnMut(&Self) -> bool) -> Result<(), RunError> {
+        self.start()?;
+        while !self.is_finished() && go_on(self) {
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// Hash of all columns and of the clock: equal hashes, equal states, bit for bit.
+    pub fn state_hash(&self) -> StateHash {
+        checkpoint::state_hash(self)
+    }
+
+    fn run_stages(&mut self, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
+        let mut step = Step {
+            world: &self.world,
+            resources: &self.resources,
+            clock: self.clock,
+            ledger: &mut self.ledger,
+            limits: &mut self.limits,
+            stop: &mut self.stop,
+        };
+        self.schedule.run(&mut step, wanted)
+    }
+
+    fn ends_here(&self) -> bool {
+        self.clock.end() >= self.end * (1.0 - 1e-12)
+    }
+
+    fn choose_step(&self) -> Result<f64, RunError> {
+        let dt = match &self.step_rule {
+            scene::Step::Fixed(dt) => *dt,
+            scene::Step::Adaptive { factor } => {
+                let limit = self.next_limit.as_ref().ok_or(RunError::NoLimit)?;
+                if limit.dt.is_nan() || limit.dt <= LEAST_STEP * self.end {
+                    return Err(RunError::StepTooSmall { dt: limit.dt, by: limit.by.clone() });
+                }
+                factor * limit.dt
+            }
+        };
+        let rest = self.end - self.clock.time;
+        // A rest of a little more than one step is one step: no sliver remains at the end.
+        Ok(if dt >= rest * (1.0 - 1e-9) { rest } else { dt })
+    }
+
+    fn check_fixed_step(&mut self) {
+        if let (scene::Step::Fixed(dt), Some(limit)) = (&self.step_rule, &self.next_limit)
+            && *dt > limit.dt
+        {
+            self.warnings.push(format!(
+                "the fixed step of {dt:.3e} s is larger than the stable one, {:.3e} s, which {} limits",
+                limit.dt, limit.by
+            ));
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What a column is: one newtype per physical quantity, with name, symbol and unit.
+
+use bytemuck::Pod;
+use glam::{DMat3, DVec3};
+
+/// What one row of a column holds: a number, a vector, a tensor, seen as a fixed list of components.
+pub trait Value: Pod + Send + Sync + 'static {
+    /// Names of the components, in the order in which [`Value::component`] counts; `[""]` for a number.
+    const COMPONENTS: &'static [&'static str];
+
+    /// The component `k` as a number, `k < COMPONENTS.len()`.
+    fn component(&self, k: usize) -> f64;
+}
+
+impl Value for f64 {
+    const COMPONENTS: &'static [&'static str] = &[""];
+
+    fn component(&self, _: usize) -> f64 {
+        *self
+    }
+}
+
+impl Value for u32 {
+    const COMPONENTS: &'static [&'static str] = &[""];
+
+    fn component(&self, _: usize) -> f64 {
+        f64::from(*self)
+    }
+}
+
+impl Value for u64 {
+    const COMPONENTS: &'static [&'static str] = &[""];
+
+    fn component(&self, _: usize) -> f64 {
+        *self as f64
+    }
+}
+
+impl Value for DVec3 {
+    const COMPONENTS: &'static [&'static str] = &["x", "y", "z"];
+
+    fn component(&self, k: usize) -> f64 {
+        self[k]
+    }
+}
+
+impl Value for DMat3 {
+    const COMPONENTS: &'static [&'static str] = &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
+
+    fn component(&self, k: usize) -> f64 {
+        self.col(k % 3)[k / 3]
+    }
+}
+
+/// A component column: every particle of a phase that has the column holds one value of it.
+///
+/// Declare one with [`column!`](crate::column).
+pub trait Column: Pod + Send + Sync + 'static {
+    /// Type of one row.
+    type Value: Value;
+    /// Name used in scenes, recordings and errors, such as `velocity`.
+    const NAME: &'static str;
+    /// Symbol used in formulas, such as `v`.
+    const SYMBOL: &'static str;
+    /// Unit in SI, such as `m/s`; `1` for a pure number.
+    const UNIT: &'static str;
+
+    /// The value of the row.
+    fn value(&self) -> &Self::Value;
+}
+
+/// Declares a column: a transparent newtype with name, symbol and unit.
+///
+/// ```
+/// use meshless_engine::column;
+///
+/// column! {
+///     /// Temperature of the particle.
+///     pub struct Temperature(f64) = "temperature", "T", "K";
+/// }
+/// ```
+#[macro_export]
+macro_rules! column {
+    ($($(#[$meta:meta])* pub struct $name:ident($value:ty) = $label:literal, $symbol:literal, $unit:literal;)+) => {$(
+        $(#[$meta])*
+        ///
+        #[doc = concat!("Column `", $label, "`: symbol ", $symbol, ", unit ", $unit, ".")]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, $crate::bytemuck::Pod, $crate::bytemuck::Zeroable)]
+        #[bytemuck(crate = "::meshless_engine::bytemuck")]
+        #[repr(transparent)]
+        pub struct $name(pub $value);
+
+        impl $crate::world::Column for $name {
+            type Value = $value;
+            const NAME: &'static str = $label;
+            const SYMBOL: &'static str = $symbol;
+            const UNIT: &'static str = $unit;
+
+            fn value(&self) -> &$value {
+                &self.0
+            }
+        }
+    )+};
+}

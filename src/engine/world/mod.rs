@@ -1,0 +1,13 @@
+//! The world: particles as hecs entities, component columns with symbol and unit, bodies as row ranges.
+
+mod body;
+mod column;
+mod registry;
+mod standard;
+mod state;
+
+pub use body::{Body, BodyId, BodySet};
+pub use column::{Column, Value};
+pub use registry::{ColumnInfo, ColumnSet};
+pub use standard::*;
+pub use state::{MissingColumn, Phase, PhaseId, PhaseView, World};

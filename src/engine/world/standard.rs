@@ -1,0 +1,30 @@
+//! The columns that every solid phase shares.
+
+use glam::{DMat3, DVec3};
+
+use crate::column;
+
+column! {
+    /// Identity of the particle: it stays with the particle when rows are sorted.
+    pub struct ParticleId(u64) = "particle_id", "id", "1";
+    /// Position in the current configuration.
+    pub struct Position(DVec3) = "position", "x", "m";
+    /// Position in the reference configuration.
+    pub struct ReferencePosition(DVec3) = "reference_position", "X", "m";
+    /// Velocity; between the two kicks of a step it is the velocity at mid-step.
+    pub struct Velocity(DVec3) = "velocity", "v", "m/s";
+    /// Total force on the particle: internal, body and external forces.
+    pub struct Force(DVec3) = "force", "f", "N";
+    /// Mass of the particle; in two dimensions per metre of thickness.
+    pub struct Mass(f64) = "mass", "m", "kg";
+    /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
+    pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
+    /// Volume in the reference configuration; in two dimensions per metre of thickness.
+    pub struct ReferenceVolume(f64) = "reference_volume", "V0", "m^3";
+    /// Support radius in the reference configuration: pairs farther apart than the mean of two radii do not interact.
+    pub struct SupportRadius(f64) = "support_radius", "H", "m";
+    /// Deformation gradient, F = dx/dX.
+    pub struct DeformationGradient(DMat3) = "deformation_gradient", "F", "1";
+    /// First Piola-Kirchhoff stress, P = J sigma F^-T.
+    pub struct PiolaStress(DMat3) = "piola_stress", "P", "Pa";
+}

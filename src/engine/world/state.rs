@@ -1,0 +1,194 @@
+//! The particles: one hecs archetype per phase, bodies as row ranges in it.
+
+use std::ops::Range;
+
+use hecs::{Archetype, ArchetypeColumn, ArchetypeColumnMut, ColumnBatchType};
+use thiserror::Error;
+
+use super::body::{Body, BodyId};
+use super::column::Column;
+use super::registry::{ColumnInfo, ColumnSet};
+use crate::scene::Dimension;
+
+/// Index of a phase: the particles of one formulation, which share their columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PhaseId(pub usize);
+
+/// The particles of one formulation.
+#[derive(Clone, Debug)]
+pub struct Phase {
+    /// Name of the formulation.
+    pub name: &'static str,
+    /// Its columns.
+    pub columns: ColumnSet,
+    /// Number of particles.
+    pub len: usize,
+    archetype: usize,
+}
+
+/// A column was asked for that the phase does not have.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("the phase `{phase}` has no column `{column}`; a plugin adds it with `SimBuilder::add_column`")]
+pub struct MissingColumn {
+    /// Name of the column.
+    pub column: &'static str,
+    /// Name of the phase.
+    pub phase: &'static str,
+}
+
+/// All particles of a simulation; the columns are the only particle state.
+pub struct World {
+    ecs: hecs::World,
+    phases: Vec<Phase>,
+    bodies: Vec<Body>,
+    dimension: Dimension,
+}
+
+impl World {
+    /// A world without particles.
+    pub fn new(dimension: Dimension) -> Self {
+        Self { ecs: hecs::World::new(), phases: Vec::new(), bodies: Vec::new(), dimension }
+    }
+
+    /// Two: plane strain in x-y; three.
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Spawns the `len` particles of a phase with all columns zero.
+    pub fn spawn_phase(&mut self, name: &'static str, columns: ColumnSet, len: usize) -> PhaseId {
+        let mut batch = ColumnBatchType::new();
+        columns.iter().for_each(|column| column.declare(&mut batch));
+        let mut builder = batch.into_batch(u32::try_from(len).unwrap_or(u32::MAX));
+        columns.iter().for_each(|column| column.zero(&mut builder));
+        let before = self.ecs.archetypes().len();
+        if let Ok(batch) = builder.build() {
+            self.ecs.spawn_column_batch(batch);
+        }
+        let archetype = if self.ecs.archetypes().len() > before { before } else { before - 1 };
+        self.phases.push(Phase { name, columns, len, archetype });
+        PhaseId(self.phases.len() - 1)
+    }
+
+    /// Adds a body; its rows must lie in its phase.
+    pub fn add_body(&mut self, body: Body) -> BodyId {
+        self.bodies.push(body);
+        BodyId(self.bodies.len() - 1)
+    }
+
+    /// The bodies in scene order.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// The body with that id.
+    pub fn body(&self, id: BodyId) -> &Body {
+        &self.bodies[id.0]
+    }
+
+    /// The bodies of a phase with their ids, in scene order.
+    pub fn bodies_of(&self, phase: PhaseId) -> impl Iterator<Item = (BodyId, &Body)> {
+        self.bodies
+            .iter()
+            .enumerate()
+            .filter(move |(_, body)| body.phase == phase)
+            .map(|(k, b)| (BodyId(k), b))
+    }
+
+    /// Ids of all phases.
+    pub fn phases(&self) -> impl Iterator<Item = PhaseId> + use<> {
+        (0..self.phases.len()).map(PhaseId)
+    }
+
+    /// The phase of the formulation of that name.
+    pub fn phase_named(&self, name: &str) -> Option<PhaseId> {
+        self.phases.iter().position(|phase| phase.name == name).map(PhaseId)
+    }
+
+    /// A view of the columns of a phase.
+    pub fn phase(&self, id: PhaseId) -> PhaseView<'_> {
+        let phase = &self.phases[id.0];
+        let archetype = self.ecs.archetypes().nth(phase.archetype).expect("archetypes are never removed");
+        PhaseView { phase, archetype }
+    }
+
+    /// The columns of a body's phase and the body's rows.
+    pub fn body_view(&self, id: BodyId) -> (PhaseView<'_>, Range<usize>) {
+        let body = self.body(id);
+        (self.phase(body.phase), body.rows.clone())
+    }
+
+    /// Number of particles of all phases.
+    pub fn len(&self) -> usize {
+        self.phases.iter().map(|phase| phase.len).sum()
+    }
+
+    /// Whether there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bytes held by the columns of all phases.
+    pub fn bytes(&self) -> usize {
+        self.phases.iter().map(|phase| phase.len * phase.columns.bytes_per_row()).sum()
+    }
+}
+
+/// The columns of one phase; every column is borrowed on its own, as a slice.
+#[derive(Clone, Copy)]
+pub struct PhaseView<'a> {
+    phase: &'a Phase,
+    archetype: &'a Archetype,
+}
+
+impl<'a> PhaseView<'a> {
+    /// Name of the formulation.
+    pub fn name(&self) -> &'static str {
+        self.phase.name
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.phase.len
+    }
+
+    /// Whether the phase has no particle.
+    pub fn is_empty(&self) -> bool {
+        self.phase.len == 0
+    }
+
+    /// Its columns.
+    pub fn columns(&self) -> &'a ColumnSet {
+        &self.phase.columns
+    }
+
+    /// Whether it has column `T`.
+    pub fn has<T: Column>(&self) -> bool {
+        self.archetype.has::<T>()
+    }
+
+    /// Column `T` for reading. Panics if a system holds it for writing: the schedule excludes that.
+    pub fn read<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        self.archetype.get::<&T>().ok_or(MissingColumn { column: T::NAME, phase: self.phase.name })
+    }
+
+    /// Column `T` for writing. Panics if a system holds it already: the schedule excludes that.
+    pub fn write<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
+        self.archetype.get::<&mut T>().ok_or(MissingColumn { column: T::NAME, phase: self.phase.name })
+    }
+
+    /// Calls `f` with the bytes of a column.
+    pub fn read_bytes(&self, column: &ColumnInfo, f: &mut dyn FnMut(&[u8])) {
+        column.read(self.archetype, f);
+    }
+
+    /// Calls `f` with the writable bytes of a column.
+    pub fn write_bytes(&self, column: &ColumnInfo, f: &mut dyn FnMut(&mut [u8])) {
+        column.write(self.archetype, f);
+    }
+
+    /// Appends component `k` of the rows of a column to `out`.
+    pub fn component(&self, column: &ColumnInfo, rows: Range<usize>, k: usize, out: &mut Vec<f64>) {
+        column.component(self.archetype, rows, k, out);
+    }
+}
