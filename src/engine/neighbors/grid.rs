@@ -245,3 +245,25 @@ fn fold_into_buckets(axes: &mut [Axis; 3], particles: usize) {
 fn greatest_common_divisor(a: i64, b: i64) -> i64 {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, fold_into_buckets};
+
+    #[test]
+    fn folded_diagonals_meet_every_bucket() {
+        for particles in (0..100_000).step_by(37) {
+            let mut axes = [Axis { cells: 1 << 40, ..Axis::default() }; 3];
+            fold_into_buckets(&mut axes, particles);
+            let buckets = axes.map(|axis| axis.buckets);
+            let product: i64 = buckets.iter().product();
+            // The diagonal returns to its first bucket after the least common multiple: no number up to the largest
+            // divides two of them.
+            for divisor in 2..=buckets[0].max(buckets[1]).max(buckets[2]) {
+                assert!(buckets.iter().filter(|&b| b % divisor == 0).count() <= 1, "{buckets:?}");
+            }
+            let room = 2 * particles as i64 + 64;
+            assert!(product <= room && product > room / 3, "{buckets:?} for {particles}");
+        }
+    }
+}
