@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::builder::SimBuilder;
 use super::memory;
+use super::options::BuildOptions;
 use super::overlap;
 use super::plan::BodyPlan;
 use super::registry::{FormulationEntry, Kind, Registry};
@@ -16,17 +17,42 @@ use crate::shapes;
 use crate::simulation::Simulation;
 use crate::world::{BodyId, BodySet, ColumnSet, PhaseId};
 
-/// Makes a simulation out of a scene. Nothing is written, and nothing is kept where something is wrong.
+/// Makes a simulation that writes nothing out of a scene: [`build_with`] and no options.
 ///
 /// # Errors
 /// All that is wrong with the scene, each with its place in the file.
 pub fn build(scene: &Scene, source: &Source, registry: &Registry) -> Result<Simulation, SceneError> {
-    build_in(scene, source, registry).map_err(|problems| SceneError { source: source.clone(), problems })
+    build_with(scene, source, registry, &BuildOptions::default())
+}
+
+/// Makes a simulation out of a scene. Nothing is kept where something is wrong.
+///
+/// # Errors
+/// All that is wrong with the scene, each with its place in the file.
+pub fn build_with(
+    scene: &Scene,
+    source: &Source,
+    registry: &Registry,
+    options: &BuildOptions,
+) -> Result<Simulation, SceneError> {
+    build_in(scene, source, registry, options)
+        .map_err(|problems| SceneError { source: source.clone(), problems })
 }
 
 type Parsed<'r> = (&'r FormulationEntry, Box<dyn Any>);
 
-fn build_in(scene: &Scene, source: &Source, registry: &Registry) -> Result<Simulation, Vec<Problem>> {
+fn build_in(
+    scene: &Scene,
+    source: &Source,
+    registry: &Registry,
+    options: &BuildOptions,
+) -> Result<Simulation, Vec<Problem>> {
+    if let Some(output) = &options.output {
+        std::fs::create_dir_all(&output.folder).map_err(|error| {
+            let message = format!("the output folder `{}` cannot be made: {error}", output.folder.display());
+            vec![Problem::new(message).help("choose a folder in which you may write")]
+        })?;
+    }
     let (bodies, phases, parsed) = place_bodies(scene, source, registry)?;
     let overlaps = overlap::problems(&bodies);
     if !overlaps.is_empty() {

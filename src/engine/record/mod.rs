@@ -1,15 +1,19 @@
 //! What a run writes, and how it is read back: the file formats.
 //!
-//! The files know nothing of the world or the scene: slices go in, files come out.
+//! The files know nothing of the world or the scene: slices go in, files come out. A [`Recorder`] gets the same slices.
 
 pub mod atomic;
 pub mod container;
 pub mod hash;
+pub mod recorder;
 pub mod series;
 pub mod vtk;
 
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
 pub use hash::{StateHash, StateHasher};
+pub use recorder::{
+    BodyFrame, BodyInfo, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
+};
 pub use series::{Column, Series, SeriesError, SeriesWriter, read_series};
 pub use vtk::{PointArray, PointValues, PvdFrame, PvdWriter, VtkError, write_vtu};

@@ -1,0 +1,32 @@
+//! What is asked of a simulation beside its scene.
+
+use std::path::PathBuf;
+
+use crate::record::Existing;
+
+/// What is asked of a simulation beside its scene. By default it writes nothing.
+#[derive(Clone, Debug, Default)]
+pub struct BuildOptions {
+    /// Where the run writes; without it nothing touches the disk.
+    pub output: Option<OutputOptions>,
+}
+
+impl BuildOptions {
+    /// A run that writes into a new folder, or one that holds nothing of what it writes.
+    pub fn into_folder(folder: impl Into<PathBuf>) -> Self {
+        let output = OutputOptions { folder: folder.into(), existing: Existing::Refuse, resume: false };
+        Self { output: Some(output) }
+    }
+}
+
+/// Where a run writes.
+#[derive(Clone, Debug)]
+pub struct OutputOptions {
+    /// The folder; it is made if it is not there.
+    pub folder: PathBuf,
+    /// What happens to files of an earlier run.
+    pub existing: Existing,
+    /// The run will go on from a checkpoint: its files are continued once
+    /// [`Simulation::restore`](crate::simulation::Simulation::restore) has said where.
+    pub resume: bool,
+}
