@@ -1,1 +1,147 @@
-//! local_damping
+//! Damping of the motion of each particle by itself: v decays, whatever the neighbours do.
+//!
+//! With a constant rate, or as dynamic relaxation: the rate follows the slowest oscillation that is left, until the bodies
+//! are at rest.
+
+mod decay;
+mod relaxation;
+mod stiffness;
+#[cfg(test)]
+mod tests;
+
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::schedule::{Mode as Access, Stage, System};
+use meshless_engine::world::{Column, Force, Mass, Mobility, Velocity};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use decay::{Decay, Window};
+use relaxation::Relaxation;
+use stiffness::PreviousForce;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<LocalDamping>();
+}
+
+/// Takes energy out of the motion of every particle that is free to move.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LocalDamping {
+    /// Rate \[1/s\] at which velocities decay, v' = -rate v; only in mode `Constant`, which needs it. An oscillation of
+    /// period T is critically damped at 4 pi / T.
+    pub rate: Option<f64>,
+    /// Constant rate, or relaxation until rest.
+    pub mode: Mode,
+    /// Time \[s\] from which it acts. Default: the start.
+    pub from: Option<f64>,
+    /// Time \[s\] until which it acts, so that it is off before anything dynamic is recorded. Default: the end.
+    pub until: Option<f64>,
+}
+
+/// How the rate is found.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Mode {
+    /// The rate that is given.
+    #[default]
+    Constant,
+    /// Dynamic relaxation to the static solution. The rate is twice the frequency of the motion that is left, so that the
+    /// slowest oscillation is critically damped; the frequency is the Rayleigh quotient of the last step.
+    Relaxation {
+        /// The bodies are at rest when kinetic energy and the energy of the forces out of balance together are below
+        /// tolerance^2 times the elastic energy: the displacement is then within about `tolerance`.
+        #[serde(default = "default_tolerance")]
+        tolerance: f64,
+        /// Time \[s\] before which nothing counts as rest: the end of a ramp of the load.
+        #[serde(default)]
+        after: f64,
+        /// Whether the run ends at rest.
+        #[serde(default = "default_stop")]
+        stop: bool,
+    },
+}
+
+fn default_tolerance() -> f64 {
+    1e-6
+}
+
+fn default_stop() -> bool {
+    true
+}
+
+impl Plugin for LocalDamping {
+    const NAME: &'static str = "local_damping";
+    const REFERENCE: &'static str =
+        "dynamic relaxation: P. Underwood, in: Computational Methods for Transient Analysis (1983) 245-265";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let window = self.window()?;
+        let bodies = sim.scope().clone();
+        let phases = sim.phases_of(&bodies);
+        let system = match self.mode {
+            Mode::Constant => {
+                let rate = self.constant_rate()?;
+                System::new(Stage::PostStep, Self::NAME, Decay { bodies, window, rate })
+            }
+            Mode::Relaxation { tolerance, after, stop } => {
+                self.check_relaxation(tolerance, after)?;
+                sim.add_column::<PreviousForce>();
+                let relaxation = Relaxation::new(bodies, window, tolerance, after, stop);
+                System::new(Stage::PostStep, Self::NAME, relaxation)
+                    .reads::<Force>()
+                    .touches(PreviousForce::NAME, Access::Adds)
+            }
+        };
+        // Dampings of different bodies do not touch each other's rows: `Adds` says that their order does not matter.
+        let system = system.reads::<Mass>().reads::<Mobility>().touches(Velocity::NAME, Access::Adds);
+        sim.add_system(system.on_phases(phases));
+        Ok(())
+    }
+}
+
+impl LocalDamping {
+    fn window(&self) -> Result<Window, SetupError> {
+        let window = Window { from: self.from.unwrap_or(0.0), until: self.until.unwrap_or(f64::INFINITY) };
+        if window.from < window.until {
+            return Ok(window);
+        }
+        Err(SetupError::parameter(
+            if self.until.is_some() { "until" } else { "from" },
+            format!("the damping acts from {} s until {} s, which is never", window.from, window.until),
+            "`until` must be later than `from`",
+        ))
+    }
+
+    fn constant_rate(&self) -> Result<f64, SetupError> {
+        match self.rate {
+            Some(rate) if rate >= 0.0 && rate.is_finite() => Ok(rate),
+            Some(rate) => Err(SetupError::parameter(
+                "rate",
+                format!("the rate is {rate} 1/s"),
+                "give a number not below zero",
+            )),
+            None => Err(SetupError::parameter(
+                "rate",
+                "the damping has no rate",
+                "give a rate in 1/s, such as `rate: 100.0`, or `mode: Relaxation()`",
+            )),
+        }
+    }
+
+    fn check_relaxation(&self, tolerance: f64, after: f64) -> Result<(), SetupError> {
+        if self.rate.is_some() {
+            let help = "leave `rate` out, or use `mode: Constant`";
+            return Err(SetupError::parameter("rate", "a relaxation finds its rate itself", help));
+        }
+        if !(1e-12..=0.1).contains(&tolerance) {
+            let message = format!("the tolerance is {tolerance}");
+            return Err(SetupError::parameter("mode.tolerance", message, "give a number from 1e-12 to 0.1"));
+        }
+        if !(after >= 0.0 && after.is_finite()) {
+            let message = format!("`after` is {after} s");
+            return Err(SetupError::parameter("mode.after", message, "give a time not before the start"));
+        }
+        Ok(())
+    }
+}

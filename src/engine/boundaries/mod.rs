@@ -1,12 +1,41 @@
 //! Conditions: what holds, moves and loads bodies. A condition is one file and one line of [`register`].
 
+mod body_force;
+mod displacement;
+mod face_area;
+mod field;
 mod fix;
+mod force;
+mod initial_velocity;
+mod load;
+mod part;
+mod prescribed;
+mod pressure;
+#[cfg(test)]
+mod tests;
+mod traction;
+mod velocity;
 
+pub use body_force::BodyForce;
+pub use displacement::Displacement;
 pub use fix::Fix;
+pub use force::Force;
+pub use initial_velocity::InitialVelocity;
+pub use pressure::Pressure;
+pub use traction::Traction;
+pub use velocity::Velocity;
 
 use crate::plugin::Registry;
 
 /// Registers all conditions of the engine.
 pub fn register(registry: &mut Registry) {
-    registry.condition::<Fix>();
+    registry
+        .condition::<Fix>()
+        .condition::<Velocity>()
+        .condition::<Displacement>()
+        .condition::<InitialVelocity>()
+        .condition::<Traction>()
+        .condition::<Pressure>()
+        .condition::<Force>()
+        .condition::<BodyForce>();
 }

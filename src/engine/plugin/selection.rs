@@ -41,6 +41,10 @@ pub(super) fn resolve(
         let (message, helps) = unknown("body", name, &known);
         return Err(SetupError::parameter(path("body"), message, helps.join("; ")));
     }
+    if dimension == Dimension::Two && matches!(select.face, Some(Face::MinZ | Face::MaxZ)) {
+        let help = "the faces are MinX, MaxX, MinY and MaxY";
+        return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
+    }
     let within = match &select.within {
         Some(shape) => Some(shape.region(dimension, &path("within")).map_err(|error| {
             SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")

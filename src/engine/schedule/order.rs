@@ -89,16 +89,24 @@ impl Schedule {
         self.systems.iter().zip(&self.times).map(|(s, &time)| (s.label.as_str(), s.stage, time))
     }
 
-    /// Label and state of every system that has state.
+    /// Key and state of every system that has state; the key is the label, with a number where several have it.
     pub fn save(&self) -> Vec<(String, Vec<u8>)> {
-        let states = self.systems.iter().map(|system| (system.label.clone(), system.work.save()));
+        let states = (0..self.systems.len()).map(|k| (self.key(k), self.systems[k].work.save()));
         states.filter(|(_, state)| !state.is_empty()).collect()
     }
 
     /// Gives a system the state it saved. Returns `false` if there is no such system or it refuses the state.
-    pub fn restore(&mut self, label: &str, state: &[u8]) -> bool {
-        let system = self.systems.iter_mut().find(|system| system.label == label);
-        system.is_some_and(|system| system.work.restore(state))
+    pub fn restore(&mut self, key: &str, state: &[u8]) -> bool {
+        let found = (0..self.systems.len()).find(|&k| self.key(k) == key);
+        found.is_some_and(|k| self.systems[k].work.restore(state))
+    }
+
+    fn key(&self, k: usize) -> String {
+        let label = &self.systems[k].label;
+        match self.systems[..k].iter().filter(|system| system.label == *label).count() {
+            0 => label.clone(),
+            before => format!("{label} {}", before + 1),
+        }
     }
 
     /// The order in words: a line per stage, a line per system with the columns it touches.

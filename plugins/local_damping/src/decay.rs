@@ -1,0 +1,86 @@
+//! The decay itself: v' = -rate v along the axes that are free, with the lost energy booked.
+
+use meshless_engine::parallel::{BlockSum, for_each_block};
+use meshless_engine::schedule::{AccountKind, Clock, Run, Step, StepError};
+use meshless_engine::world::{BodyId, BodySet, Mass, Mobility, Velocity};
+
+/// Account of the energy ledger that holds what damping has taken.
+const ACCOUNT: &str = "local_damping";
+
+/// When a damping acts.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// Time from which it acts, s.
+    pub from: f64,
+    /// Time until which it acts, s.
+    pub until: f64,
+}
+
+impl Window {
+    /// The part of the step that lies in the window, s.
+    pub fn share(&self, clock: &Clock) -> f64 {
+        (clock.end().min(self.until) - clock.time.max(self.from)).max(0.0)
+    }
+}
+
+/// Energy that a block has lost, J.
+#[derive(Clone, Copy, Default)]
+struct Loss(f64);
+
+impl BlockSum for Loss {
+    fn add(&mut self, next: &Self) {
+        self.0 += next.0;
+    }
+}
+
+/// Multiplies the velocity of a body by `factor` along its free axes, and books the loss.
+pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepError> {
+    let (view, rows) = step.world.body_view(id);
+    let mass = view.read::<Mass>()?;
+    let mobility = view.read::<Mobility>()?;
+    let mut velocity = view.write::<Velocity>()?;
+    let slices = (&mut velocity[rows.clone()], &mass[rows.clone()], &mobility[rows]);
+    type Rows<'a> = (&'a mut [Velocity], &'a [Mass], &'a [Mobility]);
+    let loss = for_each_block(slices, &mut Vec::new(), &|_, (velocity, mass, mobility): Rows<'_>| {
+        let mut twice = 0.0;
+        for ((v, m), mobility) in velocity.iter_mut().zip(mass).zip(mobility) {
+            let before = v.0.length_squared();
+            for axis in 0..3 {
+                if mobility.0[axis] > 0.0 {
+                    v.0[axis] *= factor;
+                }
+            }
+            twice += m.0 * (before - v.0.length_squared());
+        }
+        Loss(0.5 * twice)
+    });
+    let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
+    let damped = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+    step.ledger.add(kinetic, id, -loss.0);
+    step.ledger.add(damped, id, loss.0);
+    Ok(())
+}
+
+/// Decay at a constant rate.
+pub struct Decay {
+    /// Bodies.
+    pub bodies: BodySet,
+    /// When it acts.
+    pub window: Window,
+    /// Rate, 1/s.
+    pub rate: f64,
+}
+
+impl Run for Decay {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let time = self.window.share(&step.clock);
+        if time > 0.0 && self.rate > 0.0 {
+            // Exact for any rate: no limit of the time step follows from the damping.
+            let factor = (-self.rate * time).exp();
+            for body in self.bodies.iter() {
+                damp(step, body, factor)?;
+            }
+        }
+        Ok(())
+    }
+}

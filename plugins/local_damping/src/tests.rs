@@ -1,0 +1,158 @@
+//! Decay against the closed form, relaxation against an independent way to the static solution.
+
+use meshless_engine::glam::DVec3;
+use meshless_engine::plugin::{Registry, build};
+use meshless_engine::scene::{Source, parse};
+use meshless_engine::simulation::{Checkpoint, Simulation};
+use meshless_engine::world::{BodyId, Position, ReferencePosition, Velocity};
+
+fn build_text(text: &str) -> Result<Simulation, String> {
+    let registry = Registry::standard().with(hourglass_control::register).with(crate::register);
+    parse(Source::new("test.ron", text))
+        .and_then(|(scene, source)| build(&scene, &source, &registry))
+        .map_err(|error| error.to_string())
+}
+
+fn simulation(text: &str) -> Simulation {
+    build_text(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn account(sim: &Simulation, name: &str) -> f64 {
+    let accounts = sim.ledger().accounts();
+    accounts.iter().find(|account| account.name == name).map_or(0.0, |account| account.total())
+}
+
+/// Young's modulus, Pa, density, kg/m3, and size, m, of the cantilever.
+const YOUNG: f64 = 1e6;
+const DENSITY: f64 = 1000.0;
+const LENGTH: f64 = 1.0;
+const HEIGHT: f64 = 0.125;
+
+/// A cantilever in plane strain, four particles across, with a shear force at its end.
+fn cantilever(force: &str, damping: &str, end: f64) -> String {
+    format!(
+        "Scene(dimension: Two,
+        materials: {{\"rubber\": StVenantKirchhoff(density: {DENSITY:?}, young: {YOUNG:?}, poisson: 0.3)}},
+        bodies: [Body(name: \"beam\", material: \"rubber\", shape: Box(min: (0.0, 0.0), max: ({LENGTH:?}, {HEIGHT:?})),
+            spacing: 0.03125, formulation: TotalLagrangian, plugins: [hourglass_control()])],
+        conditions: [Fix(on: Select(face: MinX)), Force(on: Select(face: MaxX), value: (0.0, {force}))],
+        plugins: [{damping}], time: (end: {end:?}))"
+    )
+}
+
+/// First circular frequency of the cantilever, 1/s (Euler-Bernoulli).
+fn first_frequency() -> f64 {
+    let plane_modulus = YOUNG / (1.0 - 0.3 * 0.3);
+    3.516 / LENGTH.powi(2) * (plane_modulus * HEIGHT.powi(2) / (12.0 * DENSITY)).sqrt()
+}
+
+fn tip(sim: &Simulation) -> f64 {
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let x = view.read::<Position>().expect("positions");
+    let reference = view.read::<ReferencePosition>().expect("positions");
+    let loaded = rows.filter(|&row| reference[row].0.x > LENGTH - 0.03125);
+    let moved: Vec<f64> = loaded.map(|row| x[row].0.y - reference[row].0.y).collect();
+    moved.iter().sum::<f64>() / moved.len() as f64
+}
+
+#[test]
+fn velocity_decays_at_the_rate_within_the_window_and_every_joule_is_booked() {
+    let text = "Scene(dimension: Two,
+        materials: {\"rubber\": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)},
+        bodies: [Body(name: \"block\", material: \"rubber\", shape: Box(min: (0.0, 0.0), max: (1.0, 1.0)),
+            spacing: 0.125, formulation: TotalLagrangian, velocity: (2.0, 1.0),
+            plugins: [local_damping(rate: 30.0, from: 0.01005, until: 0.05005)])],
+        time: (end: 0.1, step: Fixed(1.0e-4)))";
+    let mut sim = simulation(text);
+    sim.run(|_| true).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let wanted = DVec3::new(2.0, 1.0, 0.0) * (-30.0_f64 * 0.04).exp();
+    for v in &view.read::<Velocity>().expect("velocities")[rows] {
+        assert!((v.0 - wanted).length() < 1e-12, "{}", v.0);
+    }
+    let lost = 0.5 * 1000.0 * (5.0 - wanted.length_squared());
+    assert!((account(&sim, "local_damping") - lost).abs() < 1e-9 * lost);
+    assert!(sim.ledger().relative_error().abs() < 1e-12);
+}
+
+#[test]
+fn prescribed_motion_is_not_damped() {
+    let text = "Scene(dimension: Two,
+        materials: {\"rubber\": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)},
+        bodies: [Body(name: \"block\", material: \"rubber\", shape: Box(min: (0.0, 0.0), max: (1.0, 1.0)),
+            spacing: 0.125, formulation: TotalLagrangian, velocity: (0.0, 1.0))],
+        conditions: [Velocity(on: Select(), value: (2.0, None))],
+        plugins: [local_damping(rate: 30.0)], time: (end: 0.1, step: Fixed(1.0e-4)))";
+    let mut sim = simulation(text);
+    sim.run(|_| true).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    for v in &view.read::<Velocity>().expect("velocities")[rows] {
+        assert!((v.0 - DVec3::new(2.0, (-3.0_f64).exp(), 0.0)).length() < 1e-12, "{}", v.0);
+    }
+}
+
+/// The tip deflection under 100 N/m by a constant rate, long after the motion has decayed.
+fn static_tip() -> f64 {
+    let omega = first_frequency();
+    let text = cantilever("-100.0", &format!("local_damping(rate: {:?})", 1.9 * omega), 30.0 / omega);
+    let mut sim = simulation(&text);
+    sim.run(|_| true).expect("a run");
+    assert!(account(&sim, "kinetic") < 1e-16 * account(&sim, "strain"));
+    tip(&sim)
+}
+
+#[test]
+fn relaxation_finds_the_static_solution_of_a_cantilever_in_few_periods() {
+    let wanted = static_tip();
+    let period = 2.0 * std::f64::consts::PI / first_frequency();
+    let ramp = 1.5 * period;
+    for (force, damping) in [
+        ("-100.0".to_owned(), "local_damping(mode: Relaxation())".to_owned()),
+        (format!("\"-100*smoothstep(t/{ramp})\""), format!("local_damping(mode: Relaxation(after: {ramp}))")),
+    ] {
+        let mut sim = simulation(&cantilever(&force, &damping, 20.0 * period));
+        sim.run(|_| true).expect("a run");
+        let periods = sim.clock().time / period;
+        let error = tip(&sim) / wanted - 1.0;
+        println!("{damping}: {periods:.2} periods, {} steps, error {error:.1e}", sim.clock().step);
+        assert!(sim.stop_reason().is_some_and(|reason| reason.contains("at rest")), "{periods} periods");
+        assert!(error.abs() < 1e-5, "{error:e}");
+        assert!(periods < 5.0, "{periods}");
+        let balance = sim.ledger().relative_error();
+        assert!(balance.abs() < 1e-3, "{balance:e}");
+    }
+}
+
+#[test]
+fn a_restart_amid_a_relaxation_continues_bit_for_bit() {
+    let text = cantilever("-100.0", "local_damping(mode: Relaxation())", 10.0);
+    let (mut whole, mut first, mut second) = (simulation(&text), simulation(&text), simulation(&text));
+    for _ in 0..101 {
+        first.step().expect("a step");
+    }
+    let path = std::env::temp_dir().join(format!("local_damping_restart_{}", std::process::id()));
+    first.save(&path, &Source::new("test.ron", text)).expect("a checkpoint");
+    second.restore(&Checkpoint::read(&path).expect("a checkpoint")).expect("a restart");
+    std::fs::remove_file(&path).expect("a checkpoint");
+    whole.run(|_| true).expect("a run");
+    second.run(|_| true).expect("a run");
+    assert_eq!(whole.state_hash(), second.state_hash());
+    assert_eq!(whole.stop_reason(), second.stop_reason());
+}
+
+#[test]
+fn wrong_parameters_are_refused_at_their_place() {
+    for (damping, wanted) in [
+        ("local_damping(rate: -1.0)", "the rate is -1 1/s"),
+        ("local_damping()", "the damping has no rate"),
+        ("local_damping(rate: 1.0, mode: Relaxation())", "a relaxation finds its rate itself"),
+        ("local_damping(rate: 1.0, from: 2.0, until: 1.0)", "which is never"),
+        ("local_damping(mode: Relaxation(tolerance: 0.0))", "the tolerance is 0"),
+        ("local_damping(mode: Relaxation(after: -1.0))", "`after` is -1 s"),
+    ] {
+        match build_text(&cantilever("1.0", damping, 1.0)) {
+            Ok(_) => panic!("{damping} is accepted"),
+            Err(error) => assert!(error.contains(wanted), "{damping}:\n{error}"),
+        }
+    }
+}

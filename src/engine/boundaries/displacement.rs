@@ -1,0 +1,51 @@
+//! Particles that are moved to given places.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::Field;
+use super::prescribed::{self, Kind};
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select};
+
+/// Moves particles to their reference position plus a displacement, a function of that position and of time: every step
+/// ends exactly there.
+///
+/// The displacement must start from zero. To 2 mm within 10 ms, at rest at both ends:
+/// `Displacement(on: Select(face: MaxX), value: ("2e-3*smoothstep(t/0.01)", 0.0))`; this also holds y.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Displacement {
+    /// Particles.
+    pub on: Select,
+    /// Displacement per axis \[m\]; `None` leaves the motion along an axis free.
+    pub value: PerAxis<Expression>,
+}
+
+/// Largest displacement at the start, as a share of the spacing.
+const ROUNDING: f64 = 1e-9;
+
+impl Plugin for Displacement {
+    const NAME: &'static str = "Displacement";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let field = Field::new(self.value, sim)?;
+        for part in super::part::parts_of(&selection, sim) {
+            let body = sim.body(part.body);
+            let jump = part.points.iter().map(|&point| field.at(point, 0.0));
+            if let Some(jump) = jump.into_iter().find(|jump| {
+                let allowed = ROUNDING * body.spacing;
+                jump.to_array().iter().any(|component| component.is_nan() || component.abs() > allowed)
+            }) {
+                return Err(SetupError::parameter(
+                    "value",
+                    format!("the displacement at t = 0 is {jump} m, not zero, on body `{}`", body.name),
+                    "let it grow from zero, such as `\"2e-3*smoothstep(t/0.01)\"`",
+                ));
+            }
+        }
+        prescribed::prescribe(Self::NAME, Kind::Displacement, field, &selection, sim)
+    }
+}

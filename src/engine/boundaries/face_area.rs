@@ -1,0 +1,60 @@
+//! The area that a load acts on, from the particles that carry it.
+
+use glam::DVec3;
+
+use crate::plugin::{BodyPlan, SetupError};
+use crate::scene::{Face, Select};
+
+/// Axis and sign of the outward normal of a face.
+pub(super) fn outward(face: Face) -> (usize, f64) {
+    match face {
+        Face::MinX => (0, -1.0),
+        Face::MaxX => (0, 1.0),
+        Face::MinY => (1, -1.0),
+        Face::MaxY => (1, 1.0),
+        Face::MinZ => (2, -1.0),
+        Face::MaxZ => (2, 1.0),
+    }
+}
+
+/// Area that the selected rows of a body stand for, m2 (m in two dimensions): their volume over the thickness of the
+/// layer. The thickness of a flat face is twice the mean distance of its particles from the face, which is the distance of
+/// the layers for any lattice; without a face it is the spacing.
+pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64 {
+    let sites = || rows.iter().map(|&row| &body.sites[row as usize - body.rows.start]);
+    let volume: f64 = sites().map(|site| site.volume).sum();
+    let thickness = match select.face.map(outward) {
+        Some((axis, sign)) => {
+            let plane = if sign > 0.0 { body.bounds.max[axis] } else { body.bounds.min[axis] };
+            let depth: f64 = sites().map(|site| site.volume * (site.position[axis] - plane).abs()).sum();
+            2.0 * depth / volume
+        }
+        None => body.spacing,
+    };
+    if thickness > 0.0 { volume / thickness } else { volume / body.spacing }
+}
+
+/// The outward normal of the face that a load needs.
+pub(super) fn normal_of(select: &Select) -> Result<DVec3, SetupError> {
+    let Some(face) = select.face else {
+        return Err(SetupError::parameter(
+            "on",
+            "a pressure acts on a face, and the selection names none",
+            "add a face, such as `Select(body: \"plate\", face: MaxY)`",
+        ));
+    };
+    let (axis, sign) = outward(face);
+    Ok(sign * DVec3::AXES[axis])
+}
+
+/// Checks an area that the scene states.
+pub(super) fn check_area(area: Option<f64>) -> Result<(), SetupError> {
+    match area {
+        Some(area) if !(area > 0.0 && area.is_finite()) => Err(SetupError::parameter(
+            "area",
+            format!("the loaded area is {area}"),
+            "it must be positive, in m2 (m in two dimensions)",
+        )),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,91 @@
+//! Vector functions of place and time, as conditions use them.
+
+use glam::DVec3;
+
+use crate::parallel::{BlockSum, for_each_block};
+use crate::plugin::{SetupError, SimBuilder};
+use crate::scene::{Dimension, Expression, PerAxis};
+use crate::schedule::StepError;
+
+/// A vector function of the reference position and time; an axis without function is zero.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    components: [Option<Expression>; 3],
+}
+
+/// Number, counted from one, of the first value that is not finite; zero if there is none.
+#[derive(Clone, Copy, Default)]
+struct FirstBad(usize);
+
+impl BlockSum for FirstBad {
+    fn add(&mut self, next: &Self) {
+        if self.0 == 0 {
+            self.0 = next.0;
+        }
+    }
+}
+
+impl Field {
+    /// The function that a scene gives as `value`. It is an error if no axis has one, or if it leaves the plane of a
+    /// two-dimensional scene.
+    pub fn new(value: PerAxis<Expression>, sim: &SimBuilder<'_>) -> Result<Self, SetupError> {
+        let mut components = value.0;
+        if sim.dimension() == Dimension::Two
+            && let Some(z) = components[2].take()
+            && !(z.is_constant() && z.eval(DVec3::ZERO, 0.0) == 0.0)
+        {
+            return Err(SetupError::parameter(
+                "value[2]",
+                "a two-dimensional scene has no axis z",
+                "give two entries, `(x, y)`",
+            ));
+        }
+        if components.iter().all(Option::is_none) {
+            return Err(SetupError::parameter(
+                "value",
+                "no axis has a value",
+                "give a number or an expression for at least one axis; `None` leaves an axis alone",
+            ));
+        }
+        Ok(Self { components })
+    }
+
+    /// The axes that have a function.
+    pub fn axes(&self) -> [bool; 3] {
+        [0, 1, 2].map(|axis| self.components[axis].is_some())
+    }
+
+    /// Whether the values change with time.
+    pub fn depends_on_time(&self) -> bool {
+        self.components.iter().flatten().any(Expression::depends_on_time)
+    }
+
+    /// The value at one place.
+    pub fn at(&self, point: DVec3, t: f64) -> DVec3 {
+        let component = |axis: usize| self.components[axis].as_ref().map_or(0.0, |f| f.eval(point, t));
+        DVec3::new(component(0), component(1), component(2))
+    }
+
+    /// The values at the given places; `by` names the condition in errors.
+    pub fn values(&self, points: &[DVec3], t: f64, by: &str, out: &mut Vec<DVec3>) -> Result<(), StepError> {
+        out.clear();
+        out.resize(points.len(), DVec3::ZERO);
+        let rows = (&mut out[..], points);
+        let bad = for_each_block(rows, &mut Vec::new(), &|first, (out, points): (&mut [DVec3], &[DVec3])| {
+            let mut bad = FirstBad::default();
+            for (k, (value, &point)) in out.iter_mut().zip(points).enumerate() {
+                *value = self.at(point, t);
+                if bad.0 == 0 && !value.is_finite() {
+                    bad.0 = first + k + 1;
+                }
+            }
+            bad
+        });
+        if bad.0 == 0 {
+            return Ok(());
+        }
+        let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
+        let message = format!("the value at the reference position {point} and time {t:.6e} s is {value}");
+        Err(StepError::System { system: by.to_owned(), message })
+    }
+}

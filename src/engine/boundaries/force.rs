@@ -1,0 +1,38 @@
+//! Forces of a given total.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::Field;
+use super::load::{self, DeadLoad};
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select};
+
+/// Loads particles with a force of a given total, in equal shares; with a selection of one particle (`nearest`) it is a
+/// point force. It keeps its direction.
+///
+/// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0, "-100*smoothstep(t/0.01)"))`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// Particles.
+    pub on: Select,
+    /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it depends on the
+    /// reference position, every particle takes its share of the value at its own place. `None` is zero.
+    pub value: PerAxis<Expression>,
+}
+
+impl Plugin for Force {
+    const NAME: &'static str = "Force";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let field = Field::new(self.value, sim)?;
+        let share = 1.0 / selection.len() as f64;
+        let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();
+        let law = DeadLoad { name: Self::NAME, field, shares };
+        load::apply("force", law, &selection, sim, |system| system);
+        Ok(())
+    }
+}

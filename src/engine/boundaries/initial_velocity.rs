@@ -1,0 +1,60 @@
+//! The velocity that particles start with.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::Field;
+use super::part::parts_of;
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select};
+use crate::world::{Mobility, Velocity};
+
+/// Gives particles a velocity to start with, a function of their place; it takes the place of the body's `velocity`. Axes
+/// whose motion is prescribed keep the prescribed one.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialVelocity {
+    /// Particles.
+    pub on: Select,
+    /// Velocity per axis \[m/s\]; `None` keeps what the body's `velocity` says.
+    pub value: PerAxis<Expression>,
+}
+
+impl Plugin for InitialVelocity {
+    const NAME: &'static str = "InitialVelocity";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let field = Field::new(self.value, sim)?;
+        let parts = parts_of(&selection, sim);
+        for part in &parts {
+            let values = part.points.iter().map(|&point| (point, field.at(point, 0.0)));
+            if let Some((point, value)) = values.into_iter().find(|(_, value)| !value.is_finite()) {
+                return Err(SetupError::parameter(
+                    "value",
+                    format!("the velocity at {point} is {value}"),
+                    "give an expression that is finite on all selected particles",
+                ));
+            }
+        }
+        sim.add_setup(move |setup| {
+            let axes = field.axes();
+            for part in &parts {
+                let (view, _) = setup.world.body_view(part.body);
+                let mobility = view.read::<Mobility>().map_err(|error| SetupError::internal(&error))?;
+                let mut velocity = view.write::<Velocity>().map_err(|error| SetupError::internal(&error))?;
+                for (&row, &point) in part.rows.iter().zip(&part.points) {
+                    let row = row as usize;
+                    let value: DVec3 = field.at(point, 0.0);
+                    for axis in (0..3).filter(|&axis| axes[axis] && mobility[row].0[axis] > 0.0) {
+                        velocity[row].0[axis] = value[axis];
+                    }
+                }
+            }
+            Ok(())
+        });
+        Ok(())
+    }
+}

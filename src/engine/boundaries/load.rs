@@ -1,0 +1,118 @@
+//! Forces from outside, and the work they do.
+//!
+//! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, which is what the two kicks of the leapfrog put into the motion.
+
+use glam::DVec3;
+
+use super::field::Field;
+use super::part::{Part, parts_of, phases_of};
+use crate::plugin::{Selection, SimBuilder};
+use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use crate::world::{Force, Velocity};
+
+/// What gives the force on every particle of a part.
+pub(super) trait LoadLaw: Send + 'static {
+    /// Writes the force on every particle of part `k`, N, at the end of the step.
+    fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError>;
+
+    /// Whether the forces are the same in every step.
+    fn is_constant(&self) -> bool;
+}
+
+/// A load that does not follow the motion: a field of the reference position and time, times a share per particle.
+pub(super) struct DeadLoad {
+    /// Label, for errors.
+    pub name: &'static str,
+    /// Traction, acceleration or force.
+    pub field: Field,
+    /// Area, mass or share of every particle of every part.
+    pub shares: Vec<Vec<f64>>,
+}
+
+impl LoadLaw for DeadLoad {
+    fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
+        self.field.values(&part.points, step.clock.end(), self.name, out)?;
+        out.iter_mut().zip(&self.shares[k]).for_each(|(force, share)| *force *= *share);
+        Ok(())
+    }
+
+    fn is_constant(&self) -> bool {
+        !self.field.depends_on_time()
+    }
+}
+
+/// Adds the system that applies a load; its work goes to the account of the same name.
+pub(super) fn apply(
+    label: &'static str,
+    law: impl LoadLaw,
+    selection: &Selection,
+    sim: &mut SimBuilder<'_>,
+    declare: impl FnOnce(System) -> System,
+) {
+    let parts = parts_of(selection, sim);
+    let phases = phases_of(selection, sim);
+    let forces = vec![Vec::new(); parts.len()];
+    let load = Load { label, law: Box::new(law), parts, forces, next: Vec::new() };
+    let system =
+        System::new(Stage::External, label, load).on_phases(phases).reads::<Velocity>().adds::<Force>();
+    sim.add_system(declare(system));
+}
+
+struct Load {
+    label: &'static str,
+    law: Box<dyn LoadLaw>,
+    parts: Vec<Part>,
+    /// Forces at the end of the last step; empty before the first.
+    forces: Vec<Vec<DVec3>>,
+    next: Vec<DVec3>,
+}
+
+impl Run for Load {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let account = step.ledger.account(self.label, AccountKind::Supplied);
+        for (k, (part, last)) in self.parts.iter().zip(&mut self.forces).enumerate() {
+            let first = last.is_empty();
+            if first || !self.law.is_constant() {
+                self.law.forces(k, part, step, &mut self.next)?;
+                if first {
+                    last.clone_from(&self.next);
+                }
+            } else {
+                self.next.clone_from(last);
+            }
+            let (view, _) = step.world.body_view(part.body);
+            let velocity = view.read::<Velocity>()?;
+            let mut force = view.write::<Force>()?;
+            let mut power = 0.0;
+            for ((&row, last), &next) in part.rows.iter().zip(last.iter()).zip(&self.next) {
+                force[row as usize].0 += next;
+                power += 0.5 * (*last + next).dot(velocity[row as usize].0);
+            }
+            step.ledger.add(account, part.body, power * step.clock.dt);
+            std::mem::swap(last, &mut self.next);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        if self.law.is_constant() {
+            return Vec::new();
+        }
+        let components = self.forces.iter().flatten().flat_map(|force| force.to_array());
+        components.flat_map(f64::to_le_bytes).collect()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let (numbers, rest) = state.as_chunks::<8>();
+        let count: usize = self.parts.iter().map(|part| part.rows.len()).sum();
+        if !rest.is_empty() || (numbers.len() != 3 * count && !numbers.is_empty()) {
+            return false;
+        }
+        let numbers: Vec<f64> = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        let mut vectors = numbers.as_chunks::<3>().0.iter().map(|v| DVec3::from_array(*v));
+        for (part, forces) in self.parts.iter().zip(&mut self.forces) {
+            *forces = vectors.by_ref().take(part.rows.len()).collect();
+        }
+        true
+    }
+}

@@ -1,0 +1,141 @@
+//! Prescribed motion: the velocity of constrained axes at mid-step and at the end of the step.
+//!
+//! The drift moves a particle by dt v(n+1/2), so the velocity at mid-step decides where it goes. The velocity at the end
+//! of the step is what outputs, damping and viscosity see. Whatever the condition changes of the kinetic energy is the
+//! work of the constraint.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::field::Field;
+use super::part::{Part, parts_of, phases_of};
+use crate::integrate::KICK;
+use crate::plugin::{Selection, SetupError, SimBuilder};
+use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::world::{Column, Mass, Position, Velocity};
+
+/// How the value of a condition gives the velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The value is the velocity.
+    Velocity,
+    /// The value is the displacement from the reference position.
+    Displacement,
+}
+
+/// A prescribed motion of some particles.
+struct Motion {
+    name: &'static str,
+    kind: Kind,
+    field: Field,
+    parts: Vec<Part>,
+    /// Step of the difference that gives the velocity at the start, s.
+    least_difference: f64,
+}
+
+/// Adds the systems that move the selection.
+pub(super) fn prescribe(
+    name: &'static str,
+    kind: Kind,
+    field: Field,
+    selection: &Selection,
+    sim: &mut SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    sim.prescribe(selection, field.axes(), name)?;
+    let least_difference = 1e-6 * sim.scene().time.end;
+    let motion = Motion { name, kind, field, parts: parts_of(selection, sim), least_difference };
+    let motion = Arc::new(motion);
+    let phases = phases_of(selection, sim);
+    let label = name.to_lowercase();
+    let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
+    let at_end = SetVelocity { motion, end_of_step: true, values: Vec::new() };
+    // No two conditions hold one axis of one particle, so their order does not matter: `Adds` says so.
+    sim.add_system(
+        System::new(Stage::PreStep, label.clone(), at_middle)
+            .on_phases(phases.clone())
+            .reads::<Position>()
+            .reads::<Mass>()
+            .touches(Velocity::NAME, Mode::Adds),
+    );
+    sim.add_system(
+        System::new(Stage::FinalIntegrate, label, at_end)
+            .on_phases(phases)
+            .reads::<Mass>()
+            .touches(Velocity::NAME, Mode::Adds)
+            .after(KICK),
+    );
+    Ok(())
+}
+
+impl Motion {
+    /// Velocity of every particle of a part: at mid-step, or at the end of the step.
+    fn velocities(
+        &self,
+        part: &Part,
+        end_of_step: bool,
+        step: &Step<'_>,
+        out: &mut Vec<DVec3>,
+    ) -> Result<(), StepError> {
+        let clock = step.clock;
+        match (self.kind, end_of_step) {
+            (Kind::Velocity, false) => self.field.values(&part.points, clock.middle(), self.name, out),
+            (Kind::Velocity, true) => self.field.values(&part.points, clock.end(), self.name, out),
+            (Kind::Displacement, false) => {
+                self.field.values(&part.points, clock.end(), self.name, out)?;
+                let (view, _) = step.world.body_view(part.body);
+                let position = view.read::<Position>()?;
+                for ((value, &row), &point) in out.iter_mut().zip(&part.rows).zip(&part.points) {
+                    // From where the particle is, so that rounding does not add up over the steps.
+                    *value = (point + *value - position[row as usize].0) / clock.dt;
+                }
+                Ok(())
+            }
+            (Kind::Displacement, true) => {
+                let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.least_difference };
+                let before = (clock.end() - half).max(0.0);
+                let after = clock.end() + half;
+                self.field.values(&part.points, after, self.name, out)?;
+                for (value, &point) in out.iter_mut().zip(&part.points) {
+                    *value = (*value - self.field.at(point, before)) / (after - before);
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+struct SetVelocity {
+    motion: Arc<Motion>,
+    end_of_step: bool,
+    values: Vec<DVec3>,
+}
+
+impl Run for SetVelocity {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let constraints = step.ledger.account("constraints", AccountKind::Supplied);
+        let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
+        let axes = self.motion.field.axes();
+        for part in &self.motion.parts {
+            self.motion.velocities(part, self.end_of_step, step, &mut self.values)?;
+            let (view, _) = step.world.body_view(part.body);
+            let mass = view.read::<Mass>()?;
+            let mut velocity = view.write::<Velocity>()?;
+            let mut gain = 0.0;
+            for (&row, value) in part.rows.iter().zip(&self.values) {
+                let v = &mut velocity[row as usize].0;
+                let before = v.length_squared();
+                for axis in (0..3).filter(|&axis| axes[axis]) {
+                    v[axis] = value[axis];
+                }
+                gain += 0.5 * mass[row as usize].0 * (v.length_squared() - before);
+            }
+            step.ledger.add(constraints, part.body, gain);
+            if self.end_of_step {
+                // The kick has taken the kinetic energy with the velocity at mid-step.
+                step.ledger.add(kinetic, part.body, gain);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,96 @@
+//! Pressure: a load that stays normal to the deforming face.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::face_area::{check_area, loaded_area, normal_of};
+use super::load::{self, LoadLaw};
+use super::part::Part;
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, Select};
+use crate::schedule::{Step, StepError};
+use crate::world::DeformationGradient;
+
+/// Presses on a face; the force follows the face as it turns and stretches: f = -p J F^-T N A (Nanson's formula, N and A
+/// normal and area in the reference configuration). The particles of a body carry equal shares of its loaded area.
+///
+/// A smooth start within 10 ms: `Pressure(on: Select(body: "plate", face: MaxY), value: "1e5*smoothstep(t/0.01)")`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pressure {
+    /// Particles; the selection must name a face.
+    pub on: Select,
+    /// Pressure \[Pa\], positive towards the body, a function of the reference position and time.
+    pub value: Expression,
+    /// Loaded area in the reference configuration \[m2; m in two dimensions\]. Default: as for `Traction`.
+    #[serde(default)]
+    pub area: Option<f64>,
+}
+
+impl Plugin for Pressure {
+    const NAME: &'static str = "Pressure";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let normal = normal_of(&self.on)?;
+        let selection = sim.select(&self.on, "on")?;
+        check_area(self.area)?;
+        let areas = selection.parts.iter().map(|(id, rows)| match self.area {
+            Some(area) => area / selection.len() as f64,
+            None => loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64,
+        });
+        let law = Follower { value: self.value, normal, areas: areas.collect() };
+        let bodies: Vec<_> = selection.parts.iter().map(|(id, _)| *id).collect();
+        sim.add_setup(move |setup| {
+            let without =
+                |id: &&crate::world::BodyId| !setup.world.body_view(**id).0.has::<DeformationGradient>();
+            match bodies.iter().find(without) {
+                Some(id) => Err(SetupError::parameter(
+                    format!("bodies[{}].formulation", id.0),
+                    "a pressure acts on this body, which has no deformation gradient",
+                    "use `Traction`, or a solid formulation",
+                )),
+                None => Ok(()),
+            }
+        });
+        load::apply("pressure", law, &selection, sim, |system| system.reads::<DeformationGradient>());
+        Ok(())
+    }
+}
+
+struct Follower {
+    value: Expression,
+    /// Outward normal N in the reference configuration.
+    normal: DVec3,
+    /// Reference area of a particle of every part, m2.
+    areas: Vec<f64>,
+}
+
+impl LoadLaw for Follower {
+    fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
+        let (view, _) = step.world.body_view(part.body);
+        let gradient = view.read::<DeformationGradient>()?;
+        let t = step.clock.end();
+        out.clear();
+        for (&row, &point) in part.rows.iter().zip(&part.points) {
+            let pressure = self.value.eval(point, t);
+            if !pressure.is_finite() {
+                let message = format!(
+                    "the pressure at the reference position {point} and time {t:.6e} s is {pressure}"
+                );
+                return Err(StepError::System { system: Pressure::NAME.to_owned(), message });
+            }
+            let f = gradient[row as usize].0;
+            // J F^-T N, the cofactor matrix times N, from products of columns: it needs no division.
+            let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
+            let area = b.cross(c) * self.normal.x + c.cross(a) * self.normal.y + a.cross(b) * self.normal.z;
+            out.push(-pressure * self.areas[k] * area);
+        }
+        Ok(())
+    }
+
+    fn is_constant(&self) -> bool {
+        false
+    }
+}

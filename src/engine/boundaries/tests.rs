@@ -1,0 +1,228 @@
+//! Conditions against closed forms, in small scenes.
+
+use glam::DVec3;
+
+use crate::plugin::{Registry, build};
+use crate::scene::{Source, parse};
+use crate::simulation::{Checkpoint, Simulation};
+use crate::world::{BodyId, Column, Mass, Position, ReferencePosition, Velocity};
+
+/// A simulation of a scene text.
+pub(super) fn simulation(text: &str) -> Simulation {
+    let built = parse(Source::new("test.ron", text))
+        .and_then(|(scene, source)| build(&scene, &source, &Registry::standard()));
+    match built {
+        Ok(simulation) => simulation,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A two-dimensional scene of one block of 1 m x 0.5 m, E = 1e6 Pa, density 1000 kg/m3, with the given conditions.
+fn block(conditions: &str, rest: &str) -> String {
+    format!(
+        "Scene(dimension: Two,
+        materials: {{\"rubber\": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)}},
+        bodies: [Body(name: \"block\", material: \"rubber\", shape: Box(min: (0.0, 0.0), max: (1.0, 0.5)),
+            spacing: 0.0625, formulation: TotalLagrangian)],
+        conditions: [{conditions}], {rest})"
+    )
+}
+
+fn column<C: Column + Copy>(simulation: &Simulation) -> Vec<C> {
+    let (view, rows) = simulation.world().body_view(BodyId(0));
+    view.read::<C>().expect("a column")[rows].to_vec()
+}
+
+fn account(simulation: &Simulation, name: &str) -> f64 {
+    let accounts = simulation.ledger().accounts();
+    accounts.iter().find(|account| account.name == name).map_or(0.0, |account| account.total())
+}
+
+fn finish(simulation: &mut Simulation) {
+    simulation.run(|_| true).expect("the run ends");
+}
+
+fn assert_close(found: f64, wanted: f64, tolerance: f64) {
+    assert!((found - wanted).abs() <= tolerance, "{found:e} instead of {wanted:e}");
+}
+
+#[test]
+fn a_body_in_free_fall_follows_the_parabola() {
+    let text =
+        block("InitialVelocity(on: Select(), value: (3.0, 1.0))", "gravity: (0.0, -9.81), time: (end: 0.1)");
+    let mut sim = simulation(&text);
+    finish(&mut sim);
+    let t = 0.1;
+    let moved = DVec3::new(3.0 * t, 1.0 * t - 0.5 * 9.81 * t * t, 0.0);
+    for (x, reference) in column::<Position>(&sim).iter().zip(column::<ReferencePosition>(&sim)) {
+        assert!((x.0 - reference.0).distance(moved) < 1e-12, "{}", x.0 - reference.0);
+    }
+    assert!(sim.ledger().relative_error().abs() < 1e-12);
+}
+
+#[test]
+fn a_body_force_on_all_of_a_body_accelerates_it_uniformly() {
+    let text =
+        block("BodyForce(on: Select(), value: (\"20*t\", -4.0))", "time: (end: 0.1, step: Fixed(1.0e-4))");
+    let mut sim = simulation(&text);
+    finish(&mut sim);
+    let t: f64 = 0.1;
+    // The leapfrog sums 20 t by the trapezoidal rule for v, and its drift is exact for x up to 20 t dt^2 / 6.
+    let v = DVec3::new(10.0 * t * t, -4.0 * t, 0.0);
+    let x = DVec3::new(20.0 * t.powi(3) / 6.0, -2.0 * t * t, 0.0);
+    let places = column::<Position>(&sim);
+    let velocities = column::<Velocity>(&sim);
+    for (k, reference) in column::<ReferencePosition>(&sim).iter().enumerate() {
+        assert!(velocities[k].0.distance(v) < 1e-12, "{}", velocities[k].0);
+        assert!((places[k].0 - reference.0).distance(x) < 1e-8, "{}", places[k].0 - reference.0);
+    }
+    let mass = 500.0;
+    // The kinetic energy of the leapfrog differs from the work by m (dt a)^2 / 8.
+    let kinetic = 0.5 * mass * v.length_squared();
+    assert_close(account(&sim, "body_force"), kinetic, 1e-7 * kinetic);
+    assert!(sim.ledger().relative_error().abs() < 1e-7);
+}
+
+#[test]
+fn a_prescribed_sine_is_met_in_every_step_and_its_work_is_booked() {
+    let text = block(
+        "Displacement(on: Select(), value: (\"0.01*sin(40*t)*(1 + x)\", 0.0))",
+        "time: (end: 0.05, step: Fixed(1.0e-4))",
+    );
+    let mut sim = simulation(&text);
+    sim.start().expect("a start");
+    let masses = column::<Mass>(&sim);
+    let references = column::<ReferencePosition>(&sim);
+    let kinetic = |t: f64| {
+        let v = |x: f64| 0.4 * (40.0 * t).cos() * (1.0 + x);
+        masses.iter().zip(&references).map(|(m, x)| 0.5 * m.0 * v(x.0.x).powi(2)).sum::<f64>()
+    };
+    assert_close(account(&sim, "kinetic"), kinetic(0.0), 1e-6 * kinetic(0.0));
+    let mut worst: f64 = 0.0;
+    while !sim.is_finished() {
+        sim.step().expect("a step");
+        let t = sim.clock().time;
+        for (k, x) in column::<Position>(&sim).iter().enumerate() {
+            let wanted = 0.01 * (40.0 * t).sin() * (1.0 + references[k].0.x);
+            worst = worst.max((x.0 - references[k].0 - DVec3::X * wanted).length());
+        }
+        assert_close(account(&sim, "kinetic"), kinetic(t), 1e-5 * kinetic(0.0));
+    }
+    assert!(worst < 1e-15, "{worst}");
+    let strain = account(&sim, "strain");
+    // F_xx = 1 + 0.01 sin(40 t), uniaxial strain: W = (lambda / 2 + mu) E_xx^2.
+    let f = 1.0 + 0.01 * (40.0_f64 * 0.05).sin();
+    let green = 0.5 * (f * f - 1.0);
+    let (lambda, mu) = (1e6 * 0.3 / (1.3 * 0.4), 1e6 / 2.6);
+    assert_close(strain, 0.5 * (0.5 * lambda + mu) * green * green, 1e-9 * strain);
+    let balance = sim.ledger().relative_error();
+    assert!(balance.abs() < 1e-5, "{balance}");
+}
+
+#[test]
+fn a_prescribed_velocity_is_integrated_at_mid_step_and_leaves_other_axes_free() {
+    let text = block(
+        "Velocity(on: Select(), value: (\"2*smoothstep(t/0.02)\", None))",
+        "gravity: (0.0, -10.0), time: (end: 0.02, step: Fixed(1.0e-4))",
+    );
+    let mut sim = simulation(&text);
+    finish(&mut sim);
+    let velocities = column::<Velocity>(&sim);
+    for (k, reference) in column::<ReferencePosition>(&sim).iter().enumerate() {
+        let moved = column::<Position>(&sim)[k].0 - reference.0;
+        // The integral of smoothstep over the ramp is half its length.
+        assert_close(moved.x, 0.02, 1e-6);
+        assert_close(moved.y, -0.5 * 10.0 * 0.02_f64.powi(2), 1e-12);
+        assert_close(velocities[k].0.x, 2.0, 1e-12);
+    }
+    assert_close(account(&sim, "constraints"), 0.5 * 500.0 * 4.0, 1e-9);
+    assert!(sim.ledger().relative_error().abs() < 1e-12);
+}
+
+#[test]
+fn the_work_of_a_dead_load_is_force_times_displacement() {
+    let text = block(
+        "Fix(on: Select(face: MinX)), Force(on: Select(face: MaxX), value: (2.0e4, 1.0e3))",
+        "time: (end: 0.05, step: Adaptive(factor: 0.2))",
+    );
+    let mut sim = simulation(&text);
+    finish(&mut sim);
+    let loaded: Vec<DVec3> = column::<Position>(&sim)
+        .iter()
+        .zip(column::<ReferencePosition>(&sim))
+        .filter(|(_, reference)| reference.0.x > 1.0 - 0.0625)
+        .map(|(x, reference)| x.0 - reference.0)
+        .collect();
+    assert_eq!(loaded.len(), 8);
+    let mean = loaded.iter().sum::<DVec3>() / 8.0;
+    let work = DVec3::new(2.0e4, 1.0e3, 0.0).dot(mean);
+    assert!(work > 1.0, "the load must do work: {work}");
+    assert_close(account(&sim, "force"), work, 1e-11 * work);
+    let balance = sim.ledger().relative_error();
+    assert!(balance.abs() < 1e-3, "{balance}");
+}
+
+#[test]
+fn the_balance_closes_with_the_square_of_the_step() {
+    let error = |factor: f64| {
+        let text = block(
+            "Fix(on: Select(face: MinX)), Traction(on: Select(face: MaxX), value: (\"4.0e4*sin(300*t)\", 0.0)),
+             Pressure(on: Select(face: MaxY), value: \"2.0e4*smoothstep(t/0.01)\")",
+            &format!("time: (end: 0.02, step: Fixed({}))", factor * 1.0e-4),
+        );
+        let mut sim = simulation(&text);
+        finish(&mut sim);
+        sim.ledger().relative_error().abs()
+    };
+    let (coarse, fine, finest) = (error(1.0), error(0.25), error(0.0625));
+    assert!(fine < coarse / 10.0 && finest < fine / 10.0, "{coarse:e} {fine:e} {finest:e}");
+    assert!(finest < 1e-6, "{finest:e}");
+}
+
+#[test]
+fn a_traction_has_the_area_of_the_face_on_any_lattice() {
+    for lattice in ["Regular", "Hexagonal", "Relaxed(seed: 3)"] {
+        let text = format!(
+            "Scene(dimension: Two,
+            materials: {{\"rubber\": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [Body(name: \"block\", material: \"rubber\", shape: Box(min: (0.0, 0.0), max: (1.0, 0.5)),
+                spacing: 0.05, lattice: {lattice}, formulation: TotalLagrangian)],
+            conditions: [Traction(on: Select(face: MinY), value: (0.0, 3.0e3))],
+            time: (end: 1.0e-4, step: Fixed(1.0e-5)))"
+        );
+        let mut sim = simulation(&text);
+        finish(&mut sim);
+        let momentum: f64 =
+            column::<Velocity>(&sim).iter().zip(column::<Mass>(&sim)).map(|(v, m)| m.0 * v.0.y).sum();
+        let area = momentum / (3.0e3 * 1.0e-4);
+        let tolerance = if lattice.starts_with("Relaxed") { 0.08 } else { 1e-9 };
+        assert!((area - 1.0).abs() < tolerance, "{lattice}: {area}");
+    }
+}
+
+#[test]
+fn a_restart_with_loads_and_prescribed_motion_continues_bit_for_bit() {
+    let text = block(
+        "Displacement(on: Select(face: MinX), value: (\"0.01*sin(200*t)\", 0.0)),
+         Displacement(on: Select(face: MaxX), value: (None, \"0.01*sin(100*t)\")),
+         Traction(on: Select(face: MaxX), value: (\"1.0e4*sin(300*t)\", None)),
+         Traction(on: Select(face: MinY), value: (\"1.0e3*t\", None)),
+         Pressure(on: Select(face: MaxY), value: \"2.0e4*t\"), Pressure(on: Select(face: MaxX), value: 5.0e3)",
+        "time: (end: 0.01, step: Fixed(2.5e-4))",
+    );
+    let mut whole = simulation(&text);
+    let mut first = simulation(&text);
+    for _ in 0..17 {
+        whole.step().expect("a step");
+        first.step().expect("a step");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("state");
+    first.save(&path, &Source::new("test.ron", text.clone())).expect("a checkpoint");
+    let mut second = simulation(&text);
+    second.restore(&Checkpoint::read(&path).expect("a checkpoint")).expect("a restart");
+    finish(&mut whole);
+    finish(&mut second);
+    assert_eq!(whole.state_hash(), second.state_hash());
+    assert_eq!(whole.ledger(), second.ledger());
+}

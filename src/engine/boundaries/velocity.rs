@@ -1,0 +1,34 @@
+//! Particles that move with a given velocity.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::Field;
+use super::prescribed::{self, Kind};
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select};
+
+/// Moves particles with a velocity that is a function of their reference position and time.
+///
+/// A velocity that jumps sends a shock through the body. A smooth start within 1 ms, then a constant velocity of
+/// -0.1 m/s: `Velocity(on: Select(body: "tool"), value: (None, "-0.1*smoothstep(t/1e-3)"))`. A push of 2 ms that ends as
+/// smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Velocity {
+    /// Particles.
+    pub on: Select,
+    /// Velocity per axis \[m/s\]; `None` leaves the motion along an axis free.
+    pub value: PerAxis<Expression>,
+}
+
+impl Plugin for Velocity {
+    const NAME: &'static str = "Velocity";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let field = Field::new(self.value, sim)?;
+        prescribed::prescribe(Self::NAME, Kind::Velocity, field, &selection, sim)
+    }
+}
