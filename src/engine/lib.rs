@@ -22,6 +22,7 @@ pub mod kernels;
 pub mod linalg;
 pub mod materials;
 pub mod neighbors;
+pub mod pair;
 pub mod parallel;
 pub mod plugin;
 pub mod record;

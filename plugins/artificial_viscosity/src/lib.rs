@@ -1,1 +1,89 @@
-//! artificial_viscosity
+//! Artificial viscosity: the friction that shocks and impacts need in a scheme without any.
+//!
+//! For pairs that approach, `mu = h v_ij.x_ij / (|x_ij|^2 + 0.01 h^2) < 0` and
+//! `f_i = V_i V_j rho_0 (alpha c mu - beta mu^2) |W'_ij| x_ij / |x_ij|`: a repulsion, linear and quadratic in the speed of
+//! approach. h is half the support radius, c the speed of longitudinal waves.
+
+use meshless_engine::materials::ParameterError;
+use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::world::{BodySet, Velocity};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<ArtificialViscosity>();
+}
+
+/// Damps the approach of particles, as shocks and impacts need it.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ArtificialViscosity {
+    /// Coefficient alpha of the part that is linear in the speed of approach.
+    pub alpha: f64,
+    /// Coefficient beta of the quadratic part.
+    pub beta: f64,
+}
+
+impl Default for ArtificialViscosity {
+    fn default() -> Self {
+        Self { alpha: 1.0, beta: 1.0 }
+    }
+}
+
+impl Plugin for ArtificialViscosity {
+    const NAME: &'static str = "artificial_viscosity";
+    const REFERENCE: &'static str =
+        "artificial viscosity: J. J. Monaghan, R. A. Gingold, J. Comput. Phys. 52 (1983) 374-389";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        ParameterError::require_not_negative("alpha", self.alpha)?;
+        ParameterError::require_not_negative("beta", self.beta)?;
+        if self.alpha == 0.0 && self.beta == 0.0 {
+            return Ok(());
+        }
+        for id in sim.scope().clone().iter() {
+            let material = &sim.body(id).material;
+            let term = Approach {
+                alpha: self.alpha,
+                beta: self.beta,
+                density: material.density,
+                sound_speed: material.law.elastic().longitudinal_speed(material.density),
+            };
+            sim.add_pair_term(BodySet::new([id]), Self::NAME, term);
+        }
+        Ok(())
+    }
+}
+
+/// The pair force within one body.
+struct Approach {
+    alpha: f64,
+    beta: f64,
+    density: f64,
+    sound_speed: f64,
+}
+
+impl PairTerm for Approach {
+    type ReadI = (Velocity,);
+    type ReadJ = (Velocity,);
+
+    #[inline]
+    fn pair(&self, pair: &Pair, (v_i,): &Self::ReadI, (v_j,): &Self::ReadJ, rates: &mut Rates) {
+        let h = pair.smoothing_length();
+        let approach = (v_j.0 - v_i.0).dot(pair.x_ij);
+        if approach >= 0.0 || pair.distance == 0.0 {
+            return;
+        }
+        let mu = h * approach / (pair.distance.powi(2) + 0.01 * h * h);
+        let slope = pair.weight * pair.reference_distance;
+        let strength = self.density * pair.volume_j * slope;
+        let pressure = strength * (self.alpha * self.sound_speed * mu - self.beta * mu * mu);
+        rates.force += pair.x_ij * (pair.volume_i * pressure / pair.distance);
+        // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
+        let per_speed = h * pair.distance / (pair.distance.powi(2) + 0.01 * h * h);
+        let slope_of_mu = self.alpha * self.sound_speed - 2.0 * self.beta * mu;
+        rates.damping += pair.volume_j * slope * slope_of_mu * per_speed;
+    }
+}

@@ -4,12 +4,15 @@
 //! zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of the mean,
 //! `e_ij = F_i X_ij - x_ij`.
 
+mod ganzenmueller_2015;
 mod variational;
 
+use ganzenmueller_2015::Ganzenmueller2015;
+use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::world::BodySet;
 use schemars::JsonSchema;
 use serde::Deserialize;
-
 use variational::Variational;
 
 /// Registers the plugin.
@@ -48,15 +51,29 @@ impl Plugin for HourglassControl {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let bodies = sim.scope_of("TotalLagrangian");
-        let alpha = self.alpha.unwrap_or(5.0);
-        if !(alpha >= 0.0 && alpha.is_finite()) {
-            return Err(SetupError::parameter(
-                "alpha",
-                format!("`alpha` is {alpha}"),
-                "give a number not below zero",
-            ));
+        let default = match self.form {
+            Form::Variational => 5.0,
+            Form::Ganzenmueller2015 => 25.0,
+        };
+        let alpha = self.alpha.unwrap_or(default);
+        ParameterError::require_not_negative("alpha", alpha)?;
+        if alpha == 0.0 {
+            return Ok(());
         }
-        sim.add_bond_term(bodies, "hourglass", Variational { alpha });
+        match self.form {
+            Form::Variational => sim.add_bond_term(bodies, "hourglass", Variational { alpha }),
+            Form::Ganzenmueller2015 => {
+                for id in bodies.iter() {
+                    let material = &sim.body(id).material;
+                    let term = Ganzenmueller2015 {
+                        alpha,
+                        young: material.law.elastic().young,
+                        density: material.density,
+                    };
+                    sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
+                }
+            }
+        }
         Ok(())
     }
 }

@@ -8,12 +8,14 @@ use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::internal_force::InternalForce;
+use super::pairs::BondPairs;
 use super::rows::{PairStress, Site};
 use super::stable_step::StepEstimate;
 use crate::kernels::{Kernel, KernelName};
 use crate::linalg::smallest_and_largest_stretch;
 use crate::materials::Material;
 use crate::neighbors::NeighborSearch;
+use crate::pair::add_pair_systems;
 use crate::parallel::for_each_block;
 use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
@@ -63,10 +65,12 @@ pub const DEFORMATION: &str = "total_lagrangian_deformation";
 pub const INTERNAL_FORCE: &str = "total_lagrangian_force";
 
 /// What the two systems share.
-struct PackedRows {
-    bonds: Bonds,
-    sites: Vec<Site>,
+pub(super) struct PackedRows {
+    pub(super) bonds: Bonds,
+    pub(super) sites: Vec<Site>,
     pair_stress: Vec<PairStress>,
+    /// Kernel of each body.
+    pub(super) kernels: Vec<(BodyId, Kernel)>,
     /// Stable step of each body in its reference configuration, s.
     stable_step: Vec<f64>,
 }
@@ -124,7 +128,7 @@ impl Formulation for TotalLagrangian {
             .touches("pair_stress", Mode::Reads)
             .writes::<Force>(),
         );
-        Ok(())
+        add_pair_systems(sim, phase, INTERNAL_FORCE, BondPairs { phase })
     }
 }
 
@@ -187,11 +191,13 @@ fn set_up(
     let mut bonds = Bonds::default();
     let mut search = NeighborSearch::default();
     let mut stable_step = Vec::new();
+    let mut kernels = Vec::new();
     for ((id, parameters), estimate) in bodies.iter().zip(estimates) {
         let body = setup.world.body(*id);
         let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
             unreachable!("every kernel has a two- and a three-dimensional form");
         };
+        kernels.push((*id, kernel));
         let rows = body.rows.clone();
         let body_bonds = BodyBonds { rows: rows.clone(), position, volume, support, kernel };
         bonds.append(&body_bonds, &mut search).map_err(|error| {
@@ -210,7 +216,7 @@ fn set_up(
     }
     let sites = vec![Site::default(); view.len()];
     let pair_stress = vec![PairStress::default(); view.len()];
-    setup.resources.insert(PackedRows { bonds, sites, pair_stress, stable_step });
+    setup.resources.insert(PackedRows { bonds, sites, pair_stress, kernels, stable_step });
     Ok(())
 }
 
@@ -229,7 +235,7 @@ impl Run for Deformation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let mut packed = step.resources.get_mut::<PackedRows>();
-        let PackedRows { bonds, sites, pair_stress, stable_step } = &mut *packed;
+        let PackedRows { bonds, sites, pair_stress, stable_step, .. } = &mut *packed;
         pack(&view, sites)?;
         let mut gradient = view.write::<DeformationGradient>()?;
         let mut stress = view.write::<PiolaStress>()?;

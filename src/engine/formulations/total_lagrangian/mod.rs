@@ -9,6 +9,7 @@ mod bonds;
 mod deformation;
 mod formulation;
 mod internal_force;
+mod pairs;
 mod rows;
 mod stable_step;
 

@@ -1,0 +1,101 @@
+//! Terms bound to the columns of a phase for the length of a pass: a chain on the stack, without allocation.
+
+use super::read::ReadSet;
+use super::term::{Pair, PairTerm, Rates};
+use crate::schedule::Access;
+use crate::world::{MissingColumn, PhaseView};
+
+/// A term that is bound to its columns.
+pub(super) trait RowTerm: Sync {
+    /// Adds the contributions of all neighbours of row i.
+    fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates);
+}
+
+struct Bound<'a, T: PairTerm> {
+    term: &'a T,
+    of_i: <T::ReadI as ReadSet>::Slices<'a>,
+    of_j: <T::ReadJ as ReadSet>::Slices<'a>,
+}
+
+impl<T: PairTerm> RowTerm for Bound<'_, T> {
+    fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates) {
+        let i = T::ReadI::at(self.of_i, i);
+        for pair in pairs {
+            self.term.pair(pair, &i, &T::ReadJ::at(self.of_j, pair.row_j as usize), rates);
+        }
+    }
+}
+
+/// The bound terms of a pass, the last one first.
+#[derive(Clone, Copy)]
+pub(super) struct Chain<'c> {
+    term: &'c dyn RowTerm,
+    before: Option<&'c Chain<'c>>,
+}
+
+impl Chain<'_> {
+    /// Calls every term once with the row; `rates` has one entry a term.
+    pub fn row(&self, i: usize, pairs: &[Pair], rates: &mut [Rates]) {
+        let Some((own, rest)) = rates.split_last_mut() else { return };
+        if let Some(before) = self.before {
+            before.row(i, pairs, rest);
+        }
+        self.term.row(i, pairs, own);
+    }
+}
+
+/// What goes on once all terms are bound.
+type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
+
+/// A pair term whose type is erased.
+pub(super) trait ErasedTerm: Send + Sync {
+    /// Columns it reads.
+    fn access(&self) -> Vec<Access>;
+    /// Borrows the columns, adds the term to the chain and goes on with it.
+    fn bind(
+        &self,
+        phase: &PhaseView<'_>,
+        before: Option<&Chain<'_>>,
+        go_on: &mut dyn FnMut(&Chain<'_>) -> Result<(), MissingColumn>,
+    ) -> Result<(), MissingColumn>;
+}
+
+impl<T: PairTerm> ErasedTerm for T {
+    fn access(&self) -> Vec<Access> {
+        let mut access = T::ReadI::access();
+        access.extend(T::ReadJ::access());
+        access
+    }
+
+    fn bind(
+        &self,
+        phase: &PhaseView<'_>,
+        before: Option<&Chain<'_>>,
+        go_on: &mut dyn FnMut(&Chain<'_>) -> Result<(), MissingColumn>,
+    ) -> Result<(), MissingColumn> {
+        let (of_i, of_j) = (T::ReadI::guards(phase)?, T::ReadJ::guards(phase)?);
+        let rows = 0..phase.len();
+        let bound = Bound {
+            term: self,
+            of_i: T::ReadI::slices(&of_i, rows.clone()),
+            of_j: T::ReadJ::slices(&of_j, rows),
+        };
+        go_on(&Chain { term: &bound, before })
+    }
+}
+
+/// Binds all terms, and calls `run` with the chain of them.
+pub(super) fn bind_all(
+    terms: &[&dyn ErasedTerm],
+    phase: &PhaseView<'_>,
+    before: Option<&Chain<'_>>,
+    run: Continue<'_>,
+) -> Result<(), MissingColumn> {
+    let Some((first, rest)) = terms.split_first() else {
+        if let Some(chain) = before {
+            run(chain);
+        }
+        return Ok(());
+    };
+    first.bind(phase, before, &mut |chain| bind_all(rest, phase, Some(chain), run))
+}

@@ -1,0 +1,174 @@
+//! The work of pair terms, booked so that the ledger closes as it does without them.
+//!
+//! A force f made at the end of a step acts in the second kick of that step and in the first kick of the next. Its work
+//! is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with the velocity v and the
+//! acceleration a between the two: two sums over the particles give both.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use super::pass::{BodyTerms, MAX_TERMS};
+use crate::integrate::{DRIFT, KICK};
+use crate::parallel::{BlockSum, Split, for_each_block};
+use crate::plugin::SimBuilder;
+use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use crate::world::{BodyId, Force, Mobility, PhaseId, Velocity};
+
+/// Power f.v, W, and f.a, W/s, of every term of a body.
+#[derive(Clone, Copy, Debug, Default)]
+struct Power {
+    of_velocity: [f64; MAX_TERMS],
+    of_acceleration: [f64; MAX_TERMS],
+}
+
+impl BlockSum for Power {
+    fn add(&mut self, next: &Self) {
+        for k in 0..MAX_TERMS {
+            self.of_velocity[k] += next.of_velocity[k];
+            self.of_acceleration[k] += next.of_acceleration[k];
+        }
+    }
+}
+
+/// What the two systems share: the powers of the last right-hand side, body by body.
+type Powers = Arc<Mutex<Vec<(BodyId, Vec<usize>, Power)>>>;
+
+/// Adds the booking of the two kicks.
+pub(super) fn add_systems(
+    sim: &mut SimBuilder<'_>,
+    phase: PhaseId,
+    accounts: Vec<String>,
+    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+) {
+    let powers = Powers::default();
+    let first = FirstKick { accounts: accounts.clone(), powers: Arc::clone(&powers) };
+    sim.add_system(System::new(Stage::InitialIntegrate, "pair_work_of_first_kick", first).before(DRIFT));
+    let second = SecondKick { accounts, bodies, powers, sums: Vec::new() };
+    sim.add_system(
+        System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)
+            .on_phases([phase])
+            .reads::<Velocity>()
+            .reads::<Force>()
+            .reads::<Mobility>()
+            .after(KICK),
+    );
+}
+
+/// Books half a step; `side` is -1 for the kick before the velocity, +1 for the kick after it.
+fn book(
+    step: &mut Step<'_>,
+    accounts: &[String],
+    (body, terms, power): &(BodyId, Vec<usize>, Power),
+    side: f64,
+) {
+    let dt = step.clock.dt;
+    for (slot, &k) in terms.iter().enumerate() {
+        let account = step.ledger.account(&accounts[k], AccountKind::Dissipated);
+        let mean = power.of_velocity[slot] + side * 0.25 * dt * power.of_acceleration[slot];
+        step.ledger.add(account, *body, -0.5 * dt * mean);
+    }
+}
+
+struct FirstKick {
+    accounts: Vec<String>,
+    powers: Powers,
+}
+
+impl Run for FirstKick {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
+        powers.iter().for_each(|entry| book(step, &self.accounts, entry, 1.0));
+        Ok(())
+    }
+}
+
+struct SecondKick {
+    accounts: Vec<String>,
+    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+    powers: Powers,
+    sums: Vec<Power>,
+}
+
+/// A block of particles, and the forces of all terms on them.
+struct WorkRows<'a> {
+    velocity: &'a [Velocity],
+    force: &'a [Force],
+    mobility: &'a [Mobility],
+    by_term: &'a [DVec3],
+    terms: usize,
+}
+
+impl Split for WorkRows<'_> {
+    fn rows(&self) -> usize {
+        self.velocity.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let part = |rows: std::ops::Range<usize>| Self {
+            velocity: &self.velocity[rows.clone()],
+            force: &self.force[rows.clone()],
+            mobility: &self.mobility[rows.clone()],
+            by_term: &self.by_term[rows.start * self.terms..rows.end * self.terms],
+            terms: self.terms,
+        };
+        (part(0..at), part(at..self.velocity.len()))
+    }
+}
+
+impl WorkRows<'_> {
+    fn power(&self) -> Power {
+        let mut power = Power::default();
+        for (k, forces) in self.by_term.chunks(self.terms).enumerate() {
+            let acceleration = self.force[k].0 * self.mobility[k].0;
+            for (slot, force) in forces.iter().enumerate() {
+                power.of_velocity[slot] += force.dot(self.velocity[k].0);
+                power.of_acceleration[slot] += force.dot(acceleration);
+            }
+        }
+        power
+    }
+}
+
+impl Run for SecondKick {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
+        powers.resize_with(bodies.len(), || (BodyId(0), Vec::new(), Power::default()));
+        for (BodyTerms { id, terms, forces }, entry) in bodies.iter().zip(powers.iter_mut()) {
+            let (view, rows) = step.world.body_view(*id);
+            let (velocity, force, mobility) =
+                (view.read::<Velocity>()?, view.read::<Force>()?, view.read::<Mobility>()?);
+            let read = WorkRows {
+                velocity: &velocity[rows.clone()],
+                force: &force[rows.clone()],
+                mobility: &mobility[rows],
+                by_term: forces,
+                terms: terms.len(),
+            };
+            entry.0 = *id;
+            entry.1.clone_from(terms);
+            entry.2 = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| block.power());
+            book(step, &self.accounts, entry, -1.0);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
+        let numbers = powers
+            .iter()
+            .map(|(body, terms, power)| (body.0, terms, power.of_velocity, power.of_acceleration));
+        postcard::to_stdvec(&numbers.collect::<Vec<_>>()).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        type Saved = Vec<(usize, Vec<usize>, [f64; MAX_TERMS], [f64; MAX_TERMS])>;
+        let Ok(saved) = postcard::from_bytes::<Saved>(state) else { return false };
+        let entries = saved.into_iter().map(|(body, terms, of_velocity, of_acceleration)| {
+            (BodyId(body), terms, Power { of_velocity, of_acceleration })
+        });
+        *self.powers.lock().unwrap_or_else(PoisonError::into_inner) = entries.collect();
+        true
+    }
+}
