@@ -4,7 +4,8 @@
 //! `omega^2 = STRESS_FACTOR c_l^2 b_i` with `b_i = (sum_j V_j w_ij) trace(M_i^-1) / d`, which grows where the support is
 //! cut by a surface; a bond stiffness k_i = s E_i gives `omega^2 = BOND_FACTOR s E_i (sum_j V_j w_ij) / rho`. The two
 //! constants envelope the largest eigenvalue of the assembled linear operator of free square and cubic blocks, regular
-//! and irregular, for spiky and Wendland kernels of 2 to 3 spacings support (the test of this file assembles one).
+//! and irregular, for spiky and Wendland kernels of 2 to 3 spacings support; tests/stable_step.rs of the hourglass plugin
+//! compares with the largest frequency that a naive second implementation finds.
 
 /// Stress: omega^2 = `STRESS_FACTOR` c_l^2 b_i.
 const STRESS_FACTOR: f64 = 1.45;
