@@ -11,10 +11,11 @@ use super::plan::BodyPlan;
 use super::registry::{FormulationEntry, Kind, Registry};
 use super::setup::Setup;
 use super::spawn;
+use crate::record::{OutputPlan, Recorder};
 use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
 use crate::schedule::{Resources, Schedule};
 use crate::shapes;
-use crate::simulation::Simulation;
+use crate::simulation::{Simulation, SimulationParts};
 use crate::world::{BodyId, BodySet, ColumnSet, PhaseId};
 
 /// Makes a simulation that writes nothing out of a scene: [`build_with`] and no options.
@@ -47,21 +48,17 @@ fn build_in(
     registry: &Registry,
     options: &BuildOptions,
 ) -> Result<Simulation, Vec<Problem>> {
-    if let Some(output) = &options.output {
-        std::fs::create_dir_all(&output.folder).map_err(|error| {
-            let message = format!("the output folder `{}` cannot be made: {error}", output.folder.display());
-            vec![Problem::new(message).help("choose a folder in which you may write")]
-        })?;
-    }
     let (bodies, phases, parsed) = place_bodies(scene, source, registry)?;
     let overlaps = overlap::problems(&bodies);
     if !overlaps.is_empty() {
         return Err(overlaps);
     }
     let mut sim = SimBuilder::new(scene, bodies, phases);
-    build_plugins(scene, registry, &mut sim)?;
+    let recorder_items = build_plugins(scene, registry, &mut sim)?;
     assemble(scene, parsed, &mut sim)?;
     crate::integrate::add_systems(&mut sim);
+    let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;
+    let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
     let world = spawn::spawn(&sim);
     let mut resources = Resources::default();
     for step in std::mem::take(&mut sim.setup) {
@@ -70,7 +67,19 @@ fn build_in(
     }
     let schedule =
         Schedule::new(std::mem::take(&mut sim.systems)).map_err(|e| vec![Problem::new(e.to_string())])?;
-    Ok(Simulation::new(world, resources, schedule, scene, sim.warnings, sim.references))
+    if let Some(output) = &output {
+        output.lock().prepare(&sim.references).map_err(|problem| vec![*problem])?;
+    }
+    let parts = SimulationParts {
+        world,
+        resources,
+        schedule,
+        output,
+        source: source.clone(),
+        warnings: sim.warnings,
+        references: sim.references,
+    };
+    Ok(Simulation::new(parts, scene))
 }
 
 /// A fault that belongs to no item, such as one of a set-up step.
@@ -166,14 +175,21 @@ fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'
 }
 
 /// Builds the plugins of bodies and of the scene, then the conditions; collects what is wrong with any of them.
-fn build_plugins(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+/// Returns the items that have added recorders, one for each.
+fn build_plugins(
+    scene: &Scene,
+    registry: &Registry,
+    sim: &mut SimBuilder<'_>,
+) -> Result<Vec<Item>, Vec<Problem>> {
     let mut problems = Vec::new();
+    let mut recorder_items = Vec::new();
     let mut build = |kind, item: &Item, scope, sim: &mut SimBuilder<'_>| {
         sim.scope = scope;
         match registry.build_plugin(kind, item, sim) {
             Ok(reference) => sim.cite(reference),
             Err(found) => problems.extend(found),
         }
+        recorder_items.resize(sim.count_extensions::<Box<dyn Recorder>>(), item.clone());
     };
     for (k, body) in scene.bodies.iter().enumerate() {
         for item in &body.plugins {
@@ -189,7 +205,7 @@ fn build_plugins(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) -
     for item in &scene.conditions {
         build(Kind::Condition, item, all.clone(), sim);
     }
-    if problems.is_empty() { Ok(()) } else { Err(problems) }
+    if problems.is_empty() { Ok(recorder_items) } else { Err(problems) }
 }
 
 fn assemble(scene: &Scene, parsed: Vec<Parsed<'_>>, sim: &mut SimBuilder<'_>) -> Result<(), Vec<Problem>> {

@@ -91,6 +91,11 @@ impl<'s> SimBuilder<'s> {
         phases
     }
 
+    /// The columns of a phase, as far as they have been added.
+    pub fn columns(&self, phase: PhaseId) -> &ColumnSet {
+        &self.phases[phase.0].1
+    }
+
     /// Gives all particles of the phases of the scope a column, zero at the start.
     pub fn add_column<T: Column>(&mut self) {
         for phase in self.phases_of(&self.scope.clone()) {
@@ -150,6 +155,11 @@ impl<'s> SimBuilder<'s> {
     /// one type are kept in the order in which they are added.
     pub fn extend<T: 'static>(&mut self, value: T) {
         self.extensions.entry(TypeId::of::<T>()).or_default().push(Box::new(value));
+    }
+
+    /// Number of things in the slot of type `T`.
+    pub(super) fn count_extensions<T: 'static>(&self) -> usize {
+        self.extensions.get(&TypeId::of::<T>()).map_or(0, Vec::len)
     }
 
     /// Takes everything out of the slot of type `T`.

@@ -1,17 +1,24 @@
 //! What a run writes, and how it is read back: the file formats.
 //!
 //! The files know nothing of the world or the scene: slices go in, files come out. A [`Recorder`] gets the same slices.
+//! [`output`] knows what is due and where it goes.
 
 pub mod atomic;
 pub mod container;
+pub mod fields;
 pub mod hash;
+pub mod output;
+pub mod probe;
 pub mod recorder;
 pub mod series;
+pub mod trigger;
 pub mod vtk;
 
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
+pub use fields::{ChosenField, Field, FieldInput, FieldTable};
 pub use hash::{StateHash, StateHasher};
+pub use output::{Output, OutputHandle, OutputPlan};
 pub use recorder::{
     BodyFrame, BodyInfo, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 };

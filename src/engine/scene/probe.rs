@@ -33,10 +33,12 @@ pub enum Quantity {
     Position,
     /// Velocity \[m/s\].
     Velocity,
-    /// Sum of the reaction forces of the conditions on the selection \[N\].
+    /// Sum over the selection of all forces on its particles except that of what holds them \[N\]: where a condition
+    /// holds or drives the selection, the force that the body exerts on the condition. A body that hangs from its
+    /// support by its weight pulls it down.
     Force,
-    /// A column of the particles by name, such as `"pressure"` or `"von_mises"`; its unit is that of the column.
+    /// A field of the particles by name, such as `"pressure"`, `"velocity.x"` or `"stress.xy"`.
     Field(String),
-    /// Kinetic, strain and all other energies of the selection, or of everything where none is given \[J\].
+    /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given \[J\].
     Energy,
 }

@@ -10,7 +10,7 @@ pub struct Record {
     /// Time between two frames \[s\]; without it a hundredth of the duration.
     #[serde(default)]
     pub every: Option<f64>,
-    /// Columns that are recorded beside the positions, such as `"pressure"` or `"von_mises"`.
+    /// Fields that are recorded beside the positions, such as `"pressure"`, `"von_mises"` or `"velocity.x"`.
     #[serde(default)]
     pub fields: Vec<String>,
     /// Time between two checkpoints \[s\]; without it only an interrupted run leaves one.

@@ -87,6 +87,16 @@ impl Ledger {
         self.total_of(AccountKind::Stored)
     }
 
+    /// All work done on the bodies since the start, J.
+    pub fn supplied(&self) -> f64 {
+        self.total_of(AccountKind::Supplied)
+    }
+
+    /// All stored energy at the start, J.
+    pub fn stored_at_start(&self) -> f64 {
+        self.stored_at_start
+    }
+
     /// Opens the books: what is stored now is the energy at the start, and nothing is supplied or dissipated yet.
     pub fn open(&mut self) {
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
@@ -104,8 +114,7 @@ impl Ledger {
 
     /// What the ledger cannot account for, J.
     pub fn balance_error(&self) -> f64 {
-        self.stored() - self.stored_at_start - self.total_of(AccountKind::Supplied)
-            + self.total_of(AccountKind::Dissipated)
+        self.stored() - self.stored_at_start - self.supplied() + self.total_of(AccountKind::Dissipated)
     }
 
     /// The balance error over the largest energy that any account has held.

@@ -43,6 +43,8 @@ pub struct Step<'s> {
     pub ledger: &'s mut Ledger,
     /// Limits of the next time step.
     pub limits: &'s mut TimeStepLimits,
+    /// What the user should look at; repeated at the end of the run.
+    pub warnings: &'s mut Vec<String>,
     /// Set it to end the run after this step; the text says why.
     pub stop: &'s mut Option<String>,
 }
@@ -68,6 +70,28 @@ pub enum StepError {
         time: f64,
         /// What is known about the cause; empty, or starting with `: `.
         detail: String,
+    },
+    /// The bodies hold far more energy than they were given.
+    #[error(
+        "the stored energy has grown to {stored:.3e} J, more than {factor} times the {available:.3e} J that were there \
+         at the start or supplied, at step {step}, time {time:.6e} s; most of it is `{account}` energy of body \
+         `{body}`: the run is unstable, a smaller time step or a damping may help"
+    )]
+    EnergyGrowth {
+        /// Energy stored now, J.
+        stored: f64,
+        /// Largest factor that is taken for sound.
+        factor: f64,
+        /// Energy at the start and supplied since, J.
+        available: f64,
+        /// Account with the largest energy of one body.
+        account: String,
+        /// That body.
+        body: String,
+        /// Step.
+        step: u64,
+        /// Time, s.
+        time: f64,
     },
     /// What the run writes could not be written.
     #[error("{0}")]

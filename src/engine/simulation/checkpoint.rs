@@ -10,7 +10,10 @@ use thiserror::Error;
 
 use super::Simulation;
 use crate::parallel::instruction_path;
-use crate::record::{Container, ContainerError, ContainerWriter, Existing, StateHash, StateHasher};
+use crate::record::output::OUTPUT;
+use crate::record::{
+    Container, ContainerError, ContainerWriter, Existing, RecordError, StateHash, StateHasher,
+};
 use crate::scene::Source;
 use crate::schedule::{Clock, Ledger, Limit};
 use crate::world::{ColumnInfo, PhaseView};
@@ -36,9 +39,23 @@ pub enum RestoreError {
     /// The file is missing, damaged, or of another version.
     #[error(transparent)]
     Container(#[from] ContainerError),
+    /// The files of the interrupted run cannot be continued.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// The file is whole, but it is not the checkpoint of a simulation.
     #[error("{0}")]
     Content(String),
+}
+
+/// Why a checkpoint cannot be written.
+#[derive(Debug, Error)]
+pub enum SaveError {
+    /// The file cannot be written.
+    #[error(transparent)]
+    Container(#[from] ContainerError),
+    /// The other files of the run, which the checkpoint speaks of, cannot be written.
+    #[error(transparent)]
+    Record(#[from] RecordError),
 }
 
 /// A checkpoint that has been read and checked.
@@ -81,7 +98,11 @@ fn content(message: impl Into<String>) -> RestoreError {
 
 impl Simulation {
     /// Writes a checkpoint, in one piece or not at all; `source` is the scene that the simulation was built from.
-    pub fn save(&self, path: &Path, source: &Source) -> Result<(), ContainerError> {
+    pub fn save(&self, path: &Path, source: &Source) -> Result<(), SaveError> {
+        // The state of the output speaks of bytes that must be there.
+        if let Some(output) = &self.output {
+            output.lock().sync()?;
+        }
         let header = Header {
             scene_name: source.name.clone(),
             scene_text: source.text.clone(),
@@ -94,7 +115,7 @@ impl Simulation {
         };
         let bytes = postcard::to_stdvec(&header).unwrap_or_default();
         let columns = all_columns(self);
-        with_columns(&columns, None, &|last| {
+        with_columns(&columns, None, &|last| -> Result<(), ContainerError> {
             let mut writer = ContainerWriter::new();
             writer.section(STATE, "header", 1, &bytes)?;
             let mut next = last;
@@ -103,10 +124,11 @@ impl Simulation {
                 next = *before;
             }
             writer.write(path, Existing::Replace)
-        })
+        })?;
+        Ok(())
     }
 
-    /// Takes up the state of a checkpoint of the same scene.
+    /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes any.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
         let Header { clock, ledger, next_limit, warnings, systems, .. } = &checkpoint.header;
         for phase in self.world.phases() {
@@ -128,7 +150,8 @@ impl Simulation {
             }
         }
         for (label, state) in systems {
-            if !self.schedule.restore(label, state) {
+            let writes_nothing = label == OUTPUT && self.output.is_none();
+            if !writes_nothing && !self.schedule.restore(label, state) {
                 return Err(content(format!("the state of system `{label}` does not fit")));
             }
         }
@@ -137,6 +160,10 @@ impl Simulation {
         self.next_limit = next_limit.clone();
         self.warnings = warnings.clone();
         self.started = true;
+        self.pace.begin(self.clock.step);
+        if let Some(output) = &self.output {
+            output.lock().open(&self.world, &self.ledger, self.clock)?;
+        }
         Ok(())
     }
 }

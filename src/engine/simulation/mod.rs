@@ -2,14 +2,17 @@
 
 use thiserror::Error;
 
-use crate::record::StateHash;
-use crate::scene::{self, Scene};
+use crate::record::{OutputHandle, StateHash};
+use crate::scene::{self, Scene, Source};
 use crate::schedule::{Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits};
 use crate::world::World;
 
 mod checkpoint;
+mod closing;
+mod summary;
 
-pub use checkpoint::{Checkpoint, RestoreError};
+pub use checkpoint::{Checkpoint, RestoreError, SaveError};
+pub use summary::{Outcome, Summary};
 
 /// A simulation that is ready to run.
 pub struct Simulation {
@@ -26,6 +29,24 @@ pub struct Simulation {
     warnings: Vec<String>,
     references: Vec<String>,
     started: bool,
+    output: Option<OutputHandle>,
+    source: Source,
+    title: String,
+    failure: Option<String>,
+    pace: summary::Pace,
+}
+
+/// What a simulation is put together from.
+pub(crate) struct SimulationParts {
+    pub world: World,
+    pub resources: Resources,
+    pub schedule: Schedule,
+    /// What it writes; none if it writes nothing.
+    pub output: Option<OutputHandle>,
+    /// The text of its scene.
+    pub source: Source,
+    pub warnings: Vec<String>,
+    pub references: Vec<String>,
 }
 
 /// Why a time step cannot be chosen.
@@ -37,6 +58,12 @@ pub enum RunError {
     /// No system proposes a limit, and the scene asks for an adaptive step.
     #[error("nothing limits the time step; give `time: (step: Fixed(dt))`")]
     NoLimit,
+    /// A checkpoint could not be written.
+    #[error(transparent)]
+    Checkpoint(#[from] SaveError),
+    /// What the run writes could not be written.
+    #[error(transparent)]
+    Record(#[from] crate::record::RecordError),
     /// The step has become too small to go on.
     #[error("the time step has fallen to {dt:.3e} s, limited by {by}: the run would not end")]
     StepTooSmall {
@@ -51,14 +78,8 @@ pub enum RunError {
 const LEAST_STEP: f64 = 1e-12;
 
 impl Simulation {
-    pub(crate) fn new(
-        world: World,
-        resources: Resources,
-        schedule: Schedule,
-        scene: &Scene,
-        warnings: Vec<String>,
-        references: Vec<String>,
-    ) -> Self {
+    pub(crate) fn new(parts: SimulationParts, scene: &Scene) -> Self {
+        let SimulationParts { world, resources, schedule, output, source, warnings, references } = parts;
         Self {
             ledger: Ledger::new(world.bodies().len()),
             world,
@@ -73,6 +94,11 @@ impl Simulation {
             warnings,
             references,
             started: false,
+            output,
+            source,
+            title: scene.title.clone(),
+            failure: None,
+            pace: summary::Pace::default(),
         }
     }
 
@@ -138,6 +164,7 @@ impl Simulation {
             return Ok(());
         }
         self.started = true;
+        self.pace.begin(self.clock.step);
         // With dt = 0 the last kick only sets prescribed velocities and takes the energies.
         self.run_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
         self.ledger.open();
@@ -147,8 +174,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Does one step.
+    /// Does one step. If it fails, what has been recorded so far is readable, and the last checkpoint stays.
     pub fn step(&mut self) -> Result<(), RunError> {
+        let result = self.try_step();
+        if let Err(error) = &result {
+            self.fail(error);
+        }
+        result
+    }
+
+    fn try_step(&mut self) -> Result<(), RunError> {
         self.start()?;
         self.clock.dt = self.choose_step()?;
         self.run_stages(|stage| stage != Stage::Record)?;
@@ -157,7 +192,7 @@ impl Simulation {
         self.ledger.close_step();
         self.next_limit = self.limits.take();
         self.run_stages(|stage| stage == Stage::Record)?;
-        Ok(())
+        self.checkpoint_if_due()
     }
 
     /// Does steps until the end, or until `go_on` says no; it is asked before every step.
@@ -181,6 +216,7 @@ impl Simulation {
             clock: self.clock,
             ledger: &mut self.ledger,
             limits: &mut self.limits,
+            warnings: &mut self.warnings,
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

@@ -100,6 +100,7 @@ impl Formulation for TotalLagrangian {
             parameters.check(sim.body(*id).spacing)?;
         }
         let phase = sim.body(bodies[0].0).phase;
+        super::fields::add(sim);
         let terms: Vec<BodyBondTerm> = sim.take_extensions();
         let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms)).collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();

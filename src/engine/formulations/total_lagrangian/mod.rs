@@ -7,6 +7,7 @@
 mod bond_terms;
 mod bonds;
 mod deformation;
+mod fields;
 mod formulation;
 mod internal_force;
 mod pairs;

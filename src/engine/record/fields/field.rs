@@ -1,0 +1,136 @@
+//! A named field of particles.
+
+use std::ops::Range;
+
+use super::rows::FieldColumns;
+use crate::plugin::SimBuilder;
+use crate::schedule::Resources;
+use crate::world::{BodyId, ColumnInfo, ColumnSet, MissingColumn, Value, World};
+
+/// The particles whose field is wanted.
+pub struct FieldInput<'a> {
+    /// Columns and bodies.
+    pub world: &'a World,
+    /// What systems share.
+    pub resources: &'a Resources,
+    /// The body.
+    pub body: BodyId,
+    /// Rows of the body's phase, all of the body.
+    pub rows: Range<usize>,
+}
+
+type Evaluate = dyn Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync;
+
+/// A named field: a number, vector or tensor for each particle that has the columns it needs.
+pub struct Field {
+    name: String,
+    unit: &'static str,
+    components: &'static [&'static str],
+    needs: Vec<&'static str>,
+    formulation: Option<&'static str>,
+    evaluate: Box<Evaluate>,
+}
+
+impl Field {
+    /// A field that is a function of columns of the same particle. Name and unit are those of recordings; the value
+    /// is a number, a vector or a matrix.
+    ///
+    /// ```
+    /// use meshless_engine::record::Field;
+    /// use meshless_engine::world::{Mass, Velocity};
+    ///
+    /// Field::new::<(Mass, Velocity), f64>("kinetic_energy", "J", |(m, v)| 0.5 * m.0 * v.0.length_squared());
+    /// ```
+    pub fn new<Q: FieldColumns, V: Value>(
+        name: impl Into<String>,
+        unit: &'static str,
+        f: impl for<'r> Fn(Q::Row<'r>) -> V + Send + Sync + 'static,
+    ) -> Self {
+        let evaluate = move |input: &FieldInput<'_>, out: &mut Vec<f64>| {
+            let (phase, _) = input.world.body_view(input.body);
+            Q::evaluate(&phase, input.rows.clone(), &f, out)
+        };
+        Self::with_input(name, unit, V::COMPONENTS, Q::names(), evaluate)
+    }
+
+    /// A field that depends on more than the particle's own columns: `evaluate` appends the components row by row.
+    /// `components` are their names, `[""]` for a number; `needs` names the columns without which there is no field.
+    pub fn with_input(
+        name: impl Into<String>,
+        unit: &'static str,
+        components: &'static [&'static str],
+        needs: Vec<&'static str>,
+        evaluate: impl Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync + 'static,
+    ) -> Self {
+        let evaluate = Box::new(evaluate);
+        Self { name: name.into(), unit, components, needs, formulation: None, evaluate }
+    }
+
+    /// The field that a column is.
+    pub(super) fn column(column: ColumnInfo) -> Self {
+        let evaluate = move |input: &FieldInput<'_>, out: &mut Vec<f64>| {
+            let (phase, _) = input.world.body_view(input.body);
+            let (start, width) = (out.len(), column.components.len());
+            out.resize(start + input.rows.len() * width, 0.0);
+            let mut values = Vec::with_capacity(input.rows.len());
+            for k in 0..width {
+                values.clear();
+                phase.component(&column, input.rows.clone(), k, &mut values);
+                for (row, value) in out[start..].chunks_exact_mut(width).zip(&values) {
+                    row[k] = *value;
+                }
+            }
+            Ok(())
+        };
+        Self::with_input(column.name, column.unit, column.components, vec![column.name], evaluate)
+    }
+
+    /// The same field for bodies of one formulation only.
+    #[must_use]
+    pub fn only_for(mut self, formulation: &'static str) -> Self {
+        self.formulation = Some(formulation);
+        self
+    }
+
+    /// Name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Unit, SI; `1` for a pure number.
+    pub fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// Names of the components; `[""]` for a number.
+    pub fn components(&self) -> &'static [&'static str] {
+        self.components
+    }
+
+    /// Names of the columns that it reads.
+    pub(super) fn needs(&self) -> &[&'static str] {
+        &self.needs
+    }
+
+    /// Whether bodies of that formulation, with those columns, have the field.
+    pub(super) fn fits(&self, formulation: &str, columns: &ColumnSet) -> bool {
+        self.formulation.is_none_or(|only| only == formulation)
+            && self.needs.iter().all(|name| columns.get(name).is_some())
+    }
+
+    /// Appends the components of the field to `out`, row by row.
+    ///
+    /// # Errors
+    /// The particles do not have a column that it needs.
+    pub fn evaluate(&self, input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
+        (self.evaluate)(input, out)
+    }
+}
+
+impl SimBuilder<'_> {
+    /// Adds a field for recordings, ParaView files and probes. Of several fields of one name a body has the first
+    /// whose columns it has.
+    pub fn add_field(&mut self, field: Field) {
+        self.extend(field);
+    }
+}

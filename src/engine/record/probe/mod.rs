@@ -1,0 +1,9 @@
+//! Probes: what the particles of a selection do, or a field at a point, as functions of time.
+
+mod energies;
+mod particles;
+mod point;
+mod resolve;
+
+pub use energies::EnergyColumns;
+pub use resolve::{Gauge, Probe};

@@ -1,0 +1,73 @@
+//! A field at a point: an average over the particles nearby, corrected so that a linear field comes out exactly.
+//!
+//! With weights w_k and distances d_k from the point, the value is that of the weighted least-squares plane at the
+//! point, `f = mean(f) - g . mean(d)` with the slope `g = C^-1 cov(d, f)` (moving least squares of first order,
+//! Lancaster & Salkauskas, Math. Comp. 37 (1981) 141). Where the particles do not span the space, it is the plain
+//! weighted mean (Shepard).
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::correction::MomentMatrix;
+use crate::record::fields::ChosenField;
+use crate::schedule::Resources;
+use crate::world::{BodyId, MissingColumn, Position, World};
+
+/// Reach of the average over the spacing of a body: less would leave a single particle at a corner.
+const REACH: f64 = 2.0;
+
+/// A field interpolated at a point of space, from the bodies that have it.
+pub struct PointGauge {
+    pub(super) at: DVec3,
+    pub(super) field: ChosenField,
+}
+
+/// A particle near the point.
+struct Near {
+    weight: f64,
+    offset: DVec3,
+    values: Vec<f64>,
+}
+
+impl PointGauge {
+    /// The field at the point, one number for each component; NaN where no particle is near.
+    pub(super) fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let near = self.near(world, resources)?;
+        let total: f64 = near.iter().map(|p| p.weight).sum();
+        let mean_offset = near.iter().map(|p| p.weight * p.offset).sum::<DVec3>() / total;
+        let mut moment = MomentMatrix::new(world.dimension().count());
+        near.iter().for_each(|p| moment.add(p.weight, p.offset - mean_offset));
+        let inverse = moment.inverse();
+        let component = |c: usize| {
+            let mean = near.iter().map(|p| p.weight * p.values[c]).sum::<f64>() / total;
+            let slope = inverse.map_or(DVec3::ZERO, |inverse| {
+                let centred = |p: &Near| p.weight * (p.values[c] - mean) * (p.offset - mean_offset);
+                inverse * near.iter().map(centred).sum::<DVec3>()
+            });
+            mean - slope.dot(mean_offset)
+        };
+        Ok((0..self.field.width()).map(component).collect())
+    }
+
+    /// Particles within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.
+    fn near(&self, world: &World, resources: &Resources) -> Result<Vec<Near>, MissingColumn> {
+        let mut near = Vec::new();
+        for (k, body) in world.bodies().iter().enumerate().filter(|(k, _)| self.field.is_in(BodyId(*k))) {
+            let reach = REACH * body.spacing;
+            let volume = body.spacing.powi(world.dimension().count() as i32);
+            let found: Vec<(usize, DVec3)> = {
+                let position = world.phase(body.phase).read::<Position>()?;
+                let position: &[Position] = &position;
+                let offset = |row: usize| (row, position[row].0 - self.at);
+                let within = |(_, offset): &(usize, DVec3)| offset.length_squared() < reach * reach;
+                body.rows.clone().into_par_iter().with_min_len(4096).map(offset).filter(within).collect()
+            };
+            for (row, offset) in found {
+                let weight = volume * (1.0 - offset.length() / reach).powi(2);
+                let values = self.field.read(world, resources, BodyId(k), row..row + 1)?;
+                near.push(Near { weight, offset, values });
+            }
+        }
+        Ok(near)
+    }
+}

@@ -1,0 +1,82 @@
+//! Checkpoints on the way, and the end of a run: files closed, summary written.
+
+use std::path::{Path, PathBuf};
+
+use super::{RunError, SaveError, Simulation, Summary};
+use crate::record::{Existing, RecordError, write_atomically};
+
+/// Relative balance error of the energy ledger at the end that is worth a warning.
+const BALANCE_WARNING: f64 = 1e-2;
+
+impl Simulation {
+    /// Writes a checkpoint into the output folder, in place of the last one; returns its file, or none if the run
+    /// writes nothing.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn checkpoint(&mut self) -> Result<Option<PathBuf>, SaveError> {
+        let Some(output) = &self.output else { return Ok(None) };
+        let file = output.lock().checkpoint_file();
+        self.save(&file, &self.source)?;
+        Ok(Some(file))
+    }
+
+    pub(super) fn checkpoint_if_due(&mut self) -> Result<(), RunError> {
+        let due = self.output.as_ref().is_some_and(|output| output.lock().take_checkpoint_due());
+        if due {
+            self.checkpoint()?;
+        }
+        Ok(())
+    }
+
+    /// Notes why the run cannot go on, and makes readable what was recorded.
+    pub(super) fn fail(&mut self, error: &RunError) {
+        self.failure = Some(error.to_string());
+        if let Some(output) = &self.output {
+            // The failure of the run is told; one of this attempt would hide it.
+            let _ = output.lock().flush();
+        }
+    }
+
+    /// Ends the run, wherever it is: writes a checkpoint unless it is complete or has failed, closes all files and
+    /// writes the summary. A second call writes nothing new.
+    ///
+    /// # Errors
+    /// Something cannot be written.
+    pub fn finish(&mut self) -> Result<Summary, RunError> {
+        self.warn_of_balance();
+        let begun = self.output.as_ref().filter(|output| output.lock().has_begun()).cloned();
+        let Some(output) = begun else { return Ok(self.summary()) };
+        if self.failure.is_none() && self.clock.time < self.end {
+            self.checkpoint()?;
+        }
+        output.lock().finish(&self.warnings)?;
+        let summary = self.summary();
+        let file = output.lock().summary_file();
+        write_summary(&file, &summary)?;
+        Ok(summary)
+    }
+
+    /// The run has used more energy than it can account for.
+    fn warn_of_balance(&mut self) {
+        let error = self.ledger.relative_error();
+        if error.abs() > BALANCE_WARNING && self.failure.is_none() {
+            let text = format!(
+                "the energy balance is off by {:.2} % of the largest energy ({:.3e} J)",
+                100.0 * error,
+                self.ledger.balance_error()
+            );
+            if !self.warnings.contains(&text) {
+                self.warnings.push(text);
+            }
+        }
+    }
+}
+
+fn write_summary(file: &Path, summary: &Summary) -> Result<(), RecordError> {
+    let write = |w: &mut dyn std::io::Write| {
+        serde_json::to_writer_pretty(&mut *w, summary).map_err(std::io::Error::other)?;
+        w.write_all(b"\n")
+    };
+    Ok(write_atomically(file, Existing::Replace, write)?)
+}
