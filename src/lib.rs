@@ -1,1 +1,26 @@
-//! meshless
+//! `meshless`: particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
+//!
+//! A scene is described in RON, run by the `meshless` program, and its recording is looked at in the rerun viewer. What
+//! the program cannot do is added in Rust: a plugin, a material, a condition or a formulation is a type that is
+//! registered under a name, and scenes then use the name. A program with an addition of its own is
+//!
+//! ```no_run
+//! # mod my_plugin { pub fn register(_: &mut meshless::prelude::Registry) {} }
+//! fn main() -> std::process::ExitCode {
+//!     meshless::cli::run(meshless::standard_plugins().with(my_plugin::register))
+//! }
+//! ```
+//!
+//! This package is the facade: it re-exports the engine, adds the standard plugins and the command line.
+
+pub use meshless_engine::*;
+
+pub mod cli;
+pub mod prelude;
+
+use plugin::Registry;
+
+/// Everything that the `meshless` program knows by name: what the engine brings, and the standard plugins.
+pub fn standard_plugins() -> Registry {
+    Registry::standard().with(hourglass_control::register)
+}

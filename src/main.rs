@@ -1,2 +1,5 @@
-//! meshless
-fn main() {}
+//! The `meshless` program: the command line with the standard plugins.
+
+fn main() -> std::process::ExitCode {
+    meshless::cli::run(meshless::standard_plugins())
+}

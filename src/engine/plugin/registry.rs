@@ -7,7 +7,7 @@ use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::traits::{Formulation, Plugin};
 use crate::materials::{Material, MaterialModel};
-use crate::scene::{Item, Parameter, Problem, parameters, unknown};
+use crate::scene::{Item, Parameter, Problem, TypeDoc, parameters, type_docs, unknown};
 use crate::world::{BodyId, ColumnSet};
 
 /// What kind of thing a name of a scene stands for.
@@ -44,6 +44,15 @@ pub struct Entry {
     pub reference: &'static str,
     /// Parameters with type, default and documentation.
     pub parameters: Vec<Parameter>,
+    /// The documentation of the entry itself, then of the types of its parameters.
+    pub docs: Vec<TypeDoc>,
+}
+
+impl Entry {
+    /// What it is, in a line or a few.
+    pub fn doc(&self) -> &str {
+        self.docs.first().map_or("", |own| &own.doc)
+    }
 }
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
@@ -133,7 +142,8 @@ impl Registry {
         name: &'static str,
         reference: &'static str,
     ) -> &mut Self {
-        self.entries.insert((kind, name), Entry { name, reference, parameters: parameters::<T>() });
+        let entry = Entry { name, reference, parameters: parameters::<T>(), docs: type_docs::<T>() };
+        self.entries.insert((kind, name), entry);
         self
     }
 

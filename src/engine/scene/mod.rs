@@ -40,7 +40,7 @@ pub use per_axis::PerAxis;
 pub use probe::{Probe, Quantity};
 pub use problem::{Place, Problem, SceneError};
 pub use record::Record;
-pub use reference::{Parameter, parameters, schema_markdown};
+pub use reference::{Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select};
 pub use source::Source;
 pub use time::{Step, Time};

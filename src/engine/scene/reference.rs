@@ -28,12 +28,22 @@ pub fn parameters<T: JsonSchema>() -> Vec<Parameter> {
     fields(&schema, &Definitions(schema.get("$defs")))
 }
 
-/// The reference of everything in a scene that is not found in a registry, as Markdown.
-pub fn schema_markdown() -> String {
-    let schema = SchemaGenerator::default().into_root_schema_for::<Scene>().to_value();
+/// The documentation of a type as scenes write it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TypeDoc {
+    /// Name of the type.
+    pub name: String,
+    /// What it is, with its unit.
+    pub doc: String,
+    /// Its fields or variants as Markdown; empty if it has none.
+    pub body: String,
+}
+
+/// The documentation of a type, and then of every type that it mentions, each once.
+pub fn type_docs<T: JsonSchema>() -> Vec<TypeDoc> {
+    let schema = SchemaGenerator::default().into_root_schema_for::<T>().to_value();
     let definitions = Definitions(schema.get("$defs"));
-    let mut page = String::new();
-    section(&mut page, "Scene", &schema, &definitions);
+    let mut docs = vec![type_doc(&T::schema_name(), &schema, &definitions)];
     let mut waiting = mentioned(&schema);
     let mut done = Vec::new();
     while !waiting.is_empty() {
@@ -42,12 +52,20 @@ pub fn schema_markdown() -> String {
             continue;
         }
         if let Some(definition) = definitions.get(&name).filter(|definition| !doc(definition).is_empty()) {
-            section(&mut page, &name, definition, &definitions);
+            docs.push(type_doc(&name, definition, &definitions));
             waiting.extend(mentioned(definition));
         }
         done.push(name);
     }
-    page
+    docs
+}
+
+/// The reference of everything in a scene that is not found in a registry, as Markdown.
+pub fn schema_markdown() -> String {
+    let section = |TypeDoc { name, doc, body }| {
+        if body.is_empty() { format!("## {name}\n\n{doc}\n") } else { format!("## {name}\n\n{doc}\n{body}") }
+    };
+    type_docs::<Scene>().into_iter().map(section).collect::<Vec<_>>().join("\n")
 }
 
 struct Definitions<'a>(Option<&'a Value>);
@@ -225,10 +243,13 @@ fn written(value: &Value, schema: &Value, definitions: &Definitions) -> String {
     }
 }
 
-fn section(page: &mut String, name: &str, schema: &Value, definitions: &Definitions) {
-    let separator = if page.is_empty() { "" } else { "\n" };
-    // Writing to a String cannot fail.
-    let _ = writeln!(page, "{separator}## {name}\n\n{}", doc(schema));
+fn type_doc(name: &str, schema: &Value, definitions: &Definitions) -> TypeDoc {
+    let mut body = String::new();
+    write_body(&mut body, schema, definitions);
+    TypeDoc { name: name.to_owned(), doc: doc(schema), body }
+}
+
+fn write_body(page: &mut String, schema: &Value, definitions: &Definitions) {
     let parameters = fields(schema, definitions);
     if !parameters.is_empty() {
         table(page, &parameters);
@@ -245,6 +266,7 @@ fn section(page: &mut String, name: &str, schema: &Value, definitions: &Definiti
     for (variant, content) in variants {
         match content {
             None => {
+                // Writing to a String cannot fail.
                 let _ = writeln!(page, "\n- `{variant}`: {}", doc_of(&variant));
             }
             Some(content) => {

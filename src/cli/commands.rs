@@ -1,0 +1,61 @@
+//! The commands of the program. A command is a file and a line in [`Command`] and in [`Command::execute`].
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use meshless_engine::plugin::Registry;
+
+use super::failure::Failure;
+use super::{check, new, plugins, resume, schema, view};
+
+/// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
+#[derive(Parser)]
+#[command(name = "meshless", version, arg_required_else_help = true)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(super::run::Arguments),
+    Resume(resume::Arguments),
+    Check(check::Arguments),
+    New(new::Arguments),
+    Plugins(plugins::Arguments),
+    Schema(schema::Arguments),
+    View(view::Arguments),
+}
+
+impl Command {
+    fn execute(self, registry: &Registry) -> Result<(), Failure> {
+        match self {
+            Self::Run(arguments) => super::run::execute(arguments, registry),
+            Self::Resume(arguments) => resume::execute(arguments, registry),
+            Self::Check(arguments) => check::execute(&arguments, registry),
+            Self::New(arguments) => new::execute(arguments),
+            Self::Plugins(arguments) => plugins::execute(&arguments, registry),
+            Self::Schema(arguments) => schema::execute(&arguments, registry),
+            Self::View(arguments) => view::execute(&arguments),
+        }
+    }
+}
+
+/// Runs the program with the arguments it was started with: the whole `main` of a program that scenes are run with.
+pub fn run(registry: Registry) -> ExitCode {
+    let command = match CommandLine::try_parse() {
+        Ok(line) => line.command,
+        Err(error) => {
+            // Help and version are also reported this way; a closed output stream is no failure.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match command.execute(&registry) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            failure.exit_code()
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! How a command fails, and the exit code of each way.
+
+use std::process::ExitCode;
+
+use meshless_engine::scene::SceneError;
+use thiserror::Error;
+
+use super::text::complain;
+
+/// Why a command did not do what it was asked to.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The scene cannot be used. Exit code 2.
+    #[error("{0}")]
+    Scene(SceneError),
+    /// The command was called wrongly. Exit code 2.
+    #[error("error: {0}")]
+    Usage(String),
+    /// The run failed, or a file could not be read or written. Exit code 1.
+    #[error("error: {0}")]
+    Run(String),
+    /// The user stopped the run. Exit code 130, as shells count a program that was ended by Ctrl-C.
+    #[error("the run was interrupted")]
+    Interrupted,
+}
+
+impl Failure {
+    pub(super) fn report(&self) {
+        complain(&self.to_string());
+    }
+
+    pub(super) fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Scene(_) | Self::Usage(_) => 2,
+            Self::Run(_) => 1,
+            Self::Interrupted => 130,
+        })
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(error)
+    }
+}

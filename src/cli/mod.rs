@@ -1,0 +1,22 @@
+//! The command line: a file for each command, and what they share.
+
+mod check;
+mod commands;
+mod failure;
+mod folder;
+mod interrupt;
+mod neighbors;
+mod new;
+mod plugins;
+mod profile;
+mod progress;
+mod resume;
+mod run;
+mod scene_file;
+mod schema;
+mod session;
+mod summary;
+mod text;
+mod view;
+
+pub use commands::run;

@@ -1,0 +1,68 @@
+//! `meshless new`: a commented scene to start from.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use meshless_engine::record::{Existing, write_atomically};
+use meshless_engine::scene::unknown;
+
+use super::failure::Failure;
+use super::text::{Table, say};
+
+/// Write a commented scene to start from; without a name, list those that there are
+#[derive(Args)]
+pub struct Arguments {
+    /// Name of the template
+    #[arg(value_name = "TEMPLATE")]
+    template: Option<String>,
+    /// File to write [default: <template>.ron]
+    #[arg(value_name = "FILE", requires = "template")]
+    file: Option<PathBuf>,
+}
+
+struct Template {
+    name: &'static str,
+    text: &'static str,
+}
+
+macro_rules! templates {
+    ($($name:literal),+ $(,)?) => {
+        [$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
+    };
+}
+
+/// The scenes of the project are the templates.
+const TEMPLATES: [Template; 1] = templates!["cantilever"];
+
+impl Template {
+    /// The first line of the comment that a scene begins with.
+    fn about(&self) -> &'static str {
+        self.text.lines().next().unwrap_or_default().trim_start_matches('/').trim()
+    }
+}
+
+/// Writes the template, or lists all.
+pub fn execute(arguments: Arguments) -> Result<(), Failure> {
+    let Some(name) = arguments.template else {
+        say(&list());
+        return Ok(());
+    };
+    let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
+        let known: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
+        let (message, helps) = unknown("template", &name, &known);
+        return Err(Failure::Usage(format!("{message}\n{}", helps.join("\n"))));
+    };
+    let file = arguments.file.unwrap_or_else(|| Path::new(&name).with_extension("ron"));
+    write_atomically(&file, Existing::Refuse, |to| to.write_all(template.text.as_bytes()))
+        .map_err(|error| Failure::Run(error.to_string()))?;
+    say(&format!("{} is written; run it with: meshless run {}", file.display(), file.display()));
+    Ok(())
+}
+
+fn list() -> String {
+    let mut table = Table::new(&["template", "what it shows"], 0);
+    for template in &TEMPLATES {
+        table.row([template.name.to_owned(), template.about().to_owned()]);
+    }
+    table.render() + "\n`meshless new TEMPLATE [FILE]` writes one"
+}

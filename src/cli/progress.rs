@@ -1,0 +1,107 @@
+//! What the user sees while a run goes on: a bar on a terminal, plain lines elsewhere.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use meshless_engine::simulation::Simulation;
+
+use super::text::{complain, counted, duration};
+
+/// Time between two updates of the bar.
+const BAR_INTERVAL: Duration = Duration::from_millis(200);
+/// Time between two plain lines.
+const LINE_INTERVAL: Duration = Duration::from_secs(10);
+/// Ticks of the bar for the whole run.
+const TICKS: u64 = 1000;
+
+/// Shows how far a run is.
+pub struct Progress {
+    display: Display,
+    interval: Duration,
+    begun: Instant,
+    shown: Instant,
+    start: (f64, u64),
+}
+
+enum Display {
+    Nothing,
+    Bar(ProgressBar),
+    Lines,
+}
+
+impl Progress {
+    /// Starts to watch a run; the time that it has behind it does not count for the rates.
+    pub fn new(sim: &Simulation, quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let display = match (quiet, terminal) {
+            (true, _) => Display::Nothing,
+            (false, true) => Display::Bar(bar()),
+            (false, false) => Display::Lines,
+        };
+        let interval = if terminal { BAR_INTERVAL } else { LINE_INTERVAL };
+        let now = Instant::now();
+        Self { display, interval, begun: now, shown: now, start: (sim.clock().time, sim.clock().step) }
+    }
+
+    /// Wall time since the start, s.
+    pub fn elapsed(&self) -> f64 {
+        self.begun.elapsed().as_secs_f64()
+    }
+
+    /// Steps done since the start.
+    pub fn steps(&self, sim: &Simulation) -> u64 {
+        sim.clock().step - self.start.1
+    }
+
+    /// Particles times steps over wall time, 1/s.
+    pub fn rate(&self, sim: &Simulation) -> f64 {
+        self.steps(sim) as f64 * sim.world().len() as f64 / self.elapsed().max(1e-9)
+    }
+
+    /// To be called after every step: shows the state if it is due.
+    pub fn update(&mut self, sim: &Simulation) {
+        if self.shown.elapsed() < self.interval {
+            return;
+        }
+        self.shown = Instant::now();
+        let share = sim.clock().time / sim.end();
+        match &self.display {
+            Display::Nothing => {}
+            Display::Bar(bar) => {
+                bar.set_position((share * TICKS as f64) as u64);
+                bar.set_message(self.state(sim));
+            }
+            Display::Lines => complain(&format!("{:5.1} %  {}", 100.0 * share, self.state(sim))),
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Display::Bar(bar) = &self.display {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn state(&self, sim: &Simulation) -> String {
+        let clock = sim.clock();
+        let limiter = sim.limit().map(|limit| format!(" ({})", limit.by)).unwrap_or_default();
+        let done = clock.time - self.start.0;
+        let rest = self.elapsed() * (sim.end() - clock.time) / done;
+        format!(
+            "t {:.4e} s  step {}  dt {:.2e} s{limiter}  {}  {} left",
+            clock.time,
+            clock.step,
+            clock.dt,
+            counted(self.rate(sim), "particle-steps/s"),
+            duration(rest)
+        )
+    }
+}
+
+fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed}\n{wide_msg}");
+    let bar = ProgressBar::new(TICKS);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}

@@ -1,0 +1,39 @@
+//! `meshless run`: a scene from its start to its end.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
+use meshless_engine::record::Existing;
+
+use super::failure::Failure;
+use super::folder::default_folder;
+use super::scene_file::SceneFile;
+use super::session::{How, Session};
+
+/// Run a scene
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneFile,
+    /// Folder to write to [default: out/<scene>]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Overwrite the output of an earlier run
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    how: How,
+}
+
+/// Runs the scene.
+pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
+    let Arguments { scene: file, out, force, how } = arguments;
+    let (scene, source) = file.load()?;
+    how.set_threads()?;
+    let folder = out.unwrap_or_else(|| default_folder(&file.path));
+    let existing = if force { Existing::Replace } else { Existing::Refuse };
+    let output = OutputOptions { folder: folder.clone(), existing, resume: false };
+    let sim = plugin::build_with(&scene, &source, registry, &BuildOptions { output: Some(output) })?;
+    Session { sim, source, folder }.carry_out(&how)
+}

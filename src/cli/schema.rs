@@ -1,0 +1,67 @@
+//! `meshless schema`: the reference of everything a scene can say, as Markdown.
+
+use std::fmt::Write;
+
+use clap::Args;
+use meshless_engine::plugin::{Kind, Registry};
+use meshless_engine::scene::{Scene, TypeDoc, schema_markdown, type_docs};
+
+use super::failure::Failure;
+use super::plugins::KINDS;
+use super::text::say;
+
+/// Print the reference of scenes, with all that is registered, as Markdown
+#[derive(Args)]
+pub struct Arguments {}
+
+const INTRODUCTION: &str = "\
+# Scene reference
+
+<!-- Written by `meshless schema`; a test compares the two. -->
+
+A scene is a RON text: structs with named fields in round brackets, lists in square ones, maps in curly ones. Units are
+SI, and points and vectors have two or three components. Fields that have a default may be left out. Numbers that may
+depend on place and time are expressions in x, y, z, t within quotes.
+";
+
+/// Prints the reference.
+pub fn execute(_: &Arguments, registry: &Registry) -> Result<(), Failure> {
+    say(&reference(registry));
+    Ok(())
+}
+
+fn reference(registry: &Registry) -> String {
+    let mut page = format!("{INTRODUCTION}\n{}", schema_markdown());
+    let mut told: Vec<TypeDoc> = type_docs::<Scene>();
+    for kind in KINDS {
+        // Writing to a String cannot fail.
+        let _ = writeln!(page, "\n# {}", heading(kind));
+        let mut types = Vec::new();
+        for entry in registry.entries(kind) {
+            let _ = write!(page, "\n## {}\n\n{}\n", entry.name, entry.doc());
+            if let Some(own) = entry.docs.first() {
+                page += &own.body;
+            }
+            if !entry.reference.is_empty() {
+                let _ = writeln!(page, "\nSource: {}", entry.reference);
+            }
+            types.extend(entry.docs.iter().skip(1));
+        }
+        for docs in types {
+            if !told.contains(docs) {
+                let _ = write!(page, "\n### {}\n\n{}\n{}", docs.name, docs.doc, docs.body);
+                told.push(docs.clone());
+            }
+        }
+    }
+    page
+}
+
+fn heading(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Material => "Materials",
+        Kind::Formulation => "Formulations",
+        Kind::Condition => "Conditions",
+        Kind::Plugin => "Plugins",
+    }
+}

@@ -1,0 +1,107 @@
+//! Text for people: numbers with prefixes, durations, aligned tables, and streams that may be closed.
+
+use std::io::Write;
+use std::time::Duration;
+
+/// Prints lines for the user. That nobody reads them, as after `| head`, is no failure.
+pub fn say(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+}
+
+/// Prints what went wrong or needs a look.
+pub fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
+}
+
+/// A number, with a decimal prefix where it is large, and what it counts: `1.23 M particles`.
+pub fn counted(value: f64, what: &str) -> String {
+    let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
+    match prefixes.iter().find(|(scale, _)| value.abs() >= *scale) {
+        Some((scale, prefix)) => format!("{:.2} {prefix} {what}", value / scale),
+        None => format!("{value:.0} {what}"),
+    }
+}
+
+/// An amount of memory: `1.5 MiB`.
+pub fn bytes(count: usize) -> String {
+    let count = count as f64;
+    let units = [(1024.0 * 1024.0 * 1024.0, "GiB"), (1024.0 * 1024.0, "MiB"), (1024.0, "KiB")];
+    match units.iter().find(|(scale, _)| count >= *scale) {
+        Some((scale, unit)) => format!("{:.1} {unit}", count / scale),
+        None => format!("{count} B"),
+    }
+}
+
+/// A duration in the two largest units that say something: `2 h 5 min`, `12 s`, `0.35 s`.
+pub fn duration(seconds: f64) -> String {
+    // Beyond a million hours the number says all there is to say.
+    if !(seconds < 3.6e9) {
+        return "very long".into();
+    }
+    let whole = Duration::from_secs_f64(seconds.max(0.0)).as_secs();
+    match (whole / 86400, whole / 3600 % 24, whole / 60 % 60, whole % 60) {
+        (0, 0, 0, s) if s < 10 => format!("{seconds:.2} s"),
+        (0, 0, 0, s) => format!("{s} s"),
+        (0, 0, m, s) => format!("{m} min {s} s"),
+        (0, h, m, _) => format!("{h} h {m} min"),
+        (d, h, _, _) => format!("{d} d {h} h"),
+    }
+}
+
+/// A table with aligned columns: the first ones to the left, `numbers` last ones to the right.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+    numbers: usize,
+}
+
+impl Table {
+    /// A table with these headings.
+    pub fn new(headings: &[&str], numbers: usize) -> Self {
+        Self { rows: vec![headings.iter().map(|&heading| heading.to_owned()).collect()], numbers }
+    }
+
+    /// Adds a row, which must have as many cells as there are headings.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// The table as lines, each indented by two spaces.
+    pub fn render(&self) -> String {
+        let columns = self.rows[0].len();
+        let width = |k: usize| self.rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let cell = |k: usize, text: &String| {
+            let width = widths[k];
+            if k + self.numbers >= columns { format!("{text:>width$}") } else { format!("{text:<width$}") }
+        };
+        let line = |row: &Vec<String>| {
+            let cells: Vec<String> = row.iter().enumerate().map(|(k, text)| cell(k, text)).collect();
+            format!("  {}\n", cells.join("  ").trim_end())
+        };
+        self.rows.iter().map(line).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(counted(1_234_567.0, "steps"), "1.23 M steps");
+        assert_eq!(counted(12.0, "steps"), "12 steps");
+        assert_eq!(bytes(3 << 19), "1.5 MiB");
+        assert_eq!(duration(0.354), "0.35 s");
+        assert_eq!(duration(7505.0), "2 h 5 min");
+        assert_eq!(duration(f64::INFINITY), "very long");
+        assert_eq!(duration(f64::NAN), "very long");
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let mut table = Table::new(&["name", "J"], 1);
+        table.row(["kinetic".into(), "1.0".into()]);
+        table.row(["st\u{e4}rke".into(), "12.0".into()]);
+        assert_eq!(table.render(), "  name        J\n  kinetic   1.0\n  st\u{e4}rke   12.0\n");
+    }
+}
