@@ -1,0 +1,239 @@
+//! The program as its users call it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+fn scene(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name)
+}
+
+fn cantilever() -> String {
+    scene("cantilever.ron").display().to_string()
+}
+
+/// Runs the program in a folder.
+fn meshless(folder: &TempDir, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_meshless"))
+        .args(arguments)
+        .current_dir(folder.path())
+        .output()
+        .expect("the program starts")
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn assert_success(output: &Output) {
+    assert!(output.status.success(), "exit {:?}\n{}\n{}", output.status.code(), out(output), err(output));
+}
+
+/// The line of the summary that tells the state.
+fn state_hash(output: &Output) -> String {
+    let text = out(output);
+    let line = text.lines().find(|line| line.starts_with("state hash")).expect("the summary tells the state");
+    line.to_owned()
+}
+
+#[test]
+fn a_run_ends_with_a_summary_and_leaves_a_checkpoint_if_it_is_cut_short() {
+    let folder = folder();
+    let output = meshless(&folder, &["run", &cantilever(), "--steps", "10", "--profile"]);
+    assert_success(&output);
+    let text = out(&output);
+    for expected in
+        ["step 10", "particle-steps/s", "kinetic", "balance error", "Ganzenmueller", "meshless resume"]
+    {
+        assert!(text.contains(expected), "`{expected}` is missing in\n{text}");
+    }
+    assert!(text.contains("ns/particle-step"), "the table of --profile is missing in\n{text}");
+    assert!(folder.path().join("out/cantilever/checkpoint.mlc").is_file());
+}
+
+#[test]
+fn a_quiet_run_prints_nothing() {
+    let folder = folder();
+    let output = meshless(&folder, &["run", &cantilever(), "--steps", "2", "--quiet"]);
+    assert_success(&output);
+    assert_eq!(out(&output), "");
+}
+
+#[test]
+fn resuming_gives_the_state_of_a_run_that_was_not_interrupted() {
+    let folder = folder();
+    let whole =
+        meshless(&folder, &["run", &cantilever(), "--steps", "25", "--out", "whole", "--threads", "2"]);
+    assert_success(&whole);
+    assert_success(&meshless(
+        &folder,
+        &["run", &cantilever(), "--steps", "9", "--out", "cut", "--threads", "1"],
+    ));
+    let rest = meshless(&folder, &["resume", "cut", "--steps", "16"]);
+    assert_success(&rest);
+    assert_eq!(state_hash(&rest), state_hash(&whole));
+}
+
+#[test]
+fn a_complete_run_can_be_prolonged_only_by_a_later_end() {
+    let folder = folder();
+    assert_success(&meshless(&folder, &["run", &cantilever(), "--steps", "5", "--out", "o"]));
+    let checkpoint = folder.path().join("o/checkpoint.mlc");
+    let checkpoint = checkpoint.to_str().expect("a path in UTF-8");
+    let early = meshless(&folder, &["resume", checkpoint, "--until", "1e-9"]);
+    assert_eq!(early.status.code(), Some(2));
+    assert!(err(&early).contains("--until"), "{}", err(&early));
+    let prolonged = meshless(&folder, &["resume", checkpoint, "--until", "2e-5"]);
+    assert_success(&prolonged);
+    assert!(out(&prolonged).contains("complete at 2.000000e-5 s"), "{}", out(&prolonged));
+}
+
+#[test]
+fn a_value_can_be_replaced() {
+    let folder = folder();
+    let arguments = ["run", &cantilever(), "--set", "time.end=3e-6", "--set", "bodies.bar.spacing=0.025"];
+    let output = meshless(&folder, &arguments);
+    assert_success(&output);
+    assert!(out(&output).contains("complete at 3.000000e-6 s"), "{}", out(&output));
+    assert!(out(&output).contains("of 168 particles"), "{}", out(&output));
+}
+
+#[test]
+fn faults_of_a_scene_are_shown_at_their_place_and_nothing_is_written() {
+    let folder = folder();
+    let text = std::fs::read_to_string(scene("cantilever.ron")).expect("the scene");
+    let line = 1 + text.lines().position(|line| line.contains("spacing:")).expect("a spacing");
+    let wrong = folder.path().join("wrong.ron");
+    std::fs::write(&wrong, text.replace("spacing:", "spacin:")).expect("a scene is written");
+    let output = meshless(&folder, &["run", "wrong.ron"]);
+    assert_eq!(output.status.code(), Some(2));
+    let shown = err(&output);
+    assert!(shown.contains(&format!("wrong.ron:{line}:")), "{shown}");
+    assert!(shown.contains("`spacing`") && shown.contains('^'), "{shown}");
+    assert!(!folder.path().join("out").exists());
+
+    let unknown = text.replace("hourglass_control()", "hourglas_control()");
+    std::fs::write(&wrong, unknown).expect("a scene is written");
+    let output = meshless(&folder, &["run", "wrong.ron"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(err(&output).contains("did you mean `hourglass_control`"), "{}", err(&output));
+}
+
+#[test]
+fn wrong_calls_are_told_apart_from_failed_runs() {
+    let folder = folder();
+    assert_eq!(meshless(&folder, &["run"]).status.code(), Some(2));
+    assert_eq!(meshless(&folder, &["run", "nowhere.ron"]).status.code(), Some(2));
+    assert_eq!(meshless(&folder, &["run", &cantilever(), "--threads", "0"]).status.code(), Some(2));
+    assert_eq!(meshless(&folder, &["run", &cantilever(), "--set", "time.end"]).status.code(), Some(2));
+    assert_eq!(meshless(&folder, &["resume", "nowhere"]).status.code(), Some(2));
+    std::fs::write(folder.path().join("broken.mlc"), "no checkpoint").expect("a file is written");
+    let broken = meshless(&folder, &["resume", "broken.mlc"]);
+    assert_eq!(broken.status.code(), Some(1));
+    assert!(err(&broken).contains("not a checkpoint"), "{}", err(&broken));
+}
+
+#[test]
+fn an_unstable_run_fails_and_keeps_its_last_state() {
+    let folder = folder();
+    let output = meshless(&folder, &["run", &cantilever(), "--set", "time.step=Fixed(1e-5)", "--out", "o"]);
+    assert_eq!(output.status.code(), Some(1), "{}", out(&output));
+    assert!(err(&output).contains("error: "), "{}", err(&output));
+    assert!(err(&output).contains("`bar`"), "{}", err(&output));
+    assert!(folder.path().join("o/failed.mlc").is_file());
+}
+
+#[test]
+fn a_check_tells_the_cost_and_touches_nothing() {
+    let folder = folder();
+    let output = meshless(&folder, &["check", &cantilever(), "--schedule"]);
+    assert_success(&output);
+    let text = out(&output);
+    for expected in ["672", "neighbours", "time step", "limited by", "run time", "total_lagrangian_force"] {
+        assert!(text.contains(expected), "`{expected}` is missing in\n{text}");
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
+}
+
+#[test]
+fn every_template_is_listed_written_once_and_checks() {
+    let folder = folder();
+    let list = out(&meshless(&folder, &["new"]));
+    for entry in std::fs::read_dir(scene("")).expect("the scenes") {
+        let path = entry.expect("a scene").path();
+        let Some(name) = path.file_stem().and_then(|stem| stem.to_str()) else { continue };
+        assert!(list.contains(name), "{name} is not a template of\n{list}");
+        assert_success(&meshless(&folder, &["new", name]));
+        let file = format!("{name}.ron");
+        assert_success(&meshless(&folder, &["run", &file, "--steps", "1", "--quiet"]));
+        let again = meshless(&folder, &["new", name]);
+        assert_eq!(again.status.code(), Some(1));
+        assert!(err(&again).contains("exists already"), "{}", err(&again));
+    }
+    let unknown = meshless(&folder, &["new", "cantilver"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(err(&unknown).contains("did you mean `cantilever`"), "{}", err(&unknown));
+}
+
+#[test]
+fn everything_that_is_registered_is_listed_and_described() {
+    use meshless::plugin::Kind;
+    let folder = folder();
+    let list = out(&meshless(&folder, &["plugins"]));
+    let registry = meshless::standard_plugins();
+    for kind in [Kind::Material, Kind::Formulation, Kind::Condition, Kind::Plugin] {
+        for entry in registry.entries(kind) {
+            assert!(list.contains(entry.name), "{} is missing in\n{list}", entry.name);
+            let description = meshless(&folder, &["plugins", entry.name]);
+            assert_success(&description);
+            for parameter in &entry.parameters {
+                assert!(out(&description).contains(&parameter.doc), "{} of {}", parameter.name, entry.name);
+            }
+        }
+    }
+    assert_eq!(meshless(&folder, &["plugins", "hourglas"]).status.code(), Some(2));
+}
+
+#[test]
+fn the_scene_reference_is_what_the_program_prints() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md");
+    let page = std::fs::read_to_string(page).expect("the scene reference");
+    let printed = out(&meshless(&folder(), &["schema"]));
+    assert!(
+        printed == page,
+        "docs/scene.md is not up to date; write it with `meshless schema > docs/scene.md`"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_can_go_on() {
+    let folder = folder();
+    let arguments = ["run", &cantilever(), "--set", "time.end=10.0", "--out", "o"];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_meshless"))
+        .args(arguments)
+        .current_dir(folder.path())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    let signal = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    if !signal.is_ok_and(|status| status.success()) {
+        let _ = child.kill();
+        panic!("the signal could not be sent");
+    }
+    let output = child.wait_with_output().expect("the program ends");
+    assert_eq!(output.status.code(), Some(130), "{}{}", out(&output), err(&output));
+    assert!(out(&output).contains("meshless resume o/checkpoint.mlc"), "{}", out(&output));
+    assert_success(&meshless(&folder, &["resume", "o", "--steps", "1"]));
+}

@@ -64,8 +64,17 @@ fn bodies(scene: &Scene, sim: &Simulation) -> Result<String, Failure> {
         Dimension::Two => "mass kg/m",
         Dimension::Three => "mass kg",
     };
-    let headings =
-        ["body", "formulation", "material", "particles", "spacing m", mass_heading, "neighbours", "least", "most"];
+    let headings = [
+        "body",
+        "formulation",
+        "material",
+        "particles",
+        "spacing m",
+        mass_heading,
+        "neighbours",
+        "least",
+        "most",
+    ];
     let mut table = Table::new(&headings, 6);
     for (k, (body, described)) in sim.world().bodies().iter().zip(&scene.bodies).enumerate() {
         let (view, rows) = sim.world().body_view(BodyId(k));

@@ -38,7 +38,10 @@ fn list(registry: &Registry) -> String {
             table.row([format!("  {}", entry.name), first_sentence(entry.doc()).to_owned()]);
         }
     }
-    format!("{}\n`meshless plugins NAME` tells the parameters of one of them", table.render().trim_start_matches(['\n', ' ']))
+    format!(
+        "{}\n`meshless plugins NAME` tells the parameters of one of them",
+        table.render().trim_start_matches('\n')
+    )
 }
 
 /// The text up to the first full stop that ends a sentence.

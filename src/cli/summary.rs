@@ -34,7 +34,7 @@ pub fn text(session: &Session, ending: &Ending, progress: &Progress) -> String {
     let _ = write!(text, "\n{}", energies(sim.ledger()));
     list(&mut text, "warnings", sim.warnings());
     list(&mut text, "methods", sim.references());
-    let _ = writeln!(text, "\nstate {}", sim.state_hash());
+    let _ = writeln!(text, "\nstate hash {}", sim.state_hash());
     text
 }
 
@@ -49,11 +49,7 @@ fn energies(ledger: &Ledger) -> String {
         table.row([account.name.clone(), kind.into(), format!("{:.6e}", account.total())]);
     }
     table.row(["balance error".into(), String::new(), format!("{:.2e}", ledger.balance_error())]);
-    table.row([
-        "over the largest energy".into(),
-        String::new(),
-        format!("{:.1e}", ledger.relative_error()),
-    ]);
+    table.row(["over the largest energy".into(), String::new(), format!("{:.1e}", ledger.relative_error())]);
     table.render()
 }
 

@@ -76,7 +76,7 @@ impl Table {
         };
         let line = |row: &Vec<String>| {
             let cells: Vec<String> = row.iter().enumerate().map(|(k, text)| cell(k, text)).collect();
-            format!("  {}\n", cells.join("  ").trim_end())
+            format!("{}\n", format!("  {}", cells.join("  ")).trim_end())
         };
         self.rows.iter().map(line).collect()
     }
