@@ -100,11 +100,11 @@ fn a_complete_run_can_be_prolonged_only_by_a_later_end() {
 #[test]
 fn a_value_can_be_replaced() {
     let folder = folder();
-    let arguments = ["run", &cantilever(), "--set", "time.end=3e-6", "--set", "bodies.bar.spacing=0.025"];
+    let arguments = ["run", &cantilever(), "--set", "time.end=1e-6", "--set", "bodies.strip.spacing=0.0125"];
     let output = meshless(&folder, &arguments);
     assert_success(&output);
-    assert!(out(&output).contains("complete at 3.000000e-6 s"), "{}", out(&output));
-    assert!(out(&output).contains("of 168 particles"), "{}", out(&output));
+    assert!(out(&output).contains("complete at 1.000000e-6 s"), "{}", out(&output));
+    assert!(out(&output).contains("of 336 particles"), "{}", out(&output));
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn an_unstable_run_fails_and_keeps_its_last_state() {
     let output = meshless(&folder, &["run", &cantilever(), "--set", "time.step=Fixed(1e-5)", "--out", "o"]);
     assert_eq!(output.status.code(), Some(1), "{}", out(&output));
     assert!(err(&output).contains("error: "), "{}", err(&output));
-    assert!(err(&output).contains("`bar`"), "{}", err(&output));
+    assert!(err(&output).contains("`strip`"), "{}", err(&output));
     assert!(folder.path().join("o/failed.mlc").is_file());
 }
 
@@ -158,7 +158,7 @@ fn a_check_tells_the_cost_and_touches_nothing() {
     let output = meshless(&folder, &["check", &cantilever(), "--schedule"]);
     assert_success(&output);
     let text = out(&output);
-    for expected in ["672", "neighbours", "time step", "limited by", "run time", "total_lagrangian_force"] {
+    for expected in ["1344", "neighbours", "time step", "limited by", "run time", "total_lagrangian_force"] {
         assert!(text.contains(expected), "`{expected}` is missing in\n{text}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
