@@ -22,5 +22,8 @@ use plugin::Registry;
 
 /// Everything that the `meshless` program knows by name: what the engine brings, and the standard plugins.
 pub fn standard_plugins() -> Registry {
-    Registry::standard().with(hourglass_control::register).with(local_damping::register)
+    Registry::standard()
+        .with(hourglass_control::register)
+        .with(local_damping::register)
+        .with(artificial_viscosity::register)
 }
