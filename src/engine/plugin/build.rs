@@ -57,6 +57,7 @@ fn build_in(
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     assemble(scene, parsed, &mut sim)?;
     crate::integrate::add_systems(&mut sim);
+    crate::record::watchdog::add_system(&mut sim);
     let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;
     let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
     let world = spawn::spawn(&sim);

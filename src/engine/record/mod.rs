@@ -13,6 +13,7 @@ pub mod recorder;
 pub mod series;
 pub mod trigger;
 pub mod vtk;
+pub mod watchdog;
 
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};

@@ -15,3 +15,6 @@ pub use chosen::ChosenField;
 pub use field::{Field, FieldInput};
 pub use rows::FieldColumns;
 pub use table::FieldTable;
+
+#[cfg(test)]
+mod tests;

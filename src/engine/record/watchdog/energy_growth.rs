@@ -1,0 +1,59 @@
+//! Energy from nowhere: the sign of an unstable integration, long before numbers overflow.
+
+use serde::{Deserialize, Serialize};
+
+use crate::schedule::{AccountKind, Clock, Ledger, StepError};
+use crate::world::{BodyId, World};
+
+/// Stored energy over what was there at the start or supplied since, beyond which the run is stopped.
+const FACTOR: f64 = 10.0;
+/// Steps in a row for which that must hold: the books of a plugin may lag behind by a step. An instability can take
+/// two orders of magnitude of energy a step, so that more patience would see numbers overflow first.
+const PATIENCE: u32 = 3;
+
+/// Compares the stored energy with all that the bodies were ever given.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct EnergyGrowth {
+    /// Largest energy at the start and supplied since, J; work that is given back does not count against the run.
+    available: f64,
+    /// Steps in a row beyond the limit.
+    beyond: u32,
+}
+
+impl EnergyGrowth {
+    /// Looks at a step.
+    pub fn look(&mut self, ledger: &Ledger, world: &World, clock: Clock) -> Result<(), StepError> {
+        let stored = ledger.stored();
+        self.available = self.available.max(ledger.stored_at_start() + ledger.supplied());
+        let sound = self.available <= 0.0 || stored <= FACTOR * self.available;
+        self.beyond = if sound { 0 } else { self.beyond + 1 };
+        if self.beyond < PATIENCE {
+            return Ok(());
+        }
+        let (account, body) = largest(ledger, world);
+        Err(StepError::EnergyGrowth {
+            stored,
+            factor: FACTOR,
+            available: self.available,
+            account,
+            body,
+            step: clock.step,
+            time: clock.time,
+        })
+    }
+}
+
+/// The account and body that hold most; of equal ones the first.
+fn largest(ledger: &Ledger, world: &World) -> (String, String) {
+    let mut most = f64::NEG_INFINITY;
+    let mut found = (String::new(), String::new());
+    for account in ledger.accounts().iter().filter(|account| account.kind == AccountKind::Stored) {
+        for (k, body) in world.bodies().iter().enumerate() {
+            if account.of(BodyId(k)) > most {
+                most = account.of(BodyId(k));
+                found = (account.name.clone(), body.name.clone());
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,52 @@
+//! Too much hourglass energy: the control carries load that stress should carry, and the result is too stiff.
+
+use serde::{Deserialize, Serialize};
+
+use crate::schedule::{Ledger, Step};
+use crate::world::BodyId;
+
+/// Hourglass energy over strain energy that is worth a warning (the usual figure of finite-element practice).
+const SHARE: f64 = 0.1;
+
+/// Watches the hourglass energy of every body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct HourglassShare {
+    /// Largest strain energy of each body so far, J: a body that swings through its rest shape is no reason to warn.
+    largest_strain: Vec<f64>,
+    /// Bodies that the user has been warned of.
+    warned: Vec<bool>,
+}
+
+impl HourglassShare {
+    /// Takes in a step.
+    pub fn look(&mut self, ledger: &Ledger, bodies: usize) {
+        self.largest_strain.resize(bodies, 0.0);
+        self.warned.resize(bodies, false);
+        for (k, largest) in self.largest_strain.iter_mut().enumerate() {
+            *largest = largest.max(energy(ledger, "strain", k));
+        }
+    }
+
+    /// Warns once of every body whose share is too large now.
+    pub fn warn(&mut self, step: &mut Step<'_>) {
+        for (k, body) in step.world.bodies().iter().enumerate() {
+            let (hourglass, strain) = (energy(step.ledger, "hourglass", k), self.largest_strain[k]);
+            if self.warned[k] || strain <= 0.0 || hourglass <= SHARE * strain {
+                continue;
+            }
+            self.warned[k] = true;
+            step.warnings.push(format!(
+                "the hourglass energy of body `{}` is {:.0} % of its largest strain energy, first seen at {:.6e} s: \
+                 more particles across the body or a smaller coefficient of the hourglass control would help",
+                body.name,
+                100.0 * hourglass / strain,
+                step.clock.time
+            ));
+        }
+    }
+}
+
+fn energy(ledger: &Ledger, account: &str, body: usize) -> f64 {
+    let found = ledger.accounts().iter().find(|known| known.name == account);
+    found.map_or(0.0, |account| account.of(BodyId(body)))
+}

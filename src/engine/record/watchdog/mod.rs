@@ -1,0 +1,11 @@
+//! The watchdog: looks at every step for what makes results worthless, and stops the run or warns.
+
+mod domain;
+mod energy_growth;
+mod hourglass;
+mod system;
+
+pub use system::{WATCHDOG, add_system};
+
+#[cfg(test)]
+mod tests;

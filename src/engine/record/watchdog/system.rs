@@ -1,0 +1,65 @@
+//! The system of the watchdog.
+
+use super::domain::DomainCheck;
+use super::energy_growth::EnergyGrowth;
+use super::hourglass::HourglassShare;
+use crate::plugin::SimBuilder;
+use crate::record::trigger::Trigger;
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::world::{Column, Position};
+
+/// Label of the system that looks for unsound states at the end of every step.
+pub const WATCHDOG: &str = "watchdog";
+
+/// Steps between two looks at the domain: a particle that has left it stays outside.
+const DOMAIN_INTERVAL: u64 = 10;
+
+struct Watchdog {
+    energy: EnergyGrowth,
+    hourglass: HourglassShare,
+    domain: Option<DomainCheck>,
+    /// Looks that end in a warning come with the frames.
+    frames: Trigger,
+    end: f64,
+}
+
+/// Adds the watchdog.
+pub fn add_system(sim: &mut SimBuilder<'_>) {
+    let domain = DomainCheck::of_scene(sim);
+    let watchdog = Watchdog {
+        energy: EnergyGrowth::default(),
+        hourglass: HourglassShare::default(),
+        domain,
+        frames: Trigger::new(sim.scene().record_interval()),
+        end: sim.scene().time.end,
+    };
+    sim.add_system(System::new(Stage::Record, WATCHDOG, watchdog).touches(Position::NAME, Mode::Reads));
+}
+
+impl Run for Watchdog {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let at_end = step.clock.time >= self.end || step.stop.is_some();
+        if let Some(domain) = &mut self.domain
+            && (at_end || step.clock.step.is_multiple_of(DOMAIN_INTERVAL))
+        {
+            domain.look(step)?;
+        }
+        self.energy.look(step.ledger, step.world, step.clock)?;
+        self.hourglass.look(step.ledger, step.world.bodies().len());
+        if self.frames.is_due(step.clock.time) || at_end {
+            self.hourglass.warn(step);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(self.energy, &self.hourglass, self.frames)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok((energy, hourglass, frames)) = postcard::from_bytes(state) else { return false };
+        (self.energy, self.hourglass) = (energy, hourglass);
+        self.frames.resume(frames);
+        true
+    }
+}

@@ -1,0 +1,156 @@
+//! Scenes that go wrong, and what the watchdog says.
+
+use crate::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
+use crate::scene::{Source, parse};
+use crate::schedule::{AccountKind, Stage, Step, StepError, System};
+use crate::simulation::{Outcome, RunError, Simulation};
+use crate::world::BodyId;
+
+/// Two blocks of 6 particles side by side that fall; `more` goes into the scene.
+fn blocks(more: &str) -> Simulation {
+    blocks_under(10.0, more)
+}
+
+/// The same with the given gravity, m/s2.
+fn blocks_under(gravity: f64, more: &str) -> Simulation {
+    let text = format!(
+        r#"Scene(
+    dimension: Two,
+    gravity: (0.0, -{gravity:?}),
+    materials: {{"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)}},
+    bodies: [
+        Body(name: "left", material: "rubber", shape: Box(min: (0.0, 0.0), max: (0.03, 0.02)), spacing: 0.01,
+             formulation: TotalLagrangian),
+        Body(name: "right", material: "rubber", shape: Box(min: (1.0, 0.0), max: (1.03, 0.02)), spacing: 0.01,
+             formulation: TotalLagrangian),
+    ],
+    {more}
+)"#
+    );
+    let (scene, source) = parse(Source::new("blocks.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    let registry = Registry::standard().with(|registry| {
+        registry.condition::<Book>();
+    });
+    build(&scene, &source, &registry).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Books an energy that is not there: `energy` times t in the account of the right body.
+#[derive(Clone, serde::Deserialize, schemars::JsonSchema)]
+struct Book {
+    account: String,
+    energy: f64,
+}
+
+impl Plugin for Book {
+    const NAME: &'static str = "Book";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        sim.add_system(System::new(Stage::PostStep, "book", move |step: &mut Step<'_>| {
+            let account = step.ledger.account(&self.account, AccountKind::Stored);
+            step.ledger.set(account, BodyId(1), self.energy * step.clock.end());
+            Ok(())
+        }));
+        Ok(())
+    }
+}
+
+fn failure(mut sim: Simulation) -> (StepError, Simulation) {
+    match sim.run(|_| true) {
+        Err(RunError::Step(error)) => (error, sim),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_particle_that_leaves_the_domain_stops_the_run() {
+    let scene = "domain: (min: (-1.0, -0.05), max: (2.0, 1.0)), time: (end: 1.0, step: Fixed(1.0e-4)),";
+    let (error, mut sim) = failure(blocks(scene));
+    let StepError::Unstable { particle, ref body, step, time, .. } = error else { panic!("{error}") };
+    // The lowest row, at 0.005 m, falls 0.055 m in sqrt(0.011) s; the look comes every tenth step.
+    assert!((time - 0.011_f64.sqrt()).abs() < 1.1e-3, "{time}");
+    assert!(step.is_multiple_of(10) && body == "left" && particle < 6, "{error}");
+    assert!(error.to_string().contains("outside the domain at particle"), "{error}");
+    let Outcome::Failed(why) = sim.finish().unwrap().outcome else { panic!() };
+    assert_eq!(why, error.to_string());
+}
+
+#[test]
+fn periodic_sides_and_the_third_axis_of_a_plane_are_open() {
+    let scene = "domain: (min: (-1.0, -0.05), max: (2.0, 1.0), periodic: [Y]), time: (end: 0.2),";
+    assert!(blocks(scene).run(|_| true).is_ok());
+}
+
+#[test]
+fn removal_that_is_not_possible_is_told_at_the_start_and_when_it_is_due() {
+    let scene = "domain: (min: (-1.0, -0.05), max: (2.0, 1.0), outside: Remove), time: (end: 1.0),";
+    let sim = blocks(scene);
+    assert!(
+        sim.warnings()[0].contains("particles of `left`, `right` cannot be removed"),
+        "{:?}",
+        sim.warnings()
+    );
+    let (error, _) = failure(sim);
+    assert!(error.to_string().contains("enlarge the domain"), "{error}");
+}
+
+#[test]
+fn an_unstable_step_is_stopped_by_the_growth_of_energy() {
+    // Twice the safe step is above the critical one: the shortest waves grow, from deformations so small that no
+    // particle turns inside out before.
+    let scene = "conditions: [Fix(on: Select(body: \"right\", face: MinX))],
+                 time: (end: 1.0, step: Adaptive(factor: 2.0)),";
+    let (error, sim) = failure(blocks_under(1.0e-3, scene));
+    let StepError::EnergyGrowth { stored, available, ref body, ref account, .. } = error else {
+        panic!("{error}")
+    };
+    assert!(stored > 10.0 * available && available > 0.0, "{error}");
+    let held = |name: &str, k: usize| {
+        sim.ledger().accounts().iter().find(|a| a.name == name).map(|a| a.of(BodyId(k))).unwrap()
+    };
+    let most = [("strain", 0), ("strain", 1), ("kinetic", 0), ("kinetic", 1)]
+        .into_iter()
+        .max_by(|a, b| held(a.0, a.1).total_cmp(&held(b.0, b.1)))
+        .unwrap();
+    assert_eq!((account.as_str(), body.as_str()), (most.0, ["left", "right"][most.1]));
+    assert!(error.to_string().contains(&format!("energy of body `{body}`: the run is unstable")), "{error}");
+}
+
+#[test]
+fn the_largest_account_and_its_body_are_named() {
+    let (error, _) =
+        failure(blocks("conditions: [Book(account: \"made_up\", energy: 1.0e6)], time: (end: 1.0),"));
+    let StepError::EnergyGrowth { account, body, .. } = error else { panic!("{error}") };
+    assert_eq!((account.as_str(), body.as_str()), ("made_up", "right"));
+}
+
+#[test]
+fn a_body_without_any_energy_is_left_alone() {
+    let mut sim = blocks("time: (end: 0.01),");
+    let still = sim.run(|_| true);
+    assert!(still.is_ok() && sim.finish().unwrap().warnings.is_empty(), "{:?}", sim.warnings());
+}
+
+#[test]
+fn hourglass_energy_is_warned_of_once_for_each_body() {
+    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2)],
+                 record: (every: 0.001), time: (end: 0.01),";
+    let mut sim = blocks(scene);
+    sim.run(|_| true).unwrap();
+    let hourglass: Vec<&String> = sim.warnings().iter().filter(|w| w.contains("hourglass energy")).collect();
+    assert_eq!(hourglass.len(), 1, "{:?}", sim.warnings());
+    assert!(
+        hourglass[0].contains("of body `right`") && hourglass[0].contains("first seen at"),
+        "{hourglass:?}"
+    );
+}
+
+#[test]
+fn a_balance_that_does_not_close_is_warned_of_at_the_end() {
+    let scene = "conditions: [Book(account: \"made_up\", energy: 1.0e-1)], time: (end: 0.01),";
+    let mut sim = blocks(scene);
+    sim.run(|_| true).unwrap();
+    let warnings = sim.finish().unwrap().warnings;
+    assert!(warnings.iter().any(|w| w.contains("the energy balance is off by")), "{warnings:?}");
+    assert_eq!(sim.finish().unwrap().warnings, warnings);
+}
