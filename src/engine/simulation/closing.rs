@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{RunError, SaveError, Simulation, Summary};
 use crate::record::{Existing, RecordError, write_atomically};
+use crate::scene::Source;
 
 /// Relative balance error of the energy ledger at the end that is worth a warning.
 const BALANCE_WARNING: f64 = 1e-2;
@@ -17,7 +18,10 @@ impl Simulation {
     pub fn checkpoint(&mut self) -> Result<Option<PathBuf>, SaveError> {
         let Some(output) = &self.output else { return Ok(None) };
         let file = output.lock().checkpoint_file();
-        self.save(&file, &self.source)?;
+        // Files that a scene names are relative to its folder, also for a run that goes on from elsewhere.
+        let name = std::path::absolute(&self.source.name)
+            .map_or_else(|_| self.source.name.clone(), |path| path.display().to_string());
+        self.save(&file, &Source::new(name, self.source.text.clone()))?;
         Ok(Some(file))
     }
 

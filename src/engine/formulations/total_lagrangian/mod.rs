@@ -1,8 +1,8 @@
 //! Total-Lagrangian smoothed particle hydrodynamics of solids (Ganzenmueller 2015).
 //!
 //! Neighbours, weights and corrections belong to the reference configuration and are built once. A step is two passes
-//! over pairs: [`deformation`] makes F and, block by block while the rows are in cache, the stress and the pair stress;
-//! [`internal_force`] makes the force.
+//! over pairs: the first makes F and, block by block while the rows are in cache, the stress and the pair stress;
+//! the second the force.
 
 mod bond_terms;
 mod bonds;

@@ -13,7 +13,9 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
 /// Goes on from the checkpoint in the folder.
 fn resumed(folder: &Path) -> Simulation {
     let checkpoint = Checkpoint::read(&folder.join("checkpoint.mlc")).unwrap();
-    let scene = parse(checkpoint.source()).unwrap();
+    let source = checkpoint.source();
+    assert!(Path::new(&source.name).is_absolute() && source.name.ends_with("scenes/cantilever.ron"));
+    let scene = parse(source).unwrap();
     let mut sim = try_build(&scene, &options(folder, Existing::Refuse, true)).unwrap();
     sim.restore(&checkpoint).unwrap();
     sim
