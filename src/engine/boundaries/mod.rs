@@ -6,11 +6,14 @@ mod face_area;
 mod field;
 mod fix;
 mod force;
+#[cfg(test)]
+mod image_tests;
 mod initial_velocity;
 mod load;
 mod part;
 mod prescribed;
 mod pressure;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 mod traction;
@@ -22,6 +25,7 @@ pub use fix::Fix;
 pub use force::Force;
 pub use initial_velocity::InitialVelocity;
 pub use pressure::Pressure;
+pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
 pub use velocity::Velocity;
 
@@ -37,5 +41,6 @@ pub fn register(registry: &mut Registry) {
         .condition::<Traction>()
         .condition::<Pressure>()
         .condition::<Force>()
-        .condition::<BodyForce>();
+        .condition::<BodyForce>()
+        .condition::<Symmetry>();
 }

@@ -21,7 +21,11 @@ impl<T: PairTerm> RowTerm for Bound<'_, T> {
     fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates) {
         let i = T::ReadI::at(self.of_i, i);
         for pair in pairs {
-            self.term.pair(pair, &i, &T::ReadJ::at(self.of_j, pair.row_j as usize), rates);
+            let j = T::ReadJ::at(self.of_j, pair.row_j as usize);
+            match pair.mirror {
+                None => self.term.pair(pair, &i, &j, rates),
+                Some(signs) => self.term.pair(pair, &i, &j.mirrored(signs), rates),
+            }
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
 use crate::schedule::{Access, Mode};
 use crate::world::{Column, MissingColumn, PhaseView};
 
@@ -20,6 +22,8 @@ pub trait ReadSet: Copy + Send + Sync + 'static {
     fn slices<'s>(guards: &'s Self::Guards<'_>, rows: Range<usize>) -> Self::Slices<'s>;
     /// The values of one row of the slices.
     fn at(slices: Self::Slices<'_>, row: usize) -> Self;
+    /// The values of the mirror image of a particle; `signs` are those of its axes.
+    fn mirrored(self, signs: DVec3) -> Self;
 }
 
 impl ReadSet for () {
@@ -38,6 +42,9 @@ impl ReadSet for () {
 
     #[inline(always)]
     fn at((): (), _: usize) {}
+
+    #[inline(always)]
+    fn mirrored(self, _: DVec3) {}
 }
 
 macro_rules! read_set {
@@ -61,6 +68,11 @@ macro_rules! read_set {
             #[inline(always)]
             fn at(slices: Self::Slices<'_>, row: usize) -> Self {
                 ($(slices.$k[row],)+)
+            }
+
+            #[inline(always)]
+            fn mirrored(self, signs: DVec3) -> Self {
+                ($(self.$k.mirrored(signs),)+)
             }
         }
     };

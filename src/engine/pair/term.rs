@@ -29,8 +29,11 @@ pub struct Pair {
     pub volume_i: f64,
     /// Volume of j, m3.
     pub volume_j: f64,
-    /// Row of j in the phase.
+    /// Row of j in the phase; where j is an image, that of its source.
     pub row_j: u32,
+    /// Where j is a mirror image across symmetry planes: the signs of the axes. The columns of j that a term gets are
+    /// mirrored already.
+    pub mirror: Option<DVec3>,
 }
 
 impl Pair {

@@ -11,6 +11,8 @@ mod registry;
 mod selection;
 mod setup;
 mod spawn;
+#[cfg(test)]
+mod tests;
 mod traits;
 
 pub use build::{build, build_with};

@@ -10,6 +10,13 @@ pub trait Value: Pod + Send + Sync + 'static {
 
     /// The component `k` as a number, `k < COMPONENTS.len()`.
     fn component(&self, k: usize) -> f64;
+
+    /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a number as it
+    /// is.
+    #[must_use]
+    fn mirrored(self, _signs: DVec3) -> Self {
+        self
+    }
 }
 
 impl Value for f64 {
@@ -42,6 +49,10 @@ impl Value for DVec3 {
     fn component(&self, k: usize) -> f64 {
         self[k]
     }
+
+    fn mirrored(self, signs: DVec3) -> Self {
+        signs * self
+    }
 }
 
 impl Value for DMat3 {
@@ -49,6 +60,11 @@ impl Value for DMat3 {
 
     fn component(&self, k: usize) -> f64 {
         self.col(k % 3)[k / 3]
+    }
+
+    fn mirrored(self, signs: DVec3) -> Self {
+        let column = |axis: usize| self.col(axis) * signs * signs[axis];
+        DMat3::from_cols(column(0), column(1), column(2))
     }
 }
 
@@ -67,6 +83,10 @@ pub trait Column: Pod + Send + Sync + 'static {
 
     /// The value of the row.
     fn value(&self) -> &Self::Value;
+
+    /// The row of a mirror image (see [`Value::mirrored`]); a position it does not fit.
+    #[must_use]
+    fn mirrored(self, signs: DVec3) -> Self;
 }
 
 /// Declares a column: a transparent newtype with name, symbol and unit.
@@ -98,6 +118,10 @@ macro_rules! column {
 
             fn value(&self) -> &$value {
                 &self.0
+            }
+
+            fn mirrored(self, signs: $crate::glam::DVec3) -> Self {
+                Self($crate::world::Value::mirrored(self.0, signs))
             }
         }
     )+};

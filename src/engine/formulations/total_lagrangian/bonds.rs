@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::images::Images;
 use super::stable_step::StepEstimate;
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
@@ -33,7 +34,7 @@ pub enum BondError {
 pub struct Bonds {
     /// Where the neighbours of each row start.
     pub(super) offsets: Vec<u32>,
-    /// Row of the neighbour.
+    /// Row of the neighbour; rows beyond the last particle are images (see [`Images`]).
     pub(super) neighbors: Vec<u32>,
     /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
     /// deformation gradient of an affine map stays exact.
@@ -58,6 +59,42 @@ pub(super) struct BodyBonds<'a> {
     pub support: &'a [f64],
     /// Kernel.
     pub kernel: Kernel,
+    /// Images of the bodies.
+    pub images: &'a Images,
+    /// Rows of the images of this body.
+    pub image_rows: Range<usize>,
+}
+
+impl BodyBonds<'_> {
+    /// Neighbours of the rows of the body, in the body and its images, numbered from zero.
+    fn neighbors(&self, search: &mut NeighborSearch) -> Result<NeighborList, NeighborError> {
+        let mut list = NeighborList::default();
+        let mut find = |positions: &[DVec3], support: &[f64]| {
+            let cloud = Cloud { positions, support: Support::PerParticle(support) };
+            search.within(cloud, 0.0, &Periodic::NONE, &mut list)
+        };
+        let (position, support) = (&self.position[self.rows.clone()], &self.support[self.rows.clone()]);
+        if self.image_rows.is_empty() {
+            find(position, support)?;
+        } else {
+            let places = self.image_rows.clone().map(|row| self.images.place(self.position, row));
+            let radii = self.image_rows.clone().map(|row| self.support[self.images.source(row)]);
+            let position: Vec<DVec3> = position.iter().copied().chain(places).collect();
+            let support: Vec<f64> = support.iter().copied().chain(radii).collect();
+            find(&position, &support)?;
+        }
+        Ok(list)
+    }
+
+    /// The row of the phase that a number of [`BodyBonds::neighbors`] means.
+    fn row(&self, number: u32) -> u32 {
+        let number = number as usize;
+        let row = match number.checked_sub(self.rows.len()) {
+            None => self.rows.start + number,
+            Some(image) => self.image_rows.start + image,
+        };
+        u32::try_from(row).unwrap_or(u32::MAX)
+    }
 }
 
 impl Bonds {
@@ -68,17 +105,13 @@ impl Bonds {
         search: &mut NeighborSearch,
     ) -> Result<(), BondError> {
         let rows = body.rows.clone();
-        let mut list = NeighborList::default();
-        let support = Support::PerParticle(&body.support[rows.clone()]);
-        let cloud = Cloud { positions: &body.position[rows.clone()], support };
-        search.within(cloud, 0.0, &Periodic::NONE, &mut list)?;
+        let list = body.neighbors(search)?;
         if self.offsets.is_empty() {
             self.offsets.push(0);
         }
         let first_bond = self.neighbors.len();
-        let start = u32::try_from(rows.start).unwrap_or(u32::MAX);
         for k in 0..rows.len() {
-            self.neighbors.extend(list.row(k).iter().map(|j| j + start));
+            self.neighbors.extend(list.row(k).iter().map(|&j| body.row(j)));
             self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
         }
         self.weights.resize(self.neighbors.len(), 0.0);
@@ -107,8 +140,9 @@ impl Bonds {
             let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
             for (weight, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
                 let j = j as usize;
-                let distance = body.position[j].distance(body.position[*i]);
-                let smoothing_length = 0.5 * (body.support[*i] + body.support[j]) * ratio;
+                let distance = body.images.pair(body.position, *i, j).length();
+                let support = body.support[*i] + body.support[body.images.source(j)];
+                let smoothing_length = 0.5 * support * ratio;
                 *weight = kernel.pair_weight(distance, smoothing_length) as f32;
             }
         });
@@ -123,8 +157,8 @@ impl Bonds {
                 let mut moment = MomentMatrix::new(body.kernel.dimension());
                 let mut weight_sum = 0.0;
                 for (j, weight) in self.row(i) {
-                    let volume_weight = body.volume[j] * f64::from(weight);
-                    moment.add(volume_weight, body.position[j] - body.position[i]);
+                    let volume_weight = body.volume[body.images.source(j)] * f64::from(weight);
+                    moment.add(volume_weight, body.images.pair(body.position, i, j));
                     weight_sum += volume_weight;
                 }
                 (moment.inverse(), weight_sum)
@@ -146,7 +180,7 @@ impl Bonds {
         rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Neighbours and weights of a row.
+    /// Neighbours and weights of a row; neighbours beyond the last particle are images (see [`Images`]).
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let bonds = self.offsets[i] as usize..self.offsets[i + 1] as usize;
         self.neighbors[bonds.clone()].iter().map(|&j| j as usize).zip(self.weights[bonds].iter().copied())

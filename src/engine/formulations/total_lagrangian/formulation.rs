@@ -7,8 +7,10 @@ use serde::Deserialize;
 use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
+use super::images::{Images, MirrorPlane, Repeat};
 use super::internal_force::InternalForce;
 use super::pairs::BondPairs;
+use super::repeats::repeats_of;
 use super::rows::{PairStress, Site};
 use super::stable_step::StepEstimate;
 use crate::kernels::{Kernel, KernelName};
@@ -67,6 +69,7 @@ pub const INTERNAL_FORCE: &str = "total_lagrangian_force";
 /// What the two systems share.
 pub(super) struct PackedRows {
     pub(super) bonds: Bonds,
+    pub(super) images: Images,
     pub(super) sites: Vec<Site>,
     pair_stress: Vec<PairStress>,
     /// Kernel of each body.
@@ -101,11 +104,17 @@ impl Formulation for TotalLagrangian {
         }
         let phase = sim.body(bodies[0].0).phase;
         super::fields::add(sim);
+        let planes: Vec<MirrorPlane> = sim.take_extensions();
+        let repeats_of = |(id, parameters): &(BodyId, Self)| {
+            let body = sim.body(*id);
+            repeats_of(body, parameters.support * body.spacing, &planes, sim)
+        };
+        let repeats = bodies.iter().map(repeats_of).collect::<Result<Vec<_>, _>>()?;
         let terms: Vec<BodyBondTerm> = sim.take_extensions();
         let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms)).collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, phase, setup));
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
         sim.add_system(
             System::new(
                 Stage::Constitutive,
@@ -171,6 +180,7 @@ fn body_law(id: BodyId, sim: &SimBuilder<'_>, all: &[BodyBondTerm]) -> Result<Bo
 fn set_up(
     bodies: &[(BodyId, TotalLagrangian)],
     estimates: &[StepEstimate],
+    repeats: &[Vec<Repeat>],
     phase: PhaseId,
     setup: &mut Setup<'_>,
 ) -> Result<(), SetupError> {
@@ -190,17 +200,20 @@ fn set_up(
     let support: &[f64] = bytemuck::cast_slice(&support);
     let dimension = setup.world.dimension().count();
     let mut bonds = Bonds::default();
+    let mut images = Images::new(view.len());
     let mut search = NeighborSearch::default();
     let mut stable_step = Vec::new();
     let mut kernels = Vec::new();
-    for ((id, parameters), estimate) in bodies.iter().zip(estimates) {
+    for (((id, parameters), estimate), repeats) in bodies.iter().zip(estimates).zip(repeats) {
         let body = setup.world.body(*id);
         let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
             unreachable!("every kernel has a two- and a three-dimensional form");
         };
         kernels.push((*id, kernel));
         let rows = body.rows.clone();
-        let body_bonds = BodyBonds { rows: rows.clone(), position, volume, support, kernel };
+        let image_rows = images.add(rows.clone(), position, parameters.support * body.spacing, repeats);
+        let body_bonds =
+            BodyBonds { rows: rows.clone(), position, volume, support, kernel, images: &images, image_rows };
         bonds.append(&body_bonds, &mut search).map_err(|error| {
             let help = "use a larger `support`, or more particles across the body";
             SetupError::parameter(format!("bodies[{}].formulation", id.0), error.to_string(), help)
@@ -215,9 +228,9 @@ fn set_up(
         }
         stable_step.push(bonds.stable_step(rows, dimension, estimate));
     }
-    let sites = vec![Site::default(); view.len()];
-    let pair_stress = vec![PairStress::default(); view.len()];
-    setup.resources.insert(PackedRows { bonds, sites, pair_stress, kernels, stable_step });
+    let sites = vec![Site::default(); view.len() + images.len()];
+    let pair_stress = vec![PairStress::default(); view.len() + images.len()];
+    setup.resources.insert(PackedRows { bonds, images, sites, pair_stress, kernels, stable_step });
     Ok(())
 }
 
@@ -236,8 +249,9 @@ impl Run for Deformation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let mut packed = step.resources.get_mut::<PackedRows>();
-        let PackedRows { bonds, sites, pair_stress, stable_step, .. } = &mut *packed;
-        pack(&view, sites)?;
+        let PackedRows { bonds, images, sites, pair_stress, stable_step, .. } = &mut *packed;
+        pack(&view, &mut sites[..view.len()])?;
+        images.fill_sites(sites);
         let mut gradient = view.write::<DeformationGradient>()?;
         let mut stress = view.write::<PiolaStress>()?;
         let strain = step.ledger.account("strain", AccountKind::Stored);
@@ -277,6 +291,7 @@ impl Run for Deformation {
             let by = || law.limited_by(&body.name);
             step.limits.propose(*stable_step * law.stretch_factor, by);
         }
+        images.fill_pair_stress(pair_stress);
         Ok(())
     }
 

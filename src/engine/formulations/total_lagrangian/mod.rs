@@ -9,12 +9,16 @@ mod bonds;
 mod deformation;
 mod fields;
 mod formulation;
+mod images;
 mod internal_force;
 mod pairs;
+mod repeats;
 mod rows;
 mod stable_step;
 
 pub use bond_terms::{BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
 pub use formulation::TotalLagrangian;
+pub use images::Images;
+pub(crate) use images::MirrorPlane;
 pub use rows::{PairStress, PairStressRows, Site};

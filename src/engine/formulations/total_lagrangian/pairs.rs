@@ -2,6 +2,7 @@
 
 use super::bonds::Bonds;
 use super::formulation::PackedRows;
+use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
 use crate::pair::{Pair, PairRows, PairSource};
@@ -23,12 +24,14 @@ impl PairSource for BondPairs {
         let packed = step.resources.get::<PackedRows>();
         let support = step.world.phase(self.phase).read::<SupportRadius>()?;
         let Some((_, kernel)) = packed.kernels.iter().find(|(id, _)| *id == body) else { return Ok(()) };
-        run(&BodyPairs { bonds: &packed.bonds, sites: &packed.sites, support: &support, kernel })
+        let PackedRows { bonds, images, sites, .. } = &*packed;
+        run(&BodyPairs { bonds, images, sites, support: &support, kernel })
     }
 }
 
 struct BodyPairs<'a> {
     bonds: &'a Bonds,
+    images: &'a Images,
     sites: &'a [Site],
     support: &'a [SupportRadius],
     kernel: &'a Kernel,
@@ -41,6 +44,8 @@ impl PairRows for BodyPairs<'_> {
         pairs.clear();
         pairs.extend(self.bonds.row(i).map(|(j, weight)| {
             let other = self.sites[j];
+            let mirror = self.images.mirror(j);
+            let j = self.images.source(j);
             let x_ij = other.current.minus(site.current).xyz();
             let reference_x_ij = other.reference.minus(site.reference).xyz();
             let reference_distance = reference_x_ij.length();
@@ -56,6 +61,7 @@ impl PairRows for BodyPairs<'_> {
                 volume_i,
                 volume_j: other.reference.0[3],
                 row_j: j as u32,
+                mirror,
             }
         }));
     }

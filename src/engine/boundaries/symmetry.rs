@@ -1,0 +1,115 @@
+//! Symmetry planes.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::formulations::total_lagrangian::MirrorPlane;
+use crate::plugin::{BodyPlan, Plugin, SetupError, SimBuilder};
+use crate::scene::{Axis, Dimension};
+use crate::world::{BodyId, BodySet};
+
+/// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem is solved like
+/// the whole. Bodies farther from it than their spacing are left alone.
+///
+/// The lower left quarter of a punch: `Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0)`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Symmetry {
+    /// Axis that the plane is normal to.
+    pub plane: Axis,
+    /// Coordinate of the plane along this axis \[m\].
+    pub at: f64,
+    /// Bodies on this side only. Default: both sides; they do not see each other through the plane.
+    #[serde(default)]
+    pub side: Option<Side>,
+}
+
+/// A side of a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Side {
+    /// Smaller coordinates.
+    Below,
+    /// Larger coordinates.
+    Above,
+}
+
+/// Least distance of a particle from the plane, as a share of the spacing.
+const LEAST_DISTANCE: f64 = 0.05;
+
+impl Plugin for Symmetry {
+    const NAME: &'static str = "Symmetry";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let axis = self.plane.index();
+        if sim.dimension() == Dimension::Two && self.plane == Axis::Z {
+            let help = "planes normal to X and Y are possible";
+            return Err(SetupError::parameter("plane", "a two-dimensional scene has no axis Z", help));
+        }
+        if sim.scene().domain.as_ref().is_some_and(|domain| domain.periodic.contains(&self.plane)) {
+            let message =
+                format!("the domain is periodic along {:?}, and has a symmetry plane there", self.plane);
+            return Err(SetupError::parameter("plane", message, "leave out one of the two"));
+        }
+        let mut cut = Vec::new();
+        for body in sim.bodies() {
+            if self.cuts(body)? {
+                cut.push(body.id);
+            }
+        }
+        if cut.is_empty() {
+            let extent = |body: &BodyPlan| {
+                format!("`{}` extends from {} to {}", body.name, body.bounds.min[axis], body.bounds.max[axis])
+            };
+            let extents: Vec<String> = sim.bodies().iter().map(extent).collect();
+            return Err(SetupError::parameter(
+                "at",
+                format!("no body ends at the symmetry plane {:?} = {}", self.plane, self.at),
+                format!("along {:?}, {}", self.plane, extents.join("; ")),
+            ));
+        }
+        if let Some(other) = self.body_of_another_kind(&cut, sim) {
+            return Err(SetupError::parameter(
+                "plane",
+                format!(
+                    "body `{}` ends at a symmetry plane, but is not a total-Lagrangian solid",
+                    other.name
+                ),
+                "fix its motion along the axis instead",
+            ));
+        }
+        sim.extend(MirrorPlane { axis, at: self.at, bodies: BodySet::new(cut) });
+        Ok(())
+    }
+}
+
+impl Symmetry {
+    /// Whether the body ends at the plane.
+    fn cuts(&self, body: &BodyPlan) -> Result<bool, SetupError> {
+        let axis = self.plane.index();
+        let distances = || body.sites.iter().map(|site| site.position[axis] - self.at);
+        let least = distances().fold(f64::INFINITY, f64::min);
+        let most = distances().fold(f64::NEG_INFINITY, f64::max);
+        match self.side {
+            Some(Side::Above) if most < 0.0 => return Ok(false),
+            Some(Side::Below) if least > 0.0 => return Ok(false),
+            _ => {}
+        }
+        let nearest = distances().map(f64::abs).fold(f64::INFINITY, f64::min);
+        if (least < 0.0 && most > 0.0) || nearest < LEAST_DISTANCE * body.spacing {
+            return Err(SetupError::parameter(
+                "at",
+                format!(
+                    "the symmetry plane {:?} = {} crosses body `{}`, which extends from {} to {}",
+                    self.plane, self.at, body.name, body.bounds.min[axis], body.bounds.max[axis]
+                ),
+                "let the shape of the body end at the plane",
+            ));
+        }
+        Ok(nearest < body.spacing)
+    }
+
+    fn body_of_another_kind<'a>(&self, cut: &[BodyId], sim: &'a SimBuilder<'_>) -> Option<&'a BodyPlan> {
+        cut.iter().map(|id| sim.body(*id)).find(|body| body.formulation != "TotalLagrangian")
+    }
+}

@@ -1,0 +1,65 @@
+//! What the bodies of a scene repeat themselves by: symmetry planes and the periodic axes of the domain.
+
+use super::images::{MirrorPlane, Repeat};
+use crate::plugin::{BodyPlan, SetupError, SimBuilder};
+
+/// Repeats of a body with support radius `support`, m.
+pub(super) fn repeats_of(
+    body: &BodyPlan,
+    support: f64,
+    planes: &[MirrorPlane],
+    sim: &SimBuilder<'_>,
+) -> Result<Vec<Repeat>, SetupError> {
+    let mirrors = planes.iter().filter(|plane| plane.bodies.contains(body.id));
+    let mut repeats: Vec<Repeat> =
+        mirrors.map(|plane| Repeat::Mirror { axis: plane.axis, at: plane.at }).collect();
+    for (k, repeat) in repeats.iter().enumerate() {
+        if let Some(other) = repeats[..k].iter().find(|other| other.axis() == repeat.axis())
+            && let (Repeat::Mirror { at, .. }, Repeat::Mirror { at: before, .. }) = (repeat, other)
+            && (at - before).abs() < support
+        {
+            return Err(SetupError::parameter(
+                "",
+                format!(
+                    "two symmetry planes of body `{}` are {} m apart, less than its support radius of {support} m",
+                    body.name,
+                    (at - before).abs()
+                ),
+                "use more particles between the planes, or a smaller support",
+            ));
+        }
+    }
+    let Some(domain) = &sim.scene().domain else { return Ok(repeats) };
+    for axis in &domain.periodic {
+        let a = axis.index();
+        let length = domain.max.0[a] - domain.min.0[a];
+        let extent = body.bounds.max[a] - body.bounds.min[a];
+        if extent > length + 0.5 * body.spacing {
+            return Err(SetupError::parameter(
+                "",
+                format!(
+                    "body `{}` is {extent} m long, more than the period of {length} m along {axis:?}",
+                    body.name
+                ),
+                "make the domain as long as the body, or the body as long as the domain",
+            ));
+        }
+        // A body that ends before the period does is not joined to itself.
+        if extent < length - 0.5 * body.spacing {
+            continue;
+        }
+        if length < 2.0 * support {
+            return Err(SetupError::parameter(
+                "",
+                format!(
+                    "the period of {length} m along {axis:?} is less than twice the support radius of body `{}`, \
+                     {support} m",
+                    body.name
+                ),
+                "use a longer domain, or more particles along this axis",
+            ));
+        }
+        repeats.push(Repeat::Period { axis: a, min: body.bounds.min[a], length });
+    }
+    Ok(repeats)
+}
