@@ -21,11 +21,12 @@ fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), Mis
     let gradient = view.read::<DeformationGradient>()?;
     let position = view.read::<Position>()?;
     let reference = view.read::<ReferencePosition>()?;
+    let (position, reference) = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
     out.extend(input.rows.clone().map(|i| {
         let (mut sum, mut count) = (0.0, 0_u32);
         for (j, _) in packed.bonds.row(i) {
-            let bond = reference[j].0 - reference[i].0;
-            let misfit = gradient[i].0 * bond - (position[j].0 - position[i].0);
+            let bond = packed.images.pair(reference, i, j);
+            let misfit = gradient[i].0 * bond - packed.images.pair(position, i, j);
             sum += misfit.length_squared() / bond.length_squared();
             count += 1;
         }

@@ -135,7 +135,7 @@ impl Images {
         // What the repeats so far have made of the body: those that follow repeat it, too, which fills the corners.
         let mut all: Vec<(u32, u32)> = Vec::new();
         for repeat in repeats {
-            let real = if rows.len() > 0 { self.intern(Map::IDENTITY) } else { 0 };
+            let real = self.intern(Map::IDENTITY);
             let own = rows.clone().map(|row| (u32::try_from(row).unwrap_or(u32::MAX), real));
             let before: Vec<(u32, u32)> = own.chain(all.iter().copied()).collect();
             for (row, which) in before {
