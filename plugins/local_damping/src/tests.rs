@@ -114,7 +114,6 @@ fn relaxation_finds_the_static_solution_of_a_cantilever_in_few_periods() {
         sim.run(|_| true).expect("a run");
         let periods = sim.clock().time / period;
         let error = tip(&sim) / wanted - 1.0;
-        println!("{damping}: {periods:.2} periods, {} steps, error {error:.1e}", sim.clock().step);
         assert!(sim.stop_reason().is_some_and(|reason| reason.contains("at rest")), "{periods} periods");
         assert!(error.abs() < 1e-5, "{error:e}");
         assert!(periods < 5.0, "{periods}");
@@ -155,4 +154,11 @@ fn wrong_parameters_are_refused_at_their_place() {
             Err(error) => assert!(error.contains(wanted), "{damping}:\n{error}"),
         }
     }
+}
+
+#[test]
+fn the_scene_beside_the_plugin_comes_to_rest() {
+    let mut sim = simulation(include_str!("../scene.ron"));
+    sim.run(|_| true).expect("a run");
+    assert!(sim.stop_reason().is_some_and(|reason| reason.contains("at rest")), "{}", sim.clock().time);
 }
