@@ -22,7 +22,7 @@ impl BondTerm for Stiff {
         let mut energy = 0.0;
         for k in 0..rows.deformation.len() {
             let stiffness = 0.5 * rows.modulus[k];
-            rows.pair_stress.add_scaled(k, -stiffness, &rows.deformation[k]);
+            rows.pair_stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.pair_stress.add_stiffness(k, stiffness);
             energy += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
         }

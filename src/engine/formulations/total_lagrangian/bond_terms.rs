@@ -9,6 +9,8 @@ use super::rows::PairStressRows;
 pub struct BondRows<'a> {
     /// Deformation gradient F_i.
     pub deformation: &'a [DMat3],
+    /// Displacement gradient H_i = F_i - I, with all digits of a small strain.
+    pub displacement_gradient: &'a [DMat3],
     /// Modulus that the material offers to resist with, E_i, Pa: Young's modulus, the yield stress after yield.
     pub modulus: &'a [f64],
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.

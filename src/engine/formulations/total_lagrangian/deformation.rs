@@ -1,10 +1,10 @@
 //! First pass over pairs: the deformation gradient, then, while a block is in cache, stress and pair stress.
 //!
-//! `F_i = (sum_j V_j w_ij x_ij (x) X_ij) M_i^-1` is the weighted least-squares fit of the current pair vectors
-//! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse). In plane strain the third row
-//! and column are those of the identity.
+//! `F_i = I + (sum_j V_j w_ij u_ij (x) X_ij) M_i^-1` is the weighted least-squares fit of the current pair vectors
+//! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements keep the digits of
+//! small strains). In plane strain the third row and column are those of the identity.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 use super::bond_terms::{BondRows, BondTerm};
 use super::bonds::Bonds;
@@ -82,6 +82,7 @@ impl DeformationPass<'_> {
 
     fn block(&self, first: usize, rows: DeformationRows<'_>) -> DeformationSum {
         let n = rows.deformation.len();
+        let mut gradient = [DMat3::ZERO; BLOCK];
         let mut misfit = [0.0; BLOCK];
         let mut volume = [0.0; BLOCK];
         let mut energy = [0.0; BLOCK];
@@ -92,6 +93,7 @@ impl DeformationPass<'_> {
             sites,
             first,
             deformation: rows.deformation,
+            gradient: &mut gradient,
             misfit: &mut misfit,
             volume: &mut volume,
         };
@@ -113,6 +115,7 @@ impl DeformationPass<'_> {
         for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
             *sum = term.add(&mut BondRows {
                 deformation: rows.deformation,
+                displacement_gradient: &gradient[..n],
                 modulus,
                 misfit: &misfit[..n],
                 volume: &volume[..n],
@@ -133,6 +136,7 @@ struct Gather<'a> {
     sites: &'a [Site],
     first: usize,
     deformation: &'a mut [DMat3],
+    gradient: &'a mut [DMat3; BLOCK],
     misfit: &'a mut [f64; BLOCK],
     volume: &'a mut [f64; BLOCK],
 }
@@ -161,38 +165,37 @@ impl HotLoop for Solid<'_> {
 impl Gather<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self) {
-        let Self { bonds, sites, first, deformation, misfit, volume } = self;
+        let Self { bonds, sites, first, deformation, gradient, misfit, volume } = self;
         for (k, f_i) in deformation.iter_mut().enumerate() {
             let i = first + k;
             let site = sites[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            // Columns of sum_j V_j w_ij x_ij (x) X_ij, and the sum of V_j w_ij x_ij^2 per component.
+            // Columns of sum_j V_j w_ij u_ij (x) X_ij, and the sum of V_j w_ij u_ij^2 per component.
             let mut spread = [Lanes4::default(); D];
             let mut square = Lanes4::default();
             for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
                 let other = &sites[j as usize];
                 let reference = other.reference.minus(site.reference);
-                let current = other.current.minus(site.current);
-                let weighted = current.scale(f64::from(weight) * other.reference.0[3]);
+                let displacement = other.displacement.minus(site.displacement);
+                let weighted = displacement.scale(f64::from(weight) * other.reference.0[3]);
                 for (axis, column) in spread.iter_mut().enumerate() {
                     *column = weighted.scale_add::<A>(reference.0[axis], *column);
                 }
-                square = current.multiply_add::<A>(weighted, square);
+                square = displacement.multiply_add::<A>(weighted, square);
             }
-            let inverse = &bonds.inverse_moment[i];
-            let f = fit::<A, D>(&spread, inverse);
-            // sum V w |F X - x|^2 = sum V w x^2 - F : (sum V w x (x) X), because F is the least-squares fit.
-            let fitted: f64 = (0..D).map(|axis| f[axis].dot3(spread[axis])).sum();
+            // A free particle has a zero inverse, and so F = I.
+            let h = fit::<A, D>(&spread, &bonds.inverse_moment[i]);
+            // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
+            let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
             misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
             volume[k] = site.reference.0[3];
-            let free = inverse.trace() == 0.0;
-            let third = if D == 3 { f[2].xyz() } else { DVec3::Z };
-            *f_i = if free { DMat3::IDENTITY } else { DMat3::from_cols(f[0].xyz(), f[1].xyz(), third) };
+            gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
+            *f_i = DMat3::IDENTITY + gradient[k];
         }
     }
 }
 
-/// The columns of F: the weighted sum times the inverse moment matrix.
+/// The columns of a weighted sum times the inverse moment matrix.
 #[inline(always)]
 fn fit<A: Arithmetic, const D: usize>(spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
     let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;

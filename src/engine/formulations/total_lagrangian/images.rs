@@ -165,8 +165,10 @@ impl Images {
         let (real, images) = sites.split_at_mut(self.rows);
         for (image, (&source, &which)) in images.iter_mut().zip(self.sources.iter().zip(&self.which)) {
             let (site, map) = (&real[source as usize], &self.maps[which as usize]);
-            let (reference, current) = (site.reference.xyz(), site.current.xyz());
-            *image = Site::new(map.apply(reference), map.apply(current), site.reference.0[3]);
+            *image = Site {
+                reference: Lanes4::new(map.apply(site.reference.xyz()), site.reference.0[3]),
+                displacement: Lanes4::new(map.signs * site.displacement.xyz(), 0.0),
+            };
         }
     }
 

@@ -1,6 +1,6 @@
 //! Second pass over pairs: the force of stress and bond terms on every particle.
 //!
-//! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) x_ij]` (see [`PairStress`]): swapping i and j turns the sign
+//! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]` (see [`PairStress`]): swapping i and j turns the sign
 //! of every product, so momentum is kept to round-off.
 
 use glam::DVec3;
@@ -74,8 +74,8 @@ impl ForceRows<'_> {
                 let other = &sites[j as usize];
                 let stress = &pair_stress[j as usize];
                 let reference = other.reference.minus(site.reference);
-                let current = other.current.minus(site.current);
-                let mut pull = current.scale(own.stiffness() + stress.stiffness());
+                let displacement = other.displacement.minus(site.displacement);
+                let mut pull = displacement.scale(own.stiffness() + stress.stiffness());
                 for axis in 0..D {
                     pull = own.0[axis].plus(stress.0[axis]).scale_add::<A>(reference.0[axis], pull);
                 }

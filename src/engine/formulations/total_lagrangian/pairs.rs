@@ -46,8 +46,8 @@ impl PairRows for BodyPairs<'_> {
             let other = self.sites[j];
             let mirror = self.images.mirror(j);
             let j = self.images.source(j);
-            let x_ij = other.current.minus(site.current).xyz();
             let reference_x_ij = other.reference.minus(site.reference).xyz();
+            let x_ij = reference_x_ij + other.displacement.minus(site.displacement).xyz();
             let reference_distance = reference_x_ij.length();
             let support = 0.5 * (self.support[i].0 + self.support[j].0);
             Pair {

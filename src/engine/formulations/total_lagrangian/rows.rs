@@ -5,26 +5,31 @@ use glam::{DMat3, DVec3};
 
 use crate::parallel::Lanes4;
 
-/// Where a particle is: reference position X with the volume V_0 in the last lane, current position x.
+/// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x - X.
+///
+/// The passes work with displacements: differences of current positions would lose the digits of a small strain.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct Site {
     /// X, and V_0 in the last lane.
     pub reference: Lanes4,
-    /// x.
-    pub current: Lanes4,
+    /// u.
+    pub displacement: Lanes4,
 }
 
 impl Site {
     /// Packs a particle: X and x in m, V_0 in m3.
     pub fn new(reference: DVec3, current: DVec3, volume: f64) -> Self {
-        Self { reference: Lanes4::new(reference, volume), current: Lanes4::new(current, 0.0) }
+        Self {
+            reference: Lanes4::new(reference, volume),
+            displacement: Lanes4::new(current - reference, 0.0),
+        }
     }
 }
 
 /// The pair stress of a particle, the columns of A_i, and the bond stiffness k_i in the last lane of the first column.
 ///
-/// The force on particle i is `V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) x_ij]`. The stress alone gives
+/// The force on particle i is `V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]`. The stress alone gives
 /// A_i = P_i M_i^-1 and k_i = 0: then this is sum_j V_i V_j (P_i g_ij - P_j g_ji) with g_ij = M_i^-1 w_ij X_ij.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(32))]
@@ -42,11 +47,11 @@ impl PairStress {
 pub struct PairStressRows<'a>(pub(super) &'a mut [PairStress]);
 
 impl PairStressRows<'_> {
-    /// Adds `s F` to A of row `k`.
+    /// Adds `s M` to A of row `k`.
     #[inline(always)]
-    pub fn add_scaled(&mut self, k: usize, s: f64, f: &DMat3) {
+    pub fn add_scaled(&mut self, k: usize, s: f64, m: &DMat3) {
         let columns = &mut self.0[k].0;
-        for (column, add) in columns.iter_mut().zip([f.x_axis, f.y_axis, f.z_axis]) {
+        for (column, add) in columns.iter_mut().zip([m.x_axis, m.y_axis, m.z_axis]) {
             column.0[0] += s * add.x;
             column.0[1] += s * add.y;
             column.0[2] += s * add.z;
