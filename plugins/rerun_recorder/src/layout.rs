@@ -1,0 +1,129 @@
+//! What the viewer shows when a recording is opened: particles with their colour bar on the left, plots on the right.
+
+use meshless_engine::scene::Dimension;
+use rerun::RecordingStreamResult;
+use rerun::external::re_sdk_types::blueprint::archetypes::{
+    Background, EyeControls3D, LineGrid3D, PlotLegend, TextDocumentFormat, VisualBounds2D,
+};
+use rerun::external::re_sdk_types::blueprint::components::{
+    BackgroundKind, ContainerKind, Corner2D, Enabled, VisualBounds2D as Visible2D,
+};
+use rerun::external::re_sdk_types::components::{Color, Position3D, Vector3D};
+use rerun::external::re_sdk_types::datatypes::{Bool, Range2D};
+use rerun::log::LogMsg;
+
+use crate::blueprint::{Blueprint, Tile, View, only, with_children, without};
+use crate::camera::{Bounds, Eye};
+use crate::legend;
+use crate::paths;
+use crate::series::{Plot, SeriesTable};
+
+/// What the layout depends on.
+pub struct Layout {
+    /// Title of the scene.
+    pub title: String,
+    /// Plane or space.
+    pub dimension: Dimension,
+    /// What points up.
+    pub up: [f64; 3],
+    /// The bodies by name.
+    pub bodies: Vec<String>,
+    /// What the colours mean: name and unit of the field, if there is one.
+    pub colors: Option<(String, String)>,
+    /// Simulated time, s.
+    pub duration: f64,
+}
+
+/// Time in which the viewer plays the run, s.
+const PLAYING_TIME: f64 = 10.0;
+/// Behind the particles: light, so that the dark end of the colour maps can be seen.
+const BACKGROUND: [u8; 3] = [236, 238, 241];
+
+impl Layout {
+    /// The layout, with a camera that has the box in view.
+    pub fn messages(&self, bounds: &Bounds, series: &SeriesTable) -> RecordingStreamResult<Vec<LogMsg>> {
+        let blueprint = Blueprint::new()?;
+        let left = self.left(&blueprint, bounds)?;
+        let plots = plots(&blueprint, series)?;
+        let root = if plots.is_empty() {
+            blueprint.container(ContainerKind::Horizontal, &[(left, 1.0)])?
+        } else {
+            let right = blueprint.container(ContainerKind::Vertical, &plots)?;
+            blueprint.container(ContainerKind::Horizontal, &[(left, 3.0), (right, 2.0)])?
+        };
+        blueprint.finish(&root, if self.duration > 0.0 { self.duration / PLAYING_TIME } else { 1.0 })
+    }
+
+    fn left(&self, blueprint: &Blueprint, bounds: &Bounds) -> RecordingStreamResult<Tile> {
+        let [r, g, b] = BACKGROUND;
+        let background =
+            Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
+        let scene = self.space(blueprint, bounds, &background)?;
+        let format = TextDocumentFormat::new().with_monospace(Enabled(Bool(true)));
+        let text = blueprint.view(
+            View::Text,
+            "Scene",
+            &[only(&paths::scene())],
+            &[("TextDocumentFormat", &format)],
+        )?;
+        let notes = blueprint.view(View::Text, "Notes", &[only(&paths::notes())], &[])?;
+        let tabs = blueprint.tabs(&[scene, text, notes])?;
+        let Some((field, unit)) = &self.colors else {
+            return blueprint.container(ContainerKind::Vertical, &tabs.map(|tile| (tile, 1.0)).into_iter().collect::<Vec<_>>());
+        };
+        let [x, y] = legend::VISIBLE;
+        let bounds = VisualBounds2D::new(Visible2D(Range2D { x_range: x.into(), y_range: y.into() }));
+        let bar = blueprint.view(
+            View::Plane,
+            &format!("{field} [{unit}]"),
+            &[with_children(&paths::legend())],
+            &[("Background", &background), ("VisualBounds2D", &bounds)],
+        )?;
+        let mut tiles: Vec<(Tile, f32)> = tabs.map(|tile| (tile, 6.0)).into_iter().collect();
+        tiles.push((bar, 1.0));
+        blueprint.container(ContainerKind::Vertical, &tiles)
+    }
+
+    fn space(
+        &self,
+        blueprint: &Blueprint,
+        bounds: &Bounds,
+        background: &Background,
+    ) -> RecordingStreamResult<Tile> {
+        let eye = Eye::on(bounds, self.dimension, self.up);
+        let single = |v: [f64; 3]| v.map(|x| x as f32);
+        let camera = EyeControls3D::new()
+            .with_position(Position3D::from(single(eye.position)))
+            .with_look_target(Position3D::from(single(eye.target)))
+            .with_eye_up(Vector3D::from(single(eye.up)));
+        let grid = LineGrid3D::new().with_visible(false);
+        let contents: Vec<String> = self.bodies.iter().map(|body| only(&paths::body(body))).collect();
+        blueprint.view(
+            View::Space,
+            &self.title,
+            &contents,
+            &[("EyeControls3D", &camera), ("LineGrid3D", &grid), ("Background", background)],
+        )
+    }
+}
+
+fn plots(blueprint: &Blueprint, series: &SeriesTable) -> RecordingStreamResult<Vec<(Tile, f32)>> {
+    let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
+    let view = |plot: &Plot| {
+        let contents: Vec<String> =
+            plot.include.iter().map(with_children).chain(plot.exclude.iter().map(without)).collect();
+        blueprint.view(View::Plot, &plot.title, &contents, &[("PlotLegend", &legend)])
+    };
+    let views =
+        |plots: Vec<Plot>| plots.iter().map(view).collect::<RecordingStreamResult<Vec<Tile>>>();
+    let mut tiles = Vec::new();
+    tiles.extend(blueprint.tabs(&views(series.energies())?)?.map(|tile| (tile, 3.0)));
+    tiles.extend(blueprint.tabs(&views(series.errors())?)?.map(|tile| (tile, 2.0)));
+    let probes = views(series.probes())?;
+    if probes.len() <= 2 {
+        tiles.extend(probes.into_iter().map(|tile| (tile, 3.0)));
+    } else {
+        tiles.extend(blueprint.tabs(&probes)?.map(|tile| (tile, 3.0)));
+    }
+    Ok(tiles)
+}

@@ -1,0 +1,127 @@
+//! The colour bar: a strip of the colours with five values under it.
+
+use rerun::{Color, EntityPath, Image, Points2D};
+
+use crate::color_scale::ColorScale;
+use crate::colormap::Colormap;
+use crate::error::RerunError;
+use crate::output::Output;
+use crate::paths::legend;
+
+/// Width of the bar in the units of its view.
+pub const WIDTH: u32 = 512;
+/// Height of the bar.
+const HEIGHT: u32 = 18;
+/// Where the values are.
+const TEXT_AT: f32 = 24.0;
+/// The part of the plane that the view of the bar shows, x and y.
+pub const VISIBLE: [[f64; 2]; 2] = [[-40.0, WIDTH as f64 + 40.0], [-9.0, 58.0]];
+
+/// A colour bar that is logged again only when it changes.
+pub struct Legend {
+    unit: String,
+    shown: Option<(ColorScale, Colormap, [bool; 2])>,
+}
+
+impl Legend {
+    /// The colour bar of a field with that unit.
+    pub fn new(unit: &str) -> Self {
+        Self { unit: unit.to_owned(), shown: None }
+    }
+
+    /// Shows a scale; `beyond` says whether values are below its lower and above its upper end.
+    pub fn show(
+        &mut self,
+        output: &Output,
+        scale: ColorScale,
+        map: Colormap,
+        beyond: [bool; 2],
+    ) -> Result<(), RerunError> {
+        if self.shown == Some((scale, map, beyond)) {
+            return Ok(());
+        }
+        self.shown = Some((scale, map, beyond));
+        output.log(&part("bar"), &strip(map))?;
+        let ticks = if scale.high > scale.low { 5 } else { 1 };
+        let place = |k: usize| k as f64 / 4.0;
+        let labels = (0..ticks).map(|k| {
+            let value = scale.low + place(k) * (scale.high - scale.low);
+            let sign = match k {
+                0 if beyond[0] => "≤ ",
+                4 if beyond[1] => "≥ ",
+                _ => "",
+            };
+            format!("{sign}{}", with_unit(value, &self.unit))
+        });
+        let at = (0..ticks).map(|k| [place(k) as f32 * WIDTH as f32, TEXT_AT]);
+        let points = Points2D::new(at)
+            .with_labels(labels)
+            .with_show_labels(true)
+            .with_colors([Color::from_rgb(225, 225, 225)])
+            .with_radii([0.01f32]);
+        output.log(&part("values"), &points)
+    }
+}
+
+fn part(name: &str) -> EntityPath {
+    legend().join(&crate::paths::entity([name]))
+}
+
+fn strip(map: Colormap) -> Image {
+    let row: Vec<u8> =
+        (0..WIDTH).flat_map(|k| map.color(f64::from(k) / f64::from(WIDTH - 1))).collect();
+    Image::from_rgb24(row.repeat(HEIGHT as usize), [WIDTH, HEIGHT])
+}
+
+/// The number with its unit, in thousands, millions and so on where that is customary for the unit.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    const PREFIXES: [(&str, i32); 9] =
+        [("T", 12), ("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("µ", -6), ("n", -9), ("p", -12)];
+    if value == 0.0 || unit == "1" || unit.is_empty() {
+        return if unit == "1" || unit.is_empty() { short(value) } else { format!("{} {unit}", short(value)) };
+    }
+    if matches!(unit, "Pa" | "N" | "J" | "W") {
+        let size = value.abs() * (1.0 + 1e-12);
+        if let Some((prefix, power)) = PREFIXES.iter().find(|(_, power)| size >= 10f64.powi(*power)) {
+            return format!("{} {prefix}{unit}", short(value / 10f64.powi(*power)));
+        }
+    }
+    format!("{} {unit}", short(value))
+}
+
+/// The number with up to four digits.
+fn short(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-3..6).contains(&exponent) {
+        let text = format!("{value:.3e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", trimmed(mantissa));
+    }
+    let decimals = usize::try_from(3 - exponent).unwrap_or(0);
+    trimmed(&format!("{value:.decimals$}")).to_owned()
+}
+
+fn trimmed(number: &str) -> &str {
+    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_written_short_and_with_the_customary_prefix() {
+        assert_eq!(with_unit(1.2e5, "Pa"), "120 kPa");
+        assert_eq!(with_unit(-2.5e6, "Pa"), "-2.5 MPa");
+        assert_eq!(with_unit(1e9, "Pa"), "1 GPa");
+        assert_eq!(with_unit(0.0, "Pa"), "0 Pa");
+        assert_eq!(with_unit(3.75, "m/s"), "3.75 m/s");
+        assert_eq!(with_unit(1012.0, "kg/m^3"), "1012 kg/m^3");
+        assert_eq!(with_unit(0.000012, "1"), "1.2e-5");
+        assert_eq!(with_unit(123456.0, "1"), "123456");
+        assert_eq!(with_unit(4e-15, "J"), "4e-15 J");
+    }
+}

@@ -1,0 +1,127 @@
+//! Where a recording goes: a file, and a viewer if one is to watch the run.
+
+use std::fs::File;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use meshless_engine::record::{Existing, WriteError};
+use rerun::external::{re_log_types, re_uri};
+use rerun::sink::{FileSink, GrpcSink, GrpcSinkConnectionState};
+use rerun::{
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, TimeCell,
+};
+
+use crate::error::RerunError;
+
+/// Name under which the viewer groups recordings.
+pub const APPLICATION: &str = "meshless";
+/// The timeline of the simulated time.
+pub const TIMELINE: &str = "sim_time";
+
+/// For how long an answer of a viewer is waited for.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// A file and perhaps a viewer, which get the same. They are two streams, so that the file does not depend on the
+/// viewer: the user may close it at any time.
+pub struct Output {
+    file: RecordingStream,
+    viewer: Option<RecordingStream>,
+}
+
+impl Output {
+    /// Makes the file and connects to the viewer. Dropping the output completes the file.
+    pub fn open(
+        path: &Path,
+        existing: Existing,
+        name: &str,
+        connect: Option<&str>,
+    ) -> Result<Self, RerunError> {
+        // rerun says no more of a file that cannot be made than the text of the error.
+        let made = match existing {
+            Existing::Refuse => File::create_new(path),
+            Existing::Replace => File::create(path),
+        };
+        made.map_err(|error| WriteError::new(path, error))?;
+        let sink = FileSink::new(path).map_err(RecordingStreamError::from)?;
+        let file =
+            RecordingStreamBuilder::new(APPLICATION).enabled(true).recording_name(name).set_sinks((sink,))?;
+        let viewer = match (connect, file.store_info()) {
+            (Some(address), Some(info)) => {
+                let sink = reach(address)?;
+                let builder = RecordingStreamBuilder::from_store_id(&info.store_id);
+                Some(builder.enabled(true).recording_name(name).set_sinks((sink,))?)
+            }
+            _ => None,
+        };
+        Ok(Self { file, viewer })
+    }
+
+    fn streams(&self) -> impl Iterator<Item = &RecordingStream> {
+        std::iter::once(&self.file).chain(&self.viewer)
+    }
+
+    /// Sets the time of what is logged from now on, s.
+    pub fn set_time(&self, step: u64, time: f64) {
+        for stream in self.streams() {
+            stream.set_time_sequence("step", i64::try_from(step).unwrap_or(i64::MAX));
+            stream.set_time(TIMELINE, TimeCell::from_duration_nanos((time * 1e9).round() as i64));
+        }
+    }
+
+    /// Logs at the time that is set.
+    pub fn log(&self, path: &EntityPath, data: &dyn AsComponents) -> Result<(), RerunError> {
+        Ok(self.streams().try_for_each(|stream| stream.log(path.clone(), data))?)
+    }
+
+    /// Logs for all times.
+    pub fn log_static(&self, path: &EntityPath, data: &dyn AsComponents) -> Result<(), RerunError> {
+        Ok(self.streams().try_for_each(|stream| stream.log_static(path.clone(), data))?)
+    }
+
+    /// Sends a layout, `make` being called for each receiver.
+    pub fn send_layout(
+        &self,
+        file_only: bool,
+        make: impl Fn() -> Result<Vec<re_log_types::LogMsg>, RecordingStreamError>,
+    ) -> Result<(), RerunError> {
+        for stream in self.streams().take(if file_only { 1 } else { 2 }) {
+            let messages = make()?;
+            let Some(id) = messages.first().map(|message| message.store_id().clone()) else { continue };
+            let activation = re_log_types::BlueprintActivationCommand {
+                blueprint_id: id,
+                make_active: true,
+                make_default: true,
+            };
+            stream.send_blueprint(messages, activation);
+        }
+        Ok(())
+    }
+
+    /// Waits until all is in the file. The viewer is not waited for.
+    pub fn flush(&self) -> Result<(), RerunError> {
+        if let Some(viewer) = &self.viewer {
+            // A viewer that was closed is no reason to stop.
+            let _ = viewer.flush_async();
+        }
+        Ok(self.file.flush_blocking()?)
+    }
+}
+
+/// The address in the form that rerun knows; `127.0.0.1:9876` will do.
+pub fn address(text: &str) -> Result<re_uri::ProxyUri, RerunError> {
+    let full =
+        if text.contains("://") { text.to_owned() } else { format!("rerun+http://{}/proxy", text.trim()) };
+    full.parse().map_err(|_| RerunError::Address { address: text.to_owned() })
+}
+
+fn reach(text: &str) -> Result<GrpcSink, RerunError> {
+    let sink = GrpcSink::new(address(text)?);
+    let start = Instant::now();
+    while !matches!(sink.status(), GrpcSinkConnectionState::Connected) {
+        if start.elapsed() > PATIENCE {
+            return Err(RerunError::NoViewer { address: text.to_owned(), waited: PATIENCE });
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Ok(sink)
+}

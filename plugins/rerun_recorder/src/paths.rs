@@ -1,0 +1,38 @@
+//! Where things are in a recording.
+
+use rerun::{EntityPath, EntityPathPart};
+
+/// The entity of these names, whatever signs they hold.
+pub fn entity<'a>(parts: impl IntoIterator<Item = &'a str>) -> EntityPath {
+    EntityPath::new(parts.into_iter().map(EntityPathPart::new).collect())
+}
+
+/// The particles of a body.
+pub fn body(name: &str) -> EntityPath {
+    entity(["bodies", name])
+}
+
+/// A field of a body's particles, as numbers to read back.
+pub fn field(body: &str, name: &str) -> EntityPath {
+    entity(["bodies", body, name])
+}
+
+/// A time series: `energy/kinetic`.
+pub fn series(name: &str) -> EntityPath {
+    entity(name.split('/'))
+}
+
+/// The text of the scene.
+pub fn scene() -> EntityPath {
+    entity(["scene"])
+}
+
+/// What is worth knowing of the run.
+pub fn notes() -> EntityPath {
+    entity(["notes"])
+}
+
+/// What explains the colours.
+pub fn legend() -> EntityPath {
+    entity(["legend"])
+}

@@ -1,0 +1,133 @@
+//! The plugin as scenes name it: its parameters, and their check.
+
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::scene::Dimension;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::colormap::Colormap;
+use crate::output::address;
+use crate::recorder::RerunFile;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<RerunRecorder>();
+}
+
+/// Writes a recording for the rerun viewer, `<scene>.rrd`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RerunRecorder {
+    /// The field that colours the particles, such as `"von_mises"` or `"velocity"`; of a vector its magnitude.
+    /// Default: the first of `record.fields`, else `"velocity"`.
+    pub color_by: Option<String>,
+    /// Values at the two ends of the colour scale, in the unit of the field. Default: round values around those of all
+    /// frames so far, so that the scale only grows; one particle in two hundred may lie outside at either end.
+    pub range: Option<(f64, f64)>,
+    /// Colour map. Default: `Viridis`, or `CoolWarm` where the values lie on both sides of zero.
+    pub colormap: Option<Colormap>,
+    /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
+    pub radius_scale: f64,
+    /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written all the same.
+    pub connect: Option<String>,
+}
+
+impl Default for RerunRecorder {
+    fn default() -> Self {
+        Self { color_by: None, range: None, colormap: None, radius_scale: 1.0, connect: None }
+    }
+}
+
+impl Plugin for RerunRecorder {
+    const NAME: &'static str = "rerun_recorder";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        self.check()?;
+        let fields = sim.scene().record.fields.clone();
+        let color_by = self
+            .color_by
+            .clone()
+            .or_else(|| fields.first().cloned())
+            .unwrap_or_else(|| "velocity".to_owned());
+        let gravity = sim.gravity().to_array();
+        let up = match sim.dimension() {
+            Dimension::Two => [0.0, 1.0, 0.0],
+            Dimension::Three => against(gravity),
+        };
+        sim.add_recorder(RerunFile::new(self, color_by, fields, up));
+        Ok(())
+    }
+}
+
+impl RerunRecorder {
+    fn check(&self) -> Result<(), SetupError> {
+        if let Some((low, high)) = self.range
+            && !(low < high && low.is_finite() && high.is_finite())
+        {
+            return Err(SetupError::parameter(
+                "range",
+                format!("`range` goes from {low} to {high}"),
+                "give two finite numbers, the smaller one first",
+            ));
+        }
+        if !(self.radius_scale > 0.0 && self.radius_scale.is_finite()) {
+            return Err(SetupError::parameter(
+                "radius_scale",
+                format!("`radius_scale` is {}", self.radius_scale),
+                "give a number above zero; 1 lets neighbouring particles just touch",
+            ));
+        }
+        if let Some(text) = &self.connect
+            && let Err(error) = address(text)
+        {
+            return Err(SetupError::parameter(
+                "connect",
+                error.to_string(),
+                "give host and port of a running viewer, such as \"127.0.0.1:9876\"",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The unit vector along the axis nearest to the direction opposite to gravity; z without gravity.
+fn against(gravity: [f64; 3]) -> [f64; 3] {
+    let mut up = [0.0, 0.0, 1.0];
+    let axis = (0..3).max_by(|&a, &b| gravity[a].abs().total_cmp(&gravity[b].abs()));
+    if let Some(axis) = axis.filter(|&axis| gravity[axis] != 0.0) {
+        up = [0.0; 3];
+        up[axis] = -gravity[axis].signum();
+    }
+    up
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn up_is_against_gravity() {
+        assert_eq!(against([0.0, -9.81, 0.0]), [0.0, 1.0, 0.0]);
+        assert_eq!(against([0.1, 0.0, 2.0]), [0.0, 0.0, -1.0]);
+        assert_eq!(against([0.0; 3]), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused_by_name() {
+        let faulty = [
+            ("range", RerunRecorder { range: Some((1.0, 1.0)), ..RerunRecorder::default() }),
+            ("range", RerunRecorder { range: Some((0.0, f64::NAN)), ..RerunRecorder::default() }),
+            ("radius_scale", RerunRecorder { radius_scale: 0.0, ..RerunRecorder::default() }),
+            ("connect", RerunRecorder { connect: Some("my viewer".into()), ..RerunRecorder::default() }),
+        ];
+        for (name, plugin) in faulty {
+            match plugin.check() {
+                Err(SetupError::Parameter { field, .. }) => assert_eq!(field, name),
+                other => panic!("{name}: {other:?}"),
+            }
+        }
+        let good = RerunRecorder { connect: Some("127.0.0.1:9876".into()), ..RerunRecorder::default() };
+        assert_eq!(good.check(), Ok(()));
+    }
+}

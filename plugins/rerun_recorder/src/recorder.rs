@@ -1,0 +1,204 @@
+//! The recorder: frames and samples of a run become entities of a recording.
+
+use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder, RunInfo, Sample};
+use rerun::external::re_sdk_types::components::MediaType;
+use rerun::{Color, EntityPath, Points3D, Radius, Scalars, TextDocument, archetypes::ViewCoordinates};
+
+use crate::camera::Bounds;
+use crate::color_scale::{ColorScale, RunningScale};
+use crate::colormap::Colormap;
+use crate::error::RerunError;
+use crate::layout::Layout;
+use crate::legend::Legend;
+use crate::notes::Notes;
+use crate::output::Output;
+use crate::paths;
+use crate::plugin::RerunRecorder;
+use crate::series::SeriesTable;
+
+/// Writes the recording of a run.
+pub struct RerunFile {
+    settings: RerunRecorder,
+    color_by: String,
+    fields: Vec<String>,
+    up: [f64; 3],
+    scale: RunningScale,
+    open: Option<Open>,
+}
+
+/// A recording that is being written. Dropping it completes the file.
+struct Open {
+    output: Output,
+    layout: Layout,
+    /// All particles so far.
+    bounds: Bounds,
+    /// The particles that the camera has in view.
+    in_view: Option<Bounds>,
+    legend: Option<Legend>,
+    series: SeriesTable,
+    notes: Notes,
+}
+
+/// Particles of a body that does not have the field of the colours.
+const PLAIN: [u8; 3] = [130, 140, 155];
+/// Particles whose value is not a number.
+const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
+
+impl RerunFile {
+    /// A recorder that colours particles by a field, and keeps the values of `fields`.
+    pub fn new(settings: RerunRecorder, color_by: String, fields: Vec<String>, up: [f64; 3]) -> Self {
+        let scale = RunningScale::new(settings.range);
+        Self { settings, color_by, fields, up, scale, open: None }
+    }
+
+    fn open(&mut self, run: &RunInfo<'_>) -> Result<(), RerunError> {
+        // A recording cannot be continued: a resumed run writes the rest of the time into a file of its own, and
+        // doing so again replaces that rest.
+        let (file, existing) = if run.resumed {
+            (format!("{}-from-{:.6e}s.rrd", run.scene_name, run.start_time), Existing::Replace)
+        } else {
+            (file_name(run.scene_name), run.existing)
+        };
+        let path = run.output.join(file);
+        let output = Output::open(&path, existing, run.title, self.settings.connect.as_deref())?;
+        output.log_static(&EntityPath::root(), &axes(self.up))?;
+        output.log_static(&paths::scene(), &TextDocument::new(run.scene_text).with_media_type(MediaType::TEXT))?;
+        let notes = Notes::new(run);
+        output.log_static(&paths::notes(), &notes.document(&[]))?;
+        let colors = run.fields.iter().find(|field| field.name == self.color_by);
+        let bodies: Vec<String> = run.bodies.iter().map(|body| body.name.to_owned()).collect();
+        let known = run.series.iter().map(|series| (series.name.to_owned(), series.unit.to_owned()));
+        self.open = Some(Open {
+            layout: Layout {
+                title: run.title.to_owned(),
+                dimension: run.dimension,
+                up: self.up,
+                bodies: bodies.clone(),
+                colors: colors.map(|field| (field.name.to_owned(), field.unit.to_owned())),
+                duration: run.end_time - run.start_time,
+            },
+            bounds: Bounds::EMPTY,
+            in_view: None,
+            legend: colors.map(|field| Legend::new(field.unit)),
+            series: SeriesTable::new(bodies, known.collect()),
+            notes,
+            output,
+        });
+        Ok(())
+    }
+
+    fn write(&mut self, frame: &Frame<'_>) -> Result<(), RerunError> {
+        let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
+        for body in frame.bodies {
+            open.bounds.extend(body.positions, f64::from(body.radius));
+        }
+        if open.in_view.is_none() {
+            open.send_layout(false)?;
+        }
+        open.output.set_time(frame.step, frame.time);
+        let color_by = self.color_by.as_str();
+        let mut all: Vec<f64> = frame.bodies.iter().flat_map(|body| values(body, color_by)).copied().collect();
+        let scale = self.scale.update(&mut all);
+        let automatic = if scale.diverging { Colormap::CoolWarm } else { Colormap::Viridis };
+        let map = self.settings.colormap.unwrap_or(automatic);
+        if let Some(legend) = &mut open.legend {
+            // Rounding is not a value outside.
+            let slack = 1e-9 * (scale.high - scale.low);
+            let beyond = [
+                all.iter().any(|&value| value < scale.low - slack),
+                all.iter().any(|&value| value > scale.high + slack),
+            ];
+            legend.show(&open.output, scale, map, beyond)?;
+        }
+        for body in frame.bodies {
+            let radius = Radius::from(body.radius * self.settings.radius_scale as f32);
+            let points = Points3D::new(body.positions.iter().copied())
+                .with_colors(colors(values(body, color_by), scale, map))
+                .with_radii([radius]);
+            open.output.log(&paths::body(body.name), &points)?;
+            for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name)) {
+                let numbers = Scalars::new(field.values.iter().copied());
+                open.output.log(&paths::field(body.name, field.name), &numbers)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The values of a field of a body; nothing if the body does not have it.
+fn values<'a>(body: &BodyFrame<'a>, name: &str) -> &'a [f64] {
+    body.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.values)
+}
+
+fn file_name(scene_name: &str) -> String {
+    format!("{scene_name}.rrd")
+}
+
+fn colors(values: &[f64], scale: ColorScale, map: Colormap) -> Vec<Color> {
+    let color = |[r, g, b]: [u8; 3]| Color::from_rgb(r, g, b);
+    if values.is_empty() {
+        return vec![color(PLAIN)];
+    }
+    let of = |value: &f64| {
+        color(if value.is_nan() { NOT_A_NUMBER } else { map.color(scale.fraction(*value)) })
+    };
+    values.iter().map(of).collect()
+}
+
+/// Which axis is up, as the viewer says it.
+fn axes(up: [f64; 3]) -> ViewCoordinates {
+    match up {
+        [x, _, _] if x > 0.0 => ViewCoordinates::RIGHT_HAND_X_UP(),
+        [x, _, _] if x < 0.0 => ViewCoordinates::RIGHT_HAND_X_DOWN(),
+        [_, y, _] if y > 0.0 => ViewCoordinates::RIGHT_HAND_Y_UP(),
+        [_, y, _] if y < 0.0 => ViewCoordinates::RIGHT_HAND_Y_DOWN(),
+        [_, _, z] if z < 0.0 => ViewCoordinates::RIGHT_HAND_Z_DOWN(),
+        _ => ViewCoordinates::RIGHT_HAND_Z_UP(),
+    }
+}
+
+impl Open {
+    fn send_layout(&mut self, file_only: bool) -> Result<(), RerunError> {
+        self.in_view = Some(self.bounds);
+        self.output.send_layout(file_only, || self.layout.messages(&self.bounds, &self.series))
+    }
+}
+
+impl Recorder for RerunFile {
+    fn fields(&self) -> Vec<String> {
+        vec![self.color_by.clone()]
+    }
+
+    fn files(&self, scene_name: &str) -> Vec<String> {
+        vec![file_name(scene_name)]
+    }
+
+    fn start(&mut self, run: &RunInfo<'_>) -> Result<(), RecordError> {
+        Ok(self.open(run)?)
+    }
+
+    fn frame(&mut self, frame: &Frame<'_>) -> Result<(), RecordError> {
+        Ok(self.write(frame)?)
+    }
+
+    fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError> {
+        let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
+        open.output.set_time(step, time);
+        Ok(open.series.log(&open.output, samples)?)
+    }
+
+    fn flush(&mut self) -> Result<(), RecordError> {
+        let open = self.open.as_ref().ok_or(RerunError::NotOpen)?;
+        Ok(open.output.flush()?)
+    }
+
+    fn finish(&mut self, warnings: &[String]) -> Result<(), RecordError> {
+        let mut open = self.open.take().ok_or(RerunError::NotOpen)?;
+        open.output.log_static(&paths::notes(), &open.notes.document(warnings)).map_err(RecordError::from)?;
+        // In the file the camera now has in view where the particles went; a viewer that is watching keeps its own.
+        if open.in_view.is_some_and(|seen| seen != open.bounds) {
+            open.send_layout(true)?;
+        }
+        Ok(open.output.flush()?)
+    }
+}

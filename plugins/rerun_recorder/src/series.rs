@@ -1,0 +1,238 @@
+//! Time series: which plot each is drawn in, and its name and colour there.
+
+use std::collections::BTreeSet;
+
+use rerun::components::{Color, Name, StrokeWidth};
+use rerun::{EntityPath, Scalars, SeriesLines};
+
+use meshless_engine::record::Sample;
+
+use crate::error::RerunError;
+use crate::output::Output;
+use crate::paths;
+
+/// A plot of time series.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plot {
+    /// What is plotted, with its unit.
+    pub title: String,
+    /// The series, and all beneath them.
+    pub include: Vec<EntityPath>,
+    /// What is not drawn of these.
+    pub exclude: Vec<EntityPath>,
+}
+
+/// The time series that a run has.
+#[derive(Clone, Debug, Default)]
+pub struct SeriesTable {
+    bodies: Vec<String>,
+    known: Vec<(String, String)>,
+    styled: BTreeSet<String>,
+}
+
+/// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008).
+const COLORS: [[u8; 3]; 7] = [
+    [230, 159, 0],
+    [86, 180, 233],
+    [0, 158, 115],
+    [213, 94, 0],
+    [204, 121, 167],
+    [0, 114, 178],
+    [190, 175, 50],
+];
+
+impl SeriesTable {
+    /// The series known at the start, with their units, of a run with these bodies.
+    pub fn new(bodies: Vec<String>, known: Vec<(String, String)>) -> Self {
+        Self { bodies, known, styled: BTreeSet::new() }
+    }
+
+    /// Logs values at the time that is set.
+    pub fn log(&mut self, output: &Output, samples: &[Sample<'_>]) -> Result<(), RerunError> {
+        for sample in samples {
+            let path = paths::series(sample.name);
+            if self.styled.insert(sample.name.to_owned()) {
+                let known = self.known.iter().any(|(name, _)| name == sample.name);
+                if !known {
+                    self.known.push((sample.name.to_owned(), sample.unit.to_owned()));
+                }
+                output.log_static(&path, &self.style(sample.name))?;
+            }
+            output.log(&path, &Scalars::single(sample.value))?;
+        }
+        Ok(())
+    }
+
+    fn style(&self, name: &str) -> SeriesLines {
+        let group = self.group(name);
+        let others = self.known.iter().filter(|(other, _)| self.group(other) == group);
+        let place = others.take_while(|(other, _)| other != name).count();
+        let [r, g, b] = COLORS[place % COLORS.len()];
+        let segments: Vec<&str> = name.split('/').skip(1).collect();
+        let label = match group {
+            Group::Body(_) | Group::Energy => segments.last().copied().unwrap_or(name).replace('_', " "),
+            Group::Error(_) | Group::Probe(_) => segments.join(" ").replace('_', " "),
+        };
+        SeriesLines::new()
+            .with_names([Name(label.into())])
+            .with_colors([Color::from_rgb(r, g, b)])
+            .with_widths([StrokeWidth(1.8.into())])
+    }
+
+    fn group(&self, name: &str) -> Group {
+        let mut segments = name.split('/');
+        if segments.next() != Some("energy") {
+            return Group::Probe(self.unit(name));
+        }
+        let rest: Vec<&str> = segments.collect();
+        match rest.as_slice() {
+            [body, .., _] => Group::Body((*body).to_owned()),
+            [error] if error.ends_with("error") => Group::Error(self.unit(name)),
+            _ => Group::Energy,
+        }
+    }
+
+    fn unit(&self, name: &str) -> String {
+        self.known.iter().find(|(known, _)| known == name).map_or_else(String::new, |(_, unit)| unit.clone())
+    }
+
+    fn names(&self, group: &Group) -> Vec<EntityPath> {
+        let names = self.known.iter().filter(|(name, _)| self.group(name) == *group);
+        names.map(|(name, _)| paths::series(name)).collect()
+    }
+
+    fn groups(&self) -> Vec<Group> {
+        let mut groups = Vec::new();
+        for (name, _) in &self.known {
+            let group = self.group(name);
+            if !groups.contains(&group) {
+                groups.push(group);
+            }
+        }
+        groups
+    }
+
+    /// Energies of all bodies together and, where there are several, of each.
+    pub fn energies(&self) -> Vec<Plot> {
+        let body_paths = self.bodies.iter().map(|body| paths::entity(["energy", body]));
+        let errors = self.groups().into_iter().filter(|group| matches!(group, Group::Error(_)));
+        let exclude: Vec<EntityPath> =
+            body_paths.chain(errors.flat_map(|group| self.names(&group))).collect();
+        // An account that opens while the run goes on belongs here, too.
+        let all = Plot { title: "Energies [J]".to_owned(), include: vec![paths::series("energy")], exclude };
+        let mut plots = Vec::new();
+        if self.known.iter().any(|(name, _)| name.starts_with("energy/")) {
+            plots.push(all);
+        }
+        if self.bodies.len() > 1 {
+            plots.extend(self.bodies.iter().filter(|body| self.has_energies(body)).map(|body| Plot {
+                title: format!("{body} [J]"),
+                include: vec![paths::entity(["energy", body])],
+                exclude: Vec::new(),
+            }));
+        }
+        plots
+    }
+
+    fn has_energies(&self, body: &str) -> bool {
+        self.groups().contains(&Group::Body(body.to_owned()))
+    }
+
+    /// Errors of the energy balance, the relative one in front.
+    pub fn errors(&self) -> Vec<Plot> {
+        let mut errors: Vec<(Group, String)> = self
+            .groups()
+            .into_iter()
+            .filter_map(|group| match &group {
+                Group::Error(unit) => {
+                    let title = match unit.as_str() {
+                        "1" | "" => "Energy balance error, relative".to_owned(),
+                        unit => format!("Energy balance error [{unit}]"),
+                    };
+                    Some((group, title))
+                }
+                _ => None,
+            })
+            .collect();
+        errors.sort_by_key(|(group, _)| *group != Group::Error("1".to_owned()));
+        errors.into_iter().map(|(group, title)| self.plot(&group, title)).collect()
+    }
+
+    /// Probes, one plot for each unit.
+    pub fn probes(&self) -> Vec<Plot> {
+        let groups = self.groups().into_iter().filter_map(|group| match &group {
+            Group::Probe(unit) => {
+                let title = if unit == "1" { "Probes".to_owned() } else { format!("Probes [{unit}]") };
+                Some((group, title))
+            }
+            _ => None,
+        });
+        groups.map(|(group, title)| self.plot(&group, title)).collect()
+    }
+
+    fn plot(&self, group: &Group, title: String) -> Plot {
+        Plot { title, include: self.names(group), exclude: Vec::new() }
+    }
+}
+
+/// What is drawn together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Group {
+    /// Energies of all bodies together.
+    Energy,
+    /// Energies of one body.
+    Body(String),
+    /// Errors of the energy balance in one unit.
+    Error(String),
+    /// Probes in one unit.
+    Probe(String),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(bodies: &[&str], known: &[(&str, &str)]) -> SeriesTable {
+        let owned = |(name, unit): &(&str, &str)| ((*name).to_owned(), (*unit).to_owned());
+        SeriesTable::new(
+            bodies.iter().map(|body| (*body).to_owned()).collect(),
+            known.iter().map(owned).collect(),
+        )
+    }
+
+    #[test]
+    fn probes_are_grouped_by_unit_and_errors_are_kept_from_energies() {
+        let table = table(
+            &["plate", "ball"],
+            &[
+                ("energy/kinetic", "J"),
+                ("energy/plate/kinetic", "J"),
+                ("energy/ball/kinetic", "J"),
+                ("energy/balance_error", "J"),
+                ("energy/relative_error", "1"),
+                ("probe/tip/x", "m"),
+                ("probe/reaction/x", "N"),
+                ("probe/tip/y", "m"),
+            ],
+        );
+        let titles = |plots: Vec<Plot>| plots.into_iter().map(|plot| plot.title).collect::<Vec<_>>();
+        assert_eq!(titles(table.energies()), ["Energies [J]", "plate [J]", "ball [J]"]);
+        assert_eq!(
+            titles(table.errors()),
+            ["Energy balance error, relative", "Energy balance error [J]"]
+        );
+        let probes = table.probes();
+        assert_eq!(probes[0].title, "Probes [m]");
+        assert_eq!(probes[0].include, [paths::series("probe/tip/x"), paths::series("probe/tip/y")]);
+        assert_eq!(probes[1].title, "Probes [N]");
+        let excluded = &table.energies()[0].exclude;
+        for path in ["energy/plate", "energy/ball", "energy/balance_error", "energy/relative_error"] {
+            assert!(excluded.contains(&paths::series(path)), "{path}");
+        }
+    }
+
+    #[test]
+    fn names_with_odd_signs_stay_one_entity() {
+        assert_eq!(paths::body("left plate/2").len(), 2);
+    }
+}
