@@ -26,4 +26,5 @@ pub fn standard_plugins() -> Registry {
         .with(hourglass_control::register)
         .with(local_damping::register)
         .with(artificial_viscosity::register)
+        .with(rerun_recorder::register)
 }

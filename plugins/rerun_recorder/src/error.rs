@@ -14,7 +14,9 @@ pub enum RerunError {
     #[error(transparent)]
     File(#[from] WriteError),
     /// The address is none.
-    #[error("`{address}` is not the address of a viewer; write `127.0.0.1:9876` or `rerun+http://127.0.0.1:9876/proxy`")]
+    #[error(
+        "`{address}` is not the address of a viewer; write `127.0.0.1:9876` or `rerun+http://127.0.0.1:9876/proxy`"
+    )]
     Address {
         /// The address.
         address: String,

@@ -56,8 +56,7 @@ impl Layout {
 
     fn left(&self, blueprint: &Blueprint, bounds: &Bounds) -> RecordingStreamResult<Tile> {
         let [r, g, b] = BACKGROUND;
-        let background =
-            Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
+        let background = Background::new(BackgroundKind::SolidColor).with_color(Color::from_rgb(r, g, b));
         let scene = self.space(blueprint, bounds, &background)?;
         let format = TextDocumentFormat::new().with_monospace(Enabled(Bool(true)));
         let text = blueprint.view(
@@ -69,7 +68,10 @@ impl Layout {
         let notes = blueprint.view(View::Text, "Notes", &[only(&paths::notes())], &[])?;
         let tabs = blueprint.tabs(&[scene, text, notes])?;
         let Some((field, unit)) = &self.colors else {
-            return blueprint.container(ContainerKind::Vertical, &tabs.map(|tile| (tile, 1.0)).into_iter().collect::<Vec<_>>());
+            return blueprint.container(
+                ContainerKind::Vertical,
+                &tabs.map(|tile| (tile, 1.0)).into_iter().collect::<Vec<_>>(),
+            );
         };
         let [x, y] = legend::VISIBLE;
         let bounds = VisualBounds2D::new(Visible2D(Range2D { x_range: x.into(), y_range: y.into() }));
@@ -114,8 +116,7 @@ fn plots(blueprint: &Blueprint, series: &SeriesTable) -> RecordingStreamResult<V
             plot.include.iter().map(with_children).chain(plot.exclude.iter().map(without)).collect();
         blueprint.view(View::Plot, &plot.title, &contents, &[("PlotLegend", &legend)])
     };
-    let views =
-        |plots: Vec<Plot>| plots.iter().map(view).collect::<RecordingStreamResult<Vec<Tile>>>();
+    let views = |plots: Vec<Plot>| plots.iter().map(view).collect::<RecordingStreamResult<Vec<Tile>>>();
     let mut tiles = Vec::new();
     tiles.extend(blueprint.tabs(&views(series.energies())?)?.map(|tile| (tile, 3.0)));
     tiles.extend(blueprint.tabs(&views(series.errors())?)?.map(|tile| (tile, 2.0)));

@@ -68,8 +68,7 @@ fn part(name: &str) -> EntityPath {
 }
 
 fn strip(map: Colormap) -> Image {
-    let row: Vec<u8> =
-        (0..WIDTH).flat_map(|k| map.color(f64::from(k) / f64::from(WIDTH - 1))).collect();
+    let row: Vec<u8> = (0..WIDTH).flat_map(|k| map.color(f64::from(k) / f64::from(WIDTH - 1))).collect();
     Image::from_rgb24(row.repeat(HEIGHT as usize), [WIDTH, HEIGHT])
 }
 
@@ -78,7 +77,11 @@ pub fn with_unit(value: f64, unit: &str) -> String {
     const PREFIXES: [(&str, i32); 9] =
         [("T", 12), ("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("µ", -6), ("n", -9), ("p", -12)];
     if value == 0.0 || unit == "1" || unit.is_empty() {
-        return if unit == "1" || unit.is_empty() { short(value) } else { format!("{} {unit}", short(value)) };
+        return if unit == "1" || unit.is_empty() {
+            short(value)
+        } else {
+            format!("{} {unit}", short(value))
+        };
     }
     if matches!(unit, "Pa" | "N" | "J" | "W") {
         let size = value.abs() * (1.0 + 1e-12);
@@ -90,7 +93,7 @@ pub fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// The number with up to four digits.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }

@@ -21,4 +21,3 @@ pub use colormap::Colormap;
 pub use error::RerunError;
 pub use plugin::{RerunRecorder, register};
 pub use recorder::RerunFile;
-

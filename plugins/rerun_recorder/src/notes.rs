@@ -17,7 +17,9 @@ impl Notes {
         // Writing into a string cannot fail.
         let _ = write!(text, ", from {} s to {} s", run.start_time, run.end_time);
         if run.resumed {
-            text.push_str(", resumed from a checkpoint: the time before is in the recording of the earlier run");
+            text.push_str(
+                ", resumed from a checkpoint: the time before is in the recording of the earlier run",
+            );
         }
         text.push_str("\n\n| body | particles | spacing [m] |\n|---|---|---|\n");
         for body in run.bodies {

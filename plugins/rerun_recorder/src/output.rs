@@ -29,13 +29,14 @@ pub struct Output {
 }
 
 impl Output {
-    /// Makes the file and connects to the viewer. Dropping the output completes the file.
+    /// Connects to the viewer and makes the file. Dropping the output completes the file.
     pub fn open(
         path: &Path,
         existing: Existing,
         name: &str,
         connect: Option<&str>,
     ) -> Result<Self, RerunError> {
+        let reached = connect.map(reach).transpose()?;
         // rerun says no more of a file that cannot be made than the text of the error.
         let made = match existing {
             Existing::Refuse => File::create_new(path),
@@ -45,9 +46,8 @@ impl Output {
         let sink = FileSink::new(path).map_err(RecordingStreamError::from)?;
         let file =
             RecordingStreamBuilder::new(APPLICATION).enabled(true).recording_name(name).set_sinks((sink,))?;
-        let viewer = match (connect, file.store_info()) {
-            (Some(address), Some(info)) => {
-                let sink = reach(address)?;
+        let viewer = match (reached, file.store_info()) {
+            (Some(sink), Some(info)) => {
                 let builder = RecordingStreamBuilder::from_store_id(&info.store_id);
                 Some(builder.enabled(true).recording_name(name).set_sinks((sink,))?)
             }

@@ -45,17 +45,12 @@ impl Plugin for RerunRecorder {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         self.check()?;
         let fields = sim.scene().record.fields.clone();
-        let color_by = self
-            .color_by
-            .clone()
-            .or_else(|| fields.first().cloned())
-            .unwrap_or_else(|| "velocity".to_owned());
         let gravity = sim.gravity().to_array();
         let up = match sim.dimension() {
             Dimension::Two => [0.0, 1.0, 0.0],
             Dimension::Three => against(gravity),
         };
-        sim.add_recorder(RerunFile::new(self, color_by, fields, up));
+        sim.add_recorder(RerunFile::new(self, fields, up));
         Ok(())
     }
 }

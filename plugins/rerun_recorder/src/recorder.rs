@@ -9,7 +9,7 @@ use crate::color_scale::{ColorScale, RunningScale};
 use crate::colormap::Colormap;
 use crate::error::RerunError;
 use crate::layout::Layout;
-use crate::legend::Legend;
+use crate::legend::{Legend, short};
 use crate::notes::Notes;
 use crate::output::Output;
 use crate::paths;
@@ -19,7 +19,6 @@ use crate::series::SeriesTable;
 /// Writes the recording of a run.
 pub struct RerunFile {
     settings: RerunRecorder,
-    color_by: String,
     fields: Vec<String>,
     up: [f64; 3],
     scale: RunningScale,
@@ -30,6 +29,8 @@ pub struct RerunFile {
 struct Open {
     output: Output,
     layout: Layout,
+    /// The field of the colours.
+    color_by: Option<String>,
     /// All particles so far.
     bounds: Bounds,
     /// The particles that the camera has in view.
@@ -45,38 +46,46 @@ const PLAIN: [u8; 3] = [130, 140, 155];
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
 
 impl RerunFile {
-    /// A recorder that colours particles by a field, and keeps the values of `fields`.
-    pub fn new(settings: RerunRecorder, color_by: String, fields: Vec<String>, up: [f64; 3]) -> Self {
+    /// A recorder that keeps the values of `fields`; `up` is the unit vector that points up in the picture.
+    pub fn new(settings: RerunRecorder, fields: Vec<String>, up: [f64; 3]) -> Self {
         let scale = RunningScale::new(settings.range);
-        Self { settings, color_by, fields, up, scale, open: None }
+        Self { settings, fields, up, scale, open: None }
     }
 
     fn open(&mut self, run: &RunInfo<'_>) -> Result<(), RerunError> {
         // A recording cannot be continued: a resumed run writes the rest of the time into a file of its own, and
         // doing so again replaces that rest.
         let (file, existing) = if run.resumed {
-            (format!("{}-from-{:.6e}s.rrd", run.scene_name, run.start_time), Existing::Replace)
+            (format!("{}-from-{}s.rrd", run.scene_name, short(run.start_time)), Existing::Replace)
         } else {
             (file_name(run.scene_name), run.existing)
         };
         let path = run.output.join(file);
-        let output = Output::open(&path, existing, run.title, self.settings.connect.as_deref())?;
+        let output = Output::open(&path, existing, run.scene_name, self.settings.connect.as_deref())?;
         output.log_static(&EntityPath::root(), &axes(self.up))?;
-        output.log_static(&paths::scene(), &TextDocument::new(run.scene_text).with_media_type(MediaType::TEXT))?;
+        output.log_static(
+            &paths::scene(),
+            &TextDocument::new(run.scene_text).with_media_type(MediaType::TEXT),
+        )?;
         let notes = Notes::new(run);
         output.log_static(&paths::notes(), &notes.document(&[]))?;
-        let colors = run.fields.iter().find(|field| field.name == self.color_by);
+        let colors = match &self.settings.color_by {
+            Some(name) => run.fields.iter().find(|field| field.name == name),
+            None => run.fields.first(),
+        };
+        let title = if run.title.is_empty() { run.scene_name } else { run.title };
         let bodies: Vec<String> = run.bodies.iter().map(|body| body.name.to_owned()).collect();
         let known = run.series.iter().map(|series| (series.name.to_owned(), series.unit.to_owned()));
         self.open = Some(Open {
             layout: Layout {
-                title: run.title.to_owned(),
+                title: title.to_owned(),
                 dimension: run.dimension,
                 up: self.up,
                 bodies: bodies.clone(),
                 colors: colors.map(|field| (field.name.to_owned(), field.unit.to_owned())),
                 duration: run.end_time - run.start_time,
             },
+            color_by: colors.map(|field| field.name.to_owned()),
             bounds: Bounds::EMPTY,
             in_view: None,
             legend: colors.map(|field| Legend::new(field.unit)),
@@ -96,8 +105,9 @@ impl RerunFile {
             open.send_layout(false)?;
         }
         open.output.set_time(frame.step, frame.time);
-        let color_by = self.color_by.as_str();
-        let mut all: Vec<f64> = frame.bodies.iter().flat_map(|body| values(body, color_by)).copied().collect();
+        let color_by = open.color_by.as_deref().unwrap_or_default();
+        let mut all: Vec<f64> =
+            frame.bodies.iter().flat_map(|body| values(body, color_by)).copied().collect();
         let scale = self.scale.update(&mut all);
         let automatic = if scale.diverging { Colormap::CoolWarm } else { Colormap::Viridis };
         let map = self.settings.colormap.unwrap_or(automatic);
@@ -116,7 +126,8 @@ impl RerunFile {
                 .with_colors(colors(values(body, color_by), scale, map))
                 .with_radii([radius]);
             open.output.log(&paths::body(body.name), &points)?;
-            for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name)) {
+            for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name))
+            {
                 let numbers = Scalars::new(field.values.iter().copied());
                 open.output.log(&paths::field(body.name, field.name), &numbers)?;
             }
@@ -139,9 +150,8 @@ fn colors(values: &[f64], scale: ColorScale, map: Colormap) -> Vec<Color> {
     if values.is_empty() {
         return vec![color(PLAIN)];
     }
-    let of = |value: &f64| {
-        color(if value.is_nan() { NOT_A_NUMBER } else { map.color(scale.fraction(*value)) })
-    };
+    let of =
+        |value: &f64| color(if value.is_nan() { NOT_A_NUMBER } else { map.color(scale.fraction(*value)) });
     values.iter().map(of).collect()
 }
 
@@ -166,7 +176,11 @@ impl Open {
 
 impl Recorder for RerunFile {
     fn fields(&self) -> Vec<String> {
-        vec![self.color_by.clone()]
+        match &self.settings.color_by {
+            Some(name) => vec![name.clone()],
+            None if self.fields.is_empty() => vec!["velocity".to_owned()],
+            None => Vec::new(),
+        }
     }
 
     fn files(&self, scene_name: &str) -> Vec<String> {

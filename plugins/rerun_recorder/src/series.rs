@@ -217,10 +217,7 @@ mod tests {
         );
         let titles = |plots: Vec<Plot>| plots.into_iter().map(|plot| plot.title).collect::<Vec<_>>();
         assert_eq!(titles(table.energies()), ["Energies [J]", "plate [J]", "ball [J]"]);
-        assert_eq!(
-            titles(table.errors()),
-            ["Energy balance error, relative", "Energy balance error [J]"]
-        );
+        assert_eq!(titles(table.errors()), ["Energy balance error, relative", "Energy balance error [J]"]);
         let probes = table.probes();
         assert_eq!(probes[0].title, "Probes [m]");
         assert_eq!(probes[0].include, [paths::series("probe/tip/x"), paths::series("probe/tip/y")]);
