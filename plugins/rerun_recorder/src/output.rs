@@ -53,7 +53,13 @@ impl Output {
             }
             _ => None,
         };
-        Ok(Self { file, viewer })
+        let output = Self { file, viewer };
+        for stream in output.streams() {
+            // When the program was at it is of no use to anyone, and would be offered as timelines.
+            stream.set_log_time_enabled(false);
+            stream.set_log_tick_enabled(false);
+        }
+        Ok(output)
     }
 
     fn streams(&self) -> impl Iterator<Item = &RecordingStream> {

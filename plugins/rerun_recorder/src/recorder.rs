@@ -89,7 +89,7 @@ impl RerunFile {
             bounds: Bounds::EMPTY,
             in_view: None,
             legend: colors.map(|field| Legend::new(field.unit)),
-            series: SeriesTable::new(bodies, known.collect()),
+            series: SeriesTable::new(bodies, run.dimension, known.collect()),
             notes,
             output,
         });

@@ -6,6 +6,7 @@ use rerun::components::{Color, Name, StrokeWidth};
 use rerun::{EntityPath, Scalars, SeriesLines};
 
 use meshless_engine::record::Sample;
+use meshless_engine::scene::Dimension;
 
 use crate::error::RerunError;
 use crate::output::Output;
@@ -23,9 +24,10 @@ pub struct Plot {
 }
 
 /// The time series that a run has.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SeriesTable {
     bodies: Vec<String>,
+    dimension: Dimension,
     known: Vec<(String, String)>,
     styled: BTreeSet<String>,
 }
@@ -43,8 +45,8 @@ const COLORS: [[u8; 3]; 7] = [
 
 impl SeriesTable {
     /// The series known at the start, with their units, of a run with these bodies.
-    pub fn new(bodies: Vec<String>, known: Vec<(String, String)>) -> Self {
-        Self { bodies, known, styled: BTreeSet::new() }
+    pub fn new(bodies: Vec<String>, dimension: Dimension, known: Vec<(String, String)>) -> Self {
+        Self { bodies, dimension, known, styled: BTreeSet::new() }
     }
 
     /// Logs values at the time that is set.
@@ -138,7 +140,7 @@ impl SeriesTable {
         self.groups().contains(&Group::Body(body.to_owned()))
     }
 
-    /// Errors of the energy balance, the relative one in front.
+    /// Errors of the energy balance, in joules in front: the relative one starts with next to nothing over nothing.
     pub fn errors(&self) -> Vec<Plot> {
         let mut errors: Vec<(Group, String)> = self
             .groups()
@@ -154,12 +156,15 @@ impl SeriesTable {
                 _ => None,
             })
             .collect();
-        errors.sort_by_key(|(group, _)| *group != Group::Error("1".to_owned()));
+        errors.sort_by_key(|(group, _)| *group != Group::Error("J".to_owned()));
         errors.into_iter().map(|(group, title)| self.plot(&group, title)).collect()
     }
 
-    /// Probes, one plot for each unit.
+    /// Probes, one plot for each unit; in a plane scene without the components across the plane, which are zero.
     pub fn probes(&self) -> Vec<Plot> {
+        let across = |path: &EntityPath| {
+            self.dimension == Dimension::Two && path.last().is_some_and(|part| part.unescaped_str() == "z")
+        };
         let groups = self.groups().into_iter().filter_map(|group| match &group {
             Group::Probe(unit) => {
                 let title = if unit == "1" { "Probes".to_owned() } else { format!("Probes [{unit}]") };
@@ -167,7 +172,9 @@ impl SeriesTable {
             }
             _ => None,
         });
-        groups.map(|(group, title)| self.plot(&group, title)).collect()
+        let mut plots: Vec<Plot> = groups.map(|(group, title)| self.plot(&group, title)).collect();
+        plots.iter_mut().for_each(|plot| plot.include.retain(|path| !across(path)));
+        plots
     }
 
     fn plot(&self, group: &Group, title: String) -> Plot {
@@ -196,6 +203,7 @@ mod tests {
         let owned = |(name, unit): &(&str, &str)| ((*name).to_owned(), (*unit).to_owned());
         SeriesTable::new(
             bodies.iter().map(|body| (*body).to_owned()).collect(),
+            Dimension::Two,
             known.iter().map(owned).collect(),
         )
     }
@@ -213,11 +221,12 @@ mod tests {
                 ("probe/tip/x", "m"),
                 ("probe/reaction/x", "N"),
                 ("probe/tip/y", "m"),
+                ("probe/tip/z", "m"),
             ],
         );
         let titles = |plots: Vec<Plot>| plots.into_iter().map(|plot| plot.title).collect::<Vec<_>>();
         assert_eq!(titles(table.energies()), ["Energies [J]", "plate [J]", "ball [J]"]);
-        assert_eq!(titles(table.errors()), ["Energy balance error, relative", "Energy balance error [J]"]);
+        assert_eq!(titles(table.errors()), ["Energy balance error [J]", "Energy balance error, relative"]);
         let probes = table.probes();
         assert_eq!(probes[0].title, "Probes [m]");
         assert_eq!(probes[0].include, [paths::series("probe/tip/x"), paths::series("probe/tip/y")]);
