@@ -25,6 +25,12 @@ impl Bounds {
         }
     }
 
+    /// Length of the diagonal, m; zero for a box that holds nothing.
+    pub fn diagonal(&self) -> f64 {
+        let squares = (0..3).map(|k| (self.max[k] - self.min[k]).max(0.0).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..8).map(|corner| {
             std::array::from_fn(|k| if corner >> k & 1 == 0 { self.min[k] } else { self.max[k] })
@@ -101,6 +107,14 @@ mod tests {
         assert_eq!((eye.position[0], eye.position[1]), (1.0, 0.5));
         let half_width_in_view = eye.position[2] * OPENING * ASPECT;
         assert!((half_width_in_view / (MARGIN * 1.0) - 1.0).abs() < 1e-12, "{half_width_in_view}");
+    }
+
+    #[test]
+    fn the_diagonal_is_that_of_the_box_around_all_balls() {
+        let mut bounds = Bounds::EMPTY;
+        assert_eq!(bounds.diagonal(), 0.0);
+        bounds.extend(&[[1.0, 0.0, 5.0], [3.0, 1.0, 5.0]], 0.5);
+        assert_eq!(bounds.diagonal(), (3.0f64 * 3.0 + 2.0 * 2.0 + 1.0).sqrt());
     }
 
     #[test]
