@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
-use super::{check, new, plugins, resume, schema, view};
+use super::{check, new, plugins, resume, schema, validate, view};
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
 #[derive(Parser)]
@@ -24,6 +24,7 @@ enum Command {
     New(new::Arguments),
     Plugins(plugins::Arguments),
     Schema(schema::Arguments),
+    Validate(validate::Arguments),
     View(view::Arguments),
 }
 
@@ -36,6 +37,7 @@ impl Command {
             Self::New(arguments) => new::execute(arguments),
             Self::Plugins(arguments) => plugins::execute(&arguments, registry),
             Self::Schema(arguments) => schema::execute(&arguments, registry),
+            Self::Validate(arguments) => validate::execute(&arguments, registry),
             Self::View(arguments) => view::execute(&arguments),
         }
     }

@@ -17,6 +17,7 @@ mod schema;
 mod session;
 mod summary;
 mod text;
+pub mod validate;
 mod view;
 
 pub use commands::run;

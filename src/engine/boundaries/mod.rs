@@ -8,6 +8,7 @@ mod fix;
 mod force;
 #[cfg(test)]
 mod image_tests;
+mod initial_displacement;
 mod initial_velocity;
 mod load;
 mod part;
@@ -23,6 +24,7 @@ pub use body_force::BodyForce;
 pub use displacement::Displacement;
 pub use fix::Fix;
 pub use force::Force;
+pub use initial_displacement::InitialDisplacement;
 pub use initial_velocity::InitialVelocity;
 pub use pressure::Pressure;
 pub use symmetry::{Side, Symmetry};
@@ -37,6 +39,7 @@ pub fn register(registry: &mut Registry) {
         .condition::<Fix>()
         .condition::<Velocity>()
         .condition::<Displacement>()
+        .condition::<InitialDisplacement>()
         .condition::<InitialVelocity>()
         .condition::<Traction>()
         .condition::<Pressure>()

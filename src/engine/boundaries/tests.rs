@@ -277,3 +277,22 @@ fn a_pressure_turns_with_the_body() {
     let total: DVec3 = column::<crate::world::Force>(&sim).iter().map(|force| force.0).sum();
     assert!(total.distance(DVec3::new(2.0e4, 0.0, 0.0)) < 1e-6, "{total}");
 }
+
+#[test]
+fn an_initial_displacement_stretches_a_body_before_the_first_step() {
+    let text = block(
+        "InitialDisplacement(on: Select(body: \"block\"), value: (\"0.1*x\", \"-0.2*y\"))",
+        "time: (end: 1.0e-9, step: Fixed(1.0e-9))",
+    );
+    let mut sim = simulation(&text);
+    for (x, reference) in column::<Position>(&sim).iter().zip(column::<ReferencePosition>(&sim)) {
+        assert_close(x.0.x, 1.1 * reference.0.x, 1e-15);
+        assert_close(x.0.y, 0.8 * reference.0.y, 1e-15);
+    }
+    finish(&mut sim);
+    // W = (lambda + 2 mu)/2 (Exx^2 + Eyy^2) + lambda Exx Eyy per area, over 0.5 m2.
+    let (exx, eyy) = (0.5 * (1.21 - 1.0), 0.5 * (0.64 - 1.0));
+    let (lambda, mu) = (1e6 * 0.3 / (1.3 * 0.4), 1e6 / 2.6);
+    let energy = 0.5 * (0.5 * (lambda + 2.0 * mu) * (exx * exx + eyy * eyy) + lambda * exx * eyy);
+    assert_close(account(&sim, "strain"), energy, 1e-6 * energy);
+}

@@ -5,6 +5,8 @@ mod elastic_constants;
 mod law;
 mod neo_hookean;
 mod st_venant_kirchhoff;
+#[cfg(test)]
+mod tests;
 
 pub use decoupled_neo_hookean::DecoupledNeoHookean;
 pub use elastic_constants::ElasticConstants;

@@ -52,9 +52,9 @@ impl Hyperelastic for StVenantKirchhoffLaw {
         &self.0
     }
 
-    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64 {
-        // The law stiffens in tension: dP/dF along the stretch grows as its square.
-        smallest.min(1.0) / largest.max(1.0)
+    fn stable_step_factor(&self, _smallest: f64, largest: f64) -> f64 {
+        // The law stiffens in tension: dP/dF along a stretch s is (lambda + 2 mu)(3 s^2 - 1)/2. It softens in compression.
+        1.0 / largest.max(1.0)
     }
 
     #[inline(always)]

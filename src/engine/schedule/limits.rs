@@ -11,22 +11,84 @@ pub struct Limit {
     pub by: String,
 }
 
+/// Least number of steps for which a limit is kept.
+const MEMORY: u32 = 500;
+
 /// The limits proposed for the next step. The smallest one is kept; of equal ones the first.
-#[derive(Debug, Default)]
+///
+/// The step falls at once, but it does not grow before the limit that made it small is `MEMORY` to twice `MEMORY` steps old. The
+/// leapfrog conserves energy over long times only with a constant step; one that follows every oscillation of the
+/// limits in its rhythm feeds the oscillation.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeStepLimits {
-    smallest: Option<Limit>,
+    proposed: Option<Limit>,
+    /// Smallest limit of the last `age` steps.
+    recent: Option<Limit>,
+    /// Smallest limit of the `MEMORY` steps before those.
+    older: Option<Limit>,
+    age: u32,
 }
 
 impl TimeStepLimits {
     /// Proposes a limit, dt in s; `by` is asked for its text only if the limit is the smallest so far.
     pub fn propose(&mut self, dt: f64, by: impl FnOnce() -> String) {
-        if self.smallest.as_ref().is_none_or(|limit| dt < limit.dt) {
-            self.smallest = Some(Limit { dt, by: by() });
+        if self.proposed.as_ref().is_none_or(|limit| dt < limit.dt) {
+            self.proposed = Some(Limit { dt, by: by() });
         }
     }
 
-    /// Takes the smallest limit, and forgets all.
+    /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this step. What
+    /// has been proposed is taken.
     pub fn take(&mut self) -> Option<Limit> {
-        self.smallest.take()
+        let proposed = self.proposed.take()?;
+        if self.age == MEMORY {
+            self.older = self.recent.take();
+            self.age = 0;
+        }
+        self.age += 1;
+        let recent = match self.recent.take() {
+            Some(limit) if limit.dt <= proposed.dt => limit,
+            _ => proposed,
+        };
+        self.recent = Some(recent.clone());
+        match &self.older {
+            Some(limit) if limit.dt < recent.dt => Some(limit.clone()),
+            _ => Some(recent),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(limits: &mut TimeStepLimits, dt: f64, count: u32) -> f64 {
+        let mut last = 0.0;
+        for _ in 0..count {
+            limits.propose(2.0 * dt, || "other".into());
+            limits.propose(dt, || "smaller".into());
+            last = limits.take().map_or(f64::NAN, |limit| limit.dt);
+        }
+        last
+    }
+
+    #[test]
+    fn the_step_falls_at_once_and_grows_late() {
+        let mut limits = TimeStepLimits::default();
+        assert!(limits.take().is_none());
+        assert_eq!(steps(&mut limits, 1.0, 3), 1.0);
+        assert_eq!(steps(&mut limits, 0.5, 1), 0.5);
+        assert_eq!(steps(&mut limits, 1.0, MEMORY), 0.5);
+        assert_eq!(steps(&mut limits, 1.0, MEMORY), 1.0);
+    }
+
+    #[test]
+    fn a_limit_that_swings_faster_than_the_memory_gives_a_constant_step() {
+        let mut limits = TimeStepLimits::default();
+        steps(&mut limits, 0.5, 1);
+        for k in 0..5000 {
+            let swing = if k % 100 < 50 { 1.0 } else { 0.5 };
+            assert_eq!(steps(&mut limits, swing, 1), 0.5);
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::record::{
     Container, ContainerError, ContainerWriter, Existing, RecordError, StateHash, StateHasher,
 };
 use crate::scene::Source;
-use crate::schedule::{Clock, Ledger, Limit};
+use crate::schedule::{Clock, Ledger, Limit, TimeStepLimits};
 use crate::world::{ColumnInfo, PhaseView};
 
 const STATE: &str = "state";
@@ -29,6 +29,7 @@ struct Header {
     clock: Clock,
     ledger: Ledger,
     next_limit: Option<Limit>,
+    limits: TimeStepLimits,
     warnings: Vec<String>,
     systems: Vec<(String, Vec<u8>)>,
 }
@@ -110,6 +111,7 @@ impl Simulation {
             clock: self.clock,
             ledger: self.ledger.clone(),
             next_limit: self.next_limit.clone(),
+            limits: self.limits.clone(),
             warnings: self.warnings.clone(),
             systems: self.schedule.save(),
         };
@@ -130,7 +132,7 @@ impl Simulation {
 
     /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes any.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
-        let Header { clock, ledger, next_limit, warnings, systems, .. } = &checkpoint.header;
+        let Header { clock, ledger, next_limit, limits, warnings, systems, .. } = &checkpoint.header;
         for phase in self.world.phases() {
             let view = self.world.phase(phase);
             for column in view.columns().iter() {
@@ -158,6 +160,7 @@ impl Simulation {
         self.clock = *clock;
         self.ledger = ledger.clone();
         self.next_limit = next_limit.clone();
+        self.limits = limits.clone();
         self.warnings = warnings.clone();
         self.started = true;
         self.pace.begin(self.clock.step);

@@ -1,0 +1,86 @@
+//! `meshless validate`: cases with known answers, run through the real engine and compared.
+//!
+//! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way `--set` sets
+//! them, and one file here, which says what is measured and what it is compared with.
+
+mod bending_column;
+mod cantilever;
+mod cantilever_large;
+mod case;
+mod check;
+mod cook_membrane;
+mod disorder;
+mod measure;
+mod oscillating_plate;
+mod patch;
+mod report;
+mod rubber_pull;
+mod template;
+mod turek_hron;
+mod twisting_column;
+
+use meshless_engine::plugin::Registry;
+
+use super::failure::Failure;
+use super::text::say;
+pub use case::{CASES, Case};
+pub use check::{Check, Tolerance};
+use report::Report;
+
+/// Runs cases with known answers and prints measured value, reference, error and tolerance.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct Arguments {
+    /// Cases to run, such as `S11`; all if none is given.
+    #[arg(value_name = "ID")]
+    pub cases: Vec<String>,
+    /// Particles across the smallest dimension, in place of the cheapest meaningful resolution of each case.
+    #[arg(long, conflicts_with = "all_resolutions", value_name = "N")]
+    pub resolution: Option<usize>,
+    /// Run all resolutions of each case and check that the errors fall.
+    #[arg(long)]
+    pub all_resolutions: bool,
+    /// List the cases and their resolutions, run nothing.
+    #[arg(long)]
+    pub list: bool,
+}
+
+/// Runs the cases; fails where a case fails or an error is too large.
+pub(super) fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+    let cases = chosen(&arguments.cases)?;
+    if arguments.list {
+        cases.iter().for_each(|case| say(&report::description(case)));
+        return Ok(());
+    }
+    let mut report = Report::default();
+    for case in cases {
+        if arguments.all_resolutions {
+            for &resolution in case.resolutions {
+                report.run(case, resolution, registry);
+            }
+            report.check_convergence(case);
+        } else {
+            report.run(case, arguments.resolution.unwrap_or(case.ci_resolution), registry);
+        }
+    }
+    report.finish()
+}
+
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
+    if names.is_empty() {
+        return Ok(CASES.iter().collect());
+    }
+    let mut cases = Vec::new();
+    for name in names {
+        match CASES.iter().find(|case| case.id.eq_ignore_ascii_case(name)) {
+            Some(case) => cases.push(case),
+            None => {
+                let known: Vec<&str> = CASES.iter().map(|case| case.id).collect();
+                return Err(Failure::Usage(format!(
+                    "there is no case `{name}`; there are: {}",
+                    known.join(", ")
+                )));
+            }
+        }
+    }
+    Ok(cases)
+}

@@ -1,0 +1,37 @@
+//! What a case is, and the list of all cases.
+
+use anyhow::Result;
+use meshless_engine::plugin::Registry;
+
+use super::check::Check;
+use super::{
+    bending_column, cantilever, cantilever_large, cook_membrane, oscillating_plate, patch, rubber_pull,
+    turek_hron, twisting_column,
+};
+
+/// A case with a known answer.
+pub struct Case {
+    /// Its identity, such as `S11`.
+    pub id: &'static str,
+    /// What it is, in one line.
+    pub title: &'static str,
+    /// Resolutions that show convergence, ascending: particles across the smallest dimension.
+    pub resolutions: &'static [usize],
+    /// The cheapest meaningful resolution, which tests run.
+    pub ci_resolution: usize,
+    /// Runs it at a resolution.
+    pub run: fn(&Registry, usize) -> Result<Vec<Check>>,
+}
+
+/// All cases.
+pub const CASES: &[Case] = &[
+    patch::CASE,
+    cantilever::CASE,
+    cantilever_large::CASE,
+    rubber_pull::CASE,
+    oscillating_plate::CASE,
+    turek_hron::CASE,
+    cook_membrane::CASE,
+    bending_column::CASE,
+    twisting_column::CASE,
+];

@@ -1,0 +1,111 @@
+//! A figure of a case beside its reference.
+
+/// How near a measured value has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// The relative error is at most this, either way.
+    Relative(f64),
+    /// The relative error is between these two.
+    Between(f64, f64),
+    /// The error is at most this, either way, in the unit of the value.
+    Absolute(f64),
+    /// The value is below the reference.
+    Below,
+    /// The value is above the reference.
+    Above,
+}
+
+/// A measured value, what it is compared with, and where that comes from.
+#[derive(Clone, Debug)]
+pub struct Check {
+    /// What is measured.
+    pub name: String,
+    /// Measured value.
+    pub measured: f64,
+    /// Reference value; the bound of [`Tolerance::Below`] and [`Tolerance::Above`].
+    pub reference: f64,
+    /// How near they have to be.
+    pub tolerance: Tolerance,
+    /// Unit of both; `1` for a pure number.
+    pub unit: &'static str,
+    /// Where the reference comes from.
+    pub source: &'static str,
+    /// Whether its error has to fall from one resolution to the next.
+    pub converges: bool,
+}
+
+impl Check {
+    /// A value that has to be near its reference.
+    pub fn new(
+        name: impl Into<String>,
+        measured: f64,
+        reference: f64,
+        tolerance: Tolerance,
+        unit: &'static str,
+        source: &'static str,
+    ) -> Self {
+        Self { name: name.into(), measured, reference, tolerance, unit, source, converges: false }
+    }
+
+    /// A pure number that has to stay below a bound.
+    pub fn below(name: impl Into<String>, measured: f64, bound: f64, source: &'static str) -> Self {
+        Self::new(name, measured, bound, Tolerance::Below, "1", source)
+    }
+
+    /// A pure number that has to be above a bound.
+    pub fn above(name: impl Into<String>, measured: f64, bound: f64, source: &'static str) -> Self {
+        Self::new(name, measured, bound, Tolerance::Above, "1", source)
+    }
+
+    /// The same check, whose error also has to fall with resolution.
+    #[must_use]
+    pub fn converging(self) -> Self {
+        Self { converges: true, ..self }
+    }
+
+    /// Relative error; the difference where the reference is zero.
+    pub fn error(&self) -> f64 {
+        let difference = self.measured - self.reference;
+        if self.reference == 0.0 { difference } else { difference / self.reference.abs() }
+    }
+
+    /// Whether the value is near enough. A value that is not a number never is.
+    pub fn passes(&self) -> bool {
+        match self.tolerance {
+            Tolerance::Relative(most) => self.error().abs() <= most,
+            Tolerance::Between(low, high) => (low..=high).contains(&self.error()),
+            Tolerance::Absolute(most) => (self.measured - self.reference).abs() <= most,
+            Tolerance::Below => self.measured < self.reference,
+            Tolerance::Above => self.measured > self.reference,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(measured: f64, tolerance: Tolerance) -> bool {
+        Check::new("x", measured, -2.0, tolerance, "m", "").passes()
+    }
+
+    #[test]
+    fn a_value_passes_within_its_tolerance_only() {
+        assert!(check(-2.02, Tolerance::Relative(0.011)));
+        assert!(!check(-2.03, Tolerance::Relative(0.011)));
+        assert!(check(-1.97, Tolerance::Between(-0.001, 0.02)));
+        assert!(!check(-2.01, Tolerance::Between(-0.001, 0.02)));
+        assert!(check(-2.01, Tolerance::Absolute(0.02)));
+        assert!(check(-3.0, Tolerance::Below) && !check(-2.0, Tolerance::Below));
+        assert!(check(-1.0, Tolerance::Above) && !check(-2.0, Tolerance::Above));
+    }
+
+    #[test]
+    fn what_is_not_a_number_never_passes() {
+        for tolerance in
+            [Tolerance::Relative(1e9), Tolerance::Absolute(1e9), Tolerance::Below, Tolerance::Above]
+        {
+            assert!(!check(f64::NAN, tolerance));
+        }
+    }
+}

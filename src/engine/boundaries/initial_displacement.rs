@@ -1,0 +1,53 @@
+//! The displacement that particles start with.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::field::Field;
+use super::part::parts_of;
+use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::scene::{Expression, PerAxis, Select};
+use crate::world::Position;
+
+/// Starts particles away from their reference positions, which carry no stress, such as for a body that is released from
+/// a stretched state. It acts once, on fixed particles too; a `Displacement` moves its particles to its own places.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialDisplacement {
+    /// Particles.
+    pub on: Select,
+    /// Displacement per axis \[m\], a function of the reference position; `None` is zero.
+    pub value: PerAxis<Expression>,
+}
+
+impl Plugin for InitialDisplacement {
+    const NAME: &'static str = "InitialDisplacement";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = sim.select(&self.on, "on")?;
+        let field = Field::new(self.value, sim)?;
+        let parts = parts_of(&selection, sim);
+        for part in &parts {
+            let values = part.points.iter().map(|&point| (point, field.at(point, 0.0)));
+            if let Some((point, value)) = values.into_iter().find(|(_, value)| !value.is_finite()) {
+                return Err(SetupError::parameter(
+                    "value",
+                    format!("the displacement at {point} is {value}"),
+                    "give an expression that is finite on all selected particles",
+                ));
+            }
+        }
+        sim.add_setup(move |setup| {
+            for part in &parts {
+                let (view, _) = setup.world.body_view(part.body);
+                let mut position = view.write::<Position>().map_err(|error| SetupError::internal(&error))?;
+                for (&row, &point) in part.rows.iter().zip(&part.points) {
+                    position[row as usize].0 += field.at(point, 0.0);
+                }
+            }
+            Ok(())
+        });
+        Ok(())
+    }
+}

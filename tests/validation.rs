@@ -1,0 +1,68 @@
+//! Every case of `meshless validate` at its cheapest meaningful resolution.
+
+use meshless::cli::validate::CASES;
+use meshless::standard_plugins;
+
+fn passes(id: &str) {
+    let case = CASES.iter().find(|case| case.id == id).expect("a known case");
+    let checks =
+        (case.run)(&standard_plugins(), case.ci_resolution).unwrap_or_else(|error| panic!("{id}: {error:#}"));
+    assert!(!checks.is_empty());
+    let failed: Vec<_> = checks.iter().filter(|check| !check.passes()).collect();
+    assert!(failed.is_empty(), "{id}: {failed:#?}");
+}
+
+#[test]
+fn s1_breathing_patch() {
+    passes("S1");
+}
+
+#[test]
+fn s2_cantilever_stiffness() {
+    passes("S2");
+}
+
+#[test]
+fn s3_cantilever_large_deflection() {
+    passes("S3");
+}
+
+#[test]
+fn s5_rubber_pull() {
+    passes("S5");
+}
+
+#[test]
+fn s8_oscillating_plate() {
+    passes("S8");
+}
+
+#[test]
+fn s9_turek_hron() {
+    passes("S9");
+}
+
+#[test]
+fn s10_cook_membrane() {
+    passes("S10");
+}
+
+#[test]
+fn s11_bending_column() {
+    passes("S11");
+}
+
+#[test]
+fn s12_twisting_column() {
+    passes("S12");
+}
+
+#[test]
+fn every_case_has_a_test_and_resolutions_that_rise() {
+    let tests = include_str!("validation.rs");
+    for case in CASES {
+        assert!(tests.contains(&format!("passes(\"{}\")", case.id)), "{} has no test", case.id);
+        assert!(case.resolutions.windows(2).all(|pair| pair[0] < pair[1]), "{}", case.id);
+        assert!(case.resolutions.contains(&case.ci_resolution) || case.resolutions[0] > case.ci_resolution);
+    }
+}
