@@ -1,16 +1,26 @@
 //! What programs that add to `meshless` or build scenes in Rust use most: `use meshless::prelude::*;`.
 
 pub use meshless_engine::column;
+pub use meshless_engine::formulations::total_lagrangian::{BondRows, BondTerm};
 pub use meshless_engine::glam::{DMat3, DVec3};
-pub use meshless_engine::materials::{Hyperelastic, Material, MaterialModel, ParameterError};
-pub use meshless_engine::plugin::{Formulation, Plugin, Registry, SetupError, SimBuilder, build};
-pub use meshless_engine::scene::{Dimension, Item, Scene, SceneError, Select, Source, load, parse};
-pub use meshless_engine::schedule::{AccountKind, Clock, Stage, Step, StepError, System};
+pub use meshless_engine::materials::{
+    ElasticConstants, Hyperelastic, Material, MaterialModel, ParameterError,
+};
+pub use meshless_engine::pair::{Pair, PairTerm, Rates};
+pub use meshless_engine::plugin::{
+    BuildOptions, Formulation, Plugin, Registry, SetupError, SimBuilder, build, build_with,
+};
+pub use meshless_engine::record::read_series;
+pub use meshless_engine::scene::{
+    Dimension, Expression, Item, Scene, SceneError, Select, Source, Vec3, load, parse,
+};
+pub use meshless_engine::schedule::{AccountKind, Adds, Clock, Run, Stage, Step, StepError, System};
 pub use meshless_engine::schemars::JsonSchema;
 pub use meshless_engine::serde::Deserialize;
 pub use meshless_engine::simulation::{Checkpoint, RunError, Simulation};
 pub use meshless_engine::world::{
-    BodyId, BodySet, Column, Force, Mass, Position, ReferencePosition, Velocity, World,
+    BodyId, BodySet, Column, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
+    Velocity, World,
 };
 
 pub use crate::standard_plugins;

@@ -10,7 +10,7 @@ use super::plan::BodyPlan;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
 use crate::scene::{Dimension, Scene, Select};
-use crate::schedule::System;
+use crate::schedule::{Stage, Step, System};
 use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
 
 /// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms, columns.
@@ -106,6 +106,18 @@ impl<'s> SimBuilder<'s> {
     /// Adds a system.
     pub fn add_system(&mut self, system: System) {
         self.systems.push(system);
+    }
+
+    /// Keeps the time step at or below `dt`, s; `by` names the cause to the user.
+    pub fn limit_step(&mut self, dt: f64, by: &'static str) {
+        self.add_system(System::new(
+            Stage::External,
+            format!("{by}_step_limit"),
+            move |step: &mut Step<'_>| {
+                step.limits.propose(dt, || by.to_owned());
+                Ok(())
+            },
+        ));
     }
 
     /// Adds something to do once, after the particles are spawned and before the first step.

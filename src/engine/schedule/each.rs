@@ -1,9 +1,10 @@
 //! Rows of several columns at once, for systems that are a function of one particle.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::system::{Access, Mode};
-use crate::parallel::{Split, for_each_block};
+use crate::parallel::{BlockSum, Split, for_each_block};
 use crate::world::{Column, MissingColumn, PhaseView};
 
 /// One column of a row: `&C` or `&mut C`.
@@ -69,19 +70,45 @@ impl<C: Column> RowColumn for &mut C {
     }
 }
 
-/// A tuple of up to five columns, `&C` to read and `&mut C` to write.
+/// Column `C` as an accumulator: the row is a `&mut C` that the system only adds to, so that it needs no stated order
+/// among the others that add to the column.
+pub struct Adds<C>(PhantomData<C>);
+
+impl<C: Column> RowColumn for Adds<C> {
+    type Guard<'g> = hecs::ArchetypeColumnMut<'g, C>;
+    type Slice<'s> = &'s mut [C];
+    type Item<'r> = &'r mut C;
+
+    fn access() -> Access {
+        Access { column: C::NAME, mode: Mode::Adds }
+    }
+
+    fn guard<'g>(phase: &PhaseView<'g>) -> Result<Self::Guard<'g>, MissingColumn> {
+        phase.write()
+    }
+
+    fn slice<'s>(guard: &'s mut Self::Guard<'_>, rows: Range<usize>) -> Self::Slice<'s> {
+        &mut (**guard)[rows]
+    }
+
+    fn item<'r>(slice: &'r mut Self::Slice<'_>, k: usize) -> Self::Item<'r> {
+        &mut slice[k]
+    }
+}
+
+/// A tuple of up to five columns: `&C` to read, `&mut C` to write, [`Adds<C>`](Adds) to add to.
 pub trait EachRow {
     /// One row of the columns.
     type Row<'r>;
 
     /// Declares the access to every column.
     fn declare(access: &mut Vec<Access>);
-    /// Calls `f` for every row, in parallel.
-    fn for_each(
+    /// Calls `f` for every row, in parallel, and returns the sum of what it returns, in a fixed order.
+    fn for_each<R: BlockSum>(
         phase: &PhaseView<'_>,
         rows: Range<usize>,
-        f: &(impl for<'r> Fn(Self::Row<'r>) + Sync),
-    ) -> Result<(), MissingColumn>;
+        f: &(impl for<'r> Fn(Self::Row<'r>) -> R + Sync),
+    ) -> Result<R, MissingColumn>;
 }
 
 macro_rules! each_row {
@@ -93,19 +120,21 @@ macro_rules! each_row {
                 access.extend([$($name::access()),+]);
             }
 
-            fn for_each(
+            fn for_each<R: BlockSum>(
                 phase: &PhaseView<'_>,
                 rows: Range<usize>,
-                f: &(impl for<'r> Fn(Self::Row<'r>) + Sync),
-            ) -> Result<(), MissingColumn> {
+                f: &(impl for<'r> Fn(Self::Row<'r>) -> R + Sync),
+            ) -> Result<R, MissingColumn> {
                 let mut guards = ($($name::guard(phase)?,)+);
                 let slices = ($($name::slice(&mut guards.$k, rows.clone()),)+);
-                for_each_block(slices, &mut Vec::new(), &|_, mut block: ($($name::Slice<'_>,)+)| {
+                let body = |_, mut block: ($($name::Slice<'_>,)+)| {
+                    let mut sum = R::default();
                     for k in 0..block.rows() {
-                        f(($($name::item(&mut block.$k, k),)+));
+                        sum.add(&f(($($name::item(&mut block.$k, k),)+)));
                     }
-                });
-                Ok(())
+                    sum
+                };
+                Ok(for_each_block(slices, &mut Vec::new(), &body))
             }
         }
     };

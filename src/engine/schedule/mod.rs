@@ -9,7 +9,7 @@ mod stage;
 mod step;
 mod system;
 
-pub use each::EachRow;
+pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, Ledger};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};

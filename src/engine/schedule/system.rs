@@ -1,6 +1,7 @@
 //! A system: a piece of the step with a stage, a label, declared access to columns, and a place in the order.
 
 use super::each::EachRow;
+use super::ledger::AccountKind;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use crate::world::{BodySet, Column, PhaseId};
@@ -81,7 +82,7 @@ impl System {
     }
 
     /// A system that calls `f` for every particle of the bodies, in parallel, with the columns named by `Q`: a tuple
-    /// of `&Column` and `&mut Column`. The access is declared by the types.
+    /// of `&Column`, `&mut Column` and `Adds<Column>`. The access is declared by the types.
     pub fn each<Q: EachRow>(
         stage: Stage,
         label: impl Into<String>,
@@ -93,6 +94,35 @@ impl System {
             for body in bodies.iter() {
                 let (phase, rows) = step.world.body_view(body);
                 Q::for_each(&phase, rows, &|row| f(&clock, row))?;
+            }
+            Ok(())
+        });
+        Q::declare(&mut system.access);
+        system
+    }
+
+    /// [`System::each`] for a system whose energy has an account: `f` also returns the energy of the particle, J. Of an
+    /// account that is [`AccountKind::Stored`] it is what the particle holds now, of the other kinds what this step has
+    /// supplied or dissipated.
+    pub fn each_with_energy<Q: EachRow>(
+        stage: Stage,
+        label: impl Into<String>,
+        bodies: BodySet,
+        (account, kind): (&'static str, AccountKind),
+        f: impl for<'r> Fn(&super::step::Clock, Q::Row<'r>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
+            let clock = step.clock;
+            let account_id = step.ledger.account(account, kind);
+            for body in bodies.iter() {
+                let (phase, rows) = step.world.body_view(body);
+                let energy = Q::for_each(&phase, rows, &|row| f(&clock, row))?;
+                match kind {
+                    AccountKind::Stored => step.ledger.set(account_id, body, energy),
+                    AccountKind::Supplied | AccountKind::Dissipated => {
+                        step.ledger.add(account_id, body, energy);
+                    }
+                }
             }
             Ok(())
         });
@@ -162,5 +192,21 @@ impl System {
         }
         let pairs = self.access.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));
         pairs.filter(|(a, b)| a.conflicts(b)).map(|(a, _)| a.column).next()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schedule::Adds;
+    use crate::world::{Force, Mass};
+
+    #[test]
+    fn systems_that_only_add_to_a_column_need_no_order() {
+        let bodies = BodySet::default;
+        let adds = |label| System::each::<(Adds<Force>, &Mass)>(Stage::External, label, bodies(), |_, _| ());
+        let writes = System::each::<(&mut Force,)>(Stage::External, "writes", bodies(), |_, _| ());
+        assert_eq!(adds("one").conflict_with(&adds("other")), None);
+        assert_eq!(adds("one").conflict_with(&writes), Some(Force::NAME));
     }
 }
