@@ -25,10 +25,11 @@ impl Bounds {
         }
     }
 
-    /// Length of the diagonal, m; zero for a box that holds nothing.
-    pub fn diagonal(&self) -> f64 {
-        let squares = (0..3).map(|k| (self.max[k] - self.min[k]).max(0.0).powi(2));
-        squares.sum::<f64>().sqrt()
+    /// Whether this box reaches out of `seen` by more than a tenth of the diagonal of `seen`.
+    pub fn outgrows(&self, seen: &Self) -> bool {
+        let diagonal = (0..3).map(|k| (seen.max[k] - seen.min[k]).powi(2)).sum::<f64>().sqrt();
+        let beyond = |k: usize| (seen.min[k] - self.min[k]).max(self.max[k] - seen.max[k]);
+        (0..3).any(|k| beyond(k) > OUTGROWN * diagonal)
     }
 
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
@@ -49,6 +50,8 @@ pub struct Eye {
     pub up: [f64; 3],
 }
 
+/// Share of the diagonal of what is in view by which particles may leave it.
+const OUTGROWN: f64 = 0.1;
 /// Half the vertical opening angle of the viewer's camera is 27.5 degrees; its tangent.
 const OPENING: f64 = 0.5206;
 /// Width over height of the view, about what the layout gives in windows of usual shapes.
@@ -110,11 +113,12 @@ mod tests {
     }
 
     #[test]
-    fn the_diagonal_is_that_of_the_box_around_all_balls() {
-        let mut bounds = Bounds::EMPTY;
-        assert_eq!(bounds.diagonal(), 0.0);
-        bounds.extend(&[[1.0, 0.0, 5.0], [3.0, 1.0, 5.0]], 0.5);
-        assert_eq!(bounds.diagonal(), (3.0f64 * 3.0 + 2.0 * 2.0 + 1.0).sqrt());
+    fn a_box_outgrows_another_by_a_tenth_of_its_diagonal() {
+        let seen = Bounds { min: [0.0, 0.0, 0.0], max: [4.0, 3.0, 0.0] };
+        let reaching = |y: f64| Bounds { min: [1.0, y, 0.0], max: [3.0, 1.0, 0.0] };
+        assert!(!reaching(-0.49).outgrows(&seen));
+        assert!(reaching(-0.51).outgrows(&seen));
+        assert!(!Bounds::EMPTY.outgrows(&Bounds::EMPTY));
     }
 
     #[test]

@@ -110,7 +110,8 @@ impl Layout {
 }
 
 fn plots(blueprint: &Blueprint, series: &SeriesTable) -> RecordingStreamResult<Vec<(Tile, f32)>> {
-    let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
+    // Runs mostly start from rest; where they end is of more interest.
+    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
     let view = |plot: &Plot| {
         let contents: Vec<String> =
             plot.include.iter().map(with_children).chain(plot.exclude.iter().map(without)).collect();

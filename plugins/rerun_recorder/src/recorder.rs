@@ -40,8 +40,6 @@ struct Open {
     notes: Notes,
 }
 
-/// Growth of the box around all particles from which on the camera in the file steps back.
-const OUTGROWN: f64 = 1.25;
 /// Particles of a body that does not have the field of the colours.
 const PLAIN: [u8; 3] = [130, 140, 155];
 /// Particles whose value is not a number.
@@ -106,7 +104,7 @@ impl RerunFile {
         match open.in_view {
             None => open.send_layout(false)?,
             // A run that is killed shall leave a file that opens right, too.
-            Some(seen) if open.bounds.diagonal() > OUTGROWN * seen.diagonal() => open.send_layout(true)?,
+            Some(seen) if open.bounds.outgrows(&seen) => open.send_layout(true)?,
             Some(_) => {}
         }
         open.output.set_time(frame.step, frame.time);
