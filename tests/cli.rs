@@ -71,16 +71,69 @@ fn a_quiet_run_prints_nothing() {
 #[test]
 fn resuming_gives_the_state_of_a_run_that_was_not_interrupted() {
     let folder = folder();
-    let whole =
-        meshless(&folder, &["run", &cantilever(), "--steps", "25", "--out", "whole", "--threads", "2"]);
+    let whole = meshless(
+        &folder,
+        &[
+            "run",
+            &cantilever(),
+            "--steps",
+            "25",
+            "--out",
+            "whole",
+            "--threads",
+            "2",
+            "--set",
+            "record.every=1e-5",
+        ],
+    );
     assert_success(&whole);
     assert_success(&meshless(
         &folder,
-        &["run", &cantilever(), "--steps", "9", "--out", "cut", "--threads", "1"],
+        &[
+            "run",
+            &cantilever(),
+            "--steps",
+            "9",
+            "--out",
+            "cut",
+            "--threads",
+            "1",
+            "--set",
+            "record.every=1e-5",
+        ],
     ));
     let rest = meshless(&folder, &["resume", "cut", "--steps", "16"]);
     assert_success(&rest);
     assert_eq!(state_hash(&rest), state_hash(&whole));
+    for file in ["tip.csv", "energy.csv"] {
+        let read = |run: &str| std::fs::read_to_string(folder.path().join(run).join(file)).expect("a series");
+        assert!(read("whole").lines().count() > 2, "{}", read("whole"));
+        assert_eq!(read("cut"), read("whole"), "{file}");
+    }
+}
+
+#[test]
+fn nothing_is_overwritten_unless_it_is_asked_for() {
+    let folder = folder();
+    let scene = cantilever();
+    let run = |more: &[&str]| {
+        let arguments = [&["run", &scene, "--out", "o", "--set", "time.end=1e-5"], more].concat();
+        meshless(&folder, &arguments)
+    };
+    assert_success(&run(&[]));
+    let summary = folder.path().join("o/summary.json");
+    let written = std::fs::read_to_string(&summary).expect("a summary");
+    assert!(written.contains("\"finished\""), "{written}");
+    let refused = run(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        err(&refused).contains("exists already") && err(&refused).contains("--force"),
+        "{}",
+        err(&refused)
+    );
+    assert_eq!(std::fs::read_to_string(&summary).expect("a summary"), written);
+    assert_success(&run(&["--force", "--steps", "3"]));
+    assert!(std::fs::read_to_string(&summary).expect("a summary").contains("\"interrupted\""));
 }
 
 #[test]
@@ -234,6 +287,6 @@ fn an_interrupted_run_can_go_on() {
     }
     let output = child.wait_with_output().expect("the program ends");
     assert_eq!(output.status.code(), Some(130), "{}{}", out(&output), err(&output));
-    assert!(out(&output).contains("meshless resume o/checkpoint.mlc"), "{}", out(&output));
+    assert!(out(&output).contains("meshless resume o"), "{}", out(&output));
     assert_success(&meshless(&folder, &["resume", "o", "--steps", "1"]));
 }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 
-/// Name of the checkpoint that a run leaves when it stops before its end.
+/// Name of the checkpoint of a run.
 pub const CHECKPOINT: &str = "checkpoint.mlc";
-/// Name of the state that a failed run leaves.
+/// Name of the state in which a run has failed.
 pub const FAILED: &str = "failed.mlc";
 
 /// The folder of a scene's output where none is given: `out/<scene file without extension>`.
@@ -15,24 +15,47 @@ pub fn default_folder(scene: &Path) -> PathBuf {
     Path::new("out").join(stem)
 }
 
-/// The file itself, or the file in the folder that has this extension and was written last.
-pub fn newest(path: &Path, extension: &str, what: &str) -> Result<PathBuf, Failure> {
+/// The checkpoint itself, or that of the folder.
+pub fn checkpoint(path: &Path) -> Result<PathBuf, Failure> {
+    let file = if path.is_dir() { path.join(CHECKPOINT) } else { path.to_path_buf() };
+    if file.is_file() {
+        return Ok(file);
+    }
+    Err(Failure::Usage(format!(
+        "there is no checkpoint `{}`; a run leaves one when it is stopped before its end, or where the scene says \
+         `record: (checkpoint_every: ...)`",
+        file.display()
+    )))
+}
+
+/// The recording itself, or the one of the folder that was written last.
+pub fn recording(path: &Path) -> Result<PathBuf, Failure> {
     if path.is_file() {
         return Ok(path.to_path_buf());
     }
-    let entries = std::fs::read_dir(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => Failure::Usage(format!("`{}` does not exist", path.display())),
-        _ => Failure::Run(format!("`{}` cannot be read: {error}", path.display())),
-    })?;
-    let mut found: Vec<_> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|file| file.extension().is_some_and(|other| other == extension))
-        .filter(|file| !file.ends_with(FAILED))
+    let mut found: Vec<_> = files(path)?
+        .into_iter()
+        .filter(|file| file.extension().is_some_and(|extension| extension == "rrd"))
         .filter_map(|file| Some((file.metadata().and_then(|data| data.modified()).ok()?, file)))
         .collect();
     found.sort();
     let newest = found.pop().map(|(_, file)| file);
     newest.ok_or_else(|| {
-        Failure::Usage(format!("the folder `{}` holds no {what} (`*.{extension}`)", path.display()))
+        Failure::Usage(format!(
+            "the folder `{}` holds no recording (`*.rrd`); the plugin `rerun_recorder` makes one",
+            path.display()
+        ))
     })
+}
+
+/// The files of a folder, in the order of their names.
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = std::fs::read_dir(folder).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => Failure::Usage(format!("`{}` does not exist", folder.display())),
+        _ => Failure::Run(format!("`{}` cannot be read: {error}", folder.display())),
+    })?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|file| file.is_file());
+    files.sort();
+    Ok(files)
 }

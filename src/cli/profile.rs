@@ -1,14 +1,13 @@
 //! The table of `--profile`: the time of each system.
 
-use meshless_engine::simulation::Simulation;
+use meshless_engine::simulation::Summary;
 
-use super::progress::Progress;
 use super::text::Table;
 
 /// Time of every system, its share of the wall time, and what it costs for a particle and a step.
-pub fn text(sim: &Simulation, progress: &Progress) -> String {
-    let wall = progress.elapsed();
-    let work = (progress.steps(sim) as f64 * sim.world().len() as f64).max(1.0);
+pub fn text(summary: &Summary, steps: u64) -> String {
+    let wall = summary.wall_seconds;
+    let work = (steps as f64 * summary.particles as f64).max(1.0);
     let mut table = Table::new(&["stage", "system", "s", "share", "ns/particle-step"], 3);
     let mut row = |stage: &str, system: &str, seconds: f64| {
         table.row([
@@ -19,11 +18,10 @@ pub fn text(sim: &Simulation, progress: &Progress) -> String {
             format!("{:.1}", 1e9 * seconds / work),
         ]);
     };
-    let mut known = 0.0;
-    for (system, stage, time) in sim.schedule().timers() {
-        known += time.as_secs_f64();
-        row(&format!("{stage:?}"), system, time.as_secs_f64());
+    for timing in &summary.timings {
+        row(&timing.stage, &timing.system, timing.seconds);
     }
+    let known: f64 = summary.timings.iter().map(|timing| timing.seconds).sum();
     row("", "between the systems", (wall - known).max(0.0));
     row("", "all", wall);
     table.render()

@@ -22,6 +22,7 @@ pub struct Progress {
     begun: Instant,
     shown: Instant,
     start: (f64, u64),
+    warned: usize,
 }
 
 enum Display {
@@ -41,7 +42,14 @@ impl Progress {
         };
         let interval = if terminal { BAR_INTERVAL } else { LINE_INTERVAL };
         let now = Instant::now();
-        Self { display, interval, begun: now, shown: now, start: (sim.clock().time, sim.clock().step) }
+        Self {
+            display,
+            interval,
+            begun: now,
+            shown: now,
+            start: (sim.clock().time, sim.clock().step),
+            warned: 0,
+        }
     }
 
     /// Wall time since the start, s.
@@ -59,8 +67,9 @@ impl Progress {
         self.steps(sim) as f64 * sim.world().len() as f64 / self.elapsed().max(1e-9)
     }
 
-    /// To be called after every step: shows the state if it is due.
+    /// To be called after every step: shows new warnings, and the state if it is due.
     pub fn update(&mut self, sim: &Simulation) {
+        self.warn(sim);
         if self.shown.elapsed() < self.interval {
             return;
         }
@@ -76,11 +85,22 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away.
-    pub fn finish(&self) {
+    /// Shows the last warnings, and takes the bar away.
+    pub fn finish(&mut self, sim: &Simulation) {
+        self.warn(sim);
         if let Display::Bar(bar) = &self.display {
             bar.finish_and_clear();
         }
+    }
+
+    fn warn(&mut self, sim: &Simulation) {
+        for warning in sim.warnings().iter().skip(self.warned) {
+            match &self.display {
+                Display::Bar(bar) => bar.suspend(|| complain(&format!("warning: {warning}"))),
+                _ => complain(&format!("warning: {warning}")),
+            }
+        }
+        self.warned = sim.warnings().len();
     }
 
     fn state(&self, sim: &Simulation) -> String {

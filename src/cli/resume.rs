@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
+use meshless_engine::plugin::{OutputOptions, Registry};
 use meshless_engine::record::Existing;
 use meshless_engine::scene::{self, Scene, SceneError, Source};
 use meshless_engine::simulation::Checkpoint;
 
 use super::failure::Failure;
-use super::folder::newest;
+use super::folder;
 use super::session::{How, Session};
 use super::text::complain;
 
@@ -29,7 +29,7 @@ pub struct Arguments {
 /// Goes on from the checkpoint, in the folder it is in.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let Arguments { path, until, how } = arguments;
-    let file = newest(&path, "mlc", "checkpoint")?;
+    let file = folder::checkpoint(&path)?;
     let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
     let (mut scene, mut source) = scene::parse(checkpoint.source())?;
     if let Some(end) = until {
@@ -46,10 +46,10 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
         complain(&format!("warning: {warning}"));
     }
     let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
-    let output = OutputOptions { folder: folder.clone(), existing: Existing::Replace, resume: true };
-    let mut sim = plugin::build_with(&scene, &source, registry, &BuildOptions { output: Some(output) })?;
-    sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
-    Session { sim, source, folder }.carry_out(&how)
+    let output = OutputOptions { folder, existing: Existing::Replace, resume: true };
+    let mut session = Session::new(&scene, &source, registry, output)?;
+    session.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
+    session.carry_out(&how)
 }
 
 /// The scene with another end time. What follows from the end time where the scene is silent stays as it was.

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
+use meshless_engine::plugin::{OutputOptions, Registry};
 use meshless_engine::record::Existing;
 
 use super::failure::Failure;
-use super::folder::default_folder;
+use super::folder::{FAILED, default_folder};
 use super::scene_file::SceneFile;
 use super::session::{How, Session};
 
@@ -32,8 +32,13 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let (scene, source) = file.load()?;
     how.set_threads()?;
     let folder = out.unwrap_or_else(|| default_folder(&file.path));
+    let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };
-    let output = OutputOptions { folder: folder.clone(), existing, resume: false };
-    let sim = plugin::build_with(&scene, &source, registry, &BuildOptions { output: Some(output) })?;
-    Session { sim, source, folder }.carry_out(&how)
+    let session = Session::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
+    if failed.exists() {
+        std::fs::remove_file(&failed).map_err(|error| {
+            Failure::Run(format!("`{}` of an earlier run cannot be removed: {error}", failed.display()))
+        })?;
+    }
+    session.carry_out(&how)
 }

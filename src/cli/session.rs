@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshless_engine::scene::Source;
+use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
+use meshless_engine::scene::{Scene, SceneError, Source};
 use meshless_engine::simulation::{RunError, Simulation};
 
 use super::failure::Failure;
-use super::folder;
+use super::folder::{self, FAILED};
 use super::interrupt::Interrupt;
 use super::profile;
 use super::progress::Progress;
@@ -40,107 +41,113 @@ impl How {
     }
 }
 
-/// Why a run has ended.
-pub enum Ending {
-    /// It has reached its end time.
-    Complete,
-    /// A system has asked to stop; the reason.
-    Stopped(String),
-    /// The number of steps that was asked for is done.
-    StepLimit,
-    /// Ctrl-C.
-    Interrupted,
-    /// A step failed.
-    Failed(RunError),
-}
-
-/// A simulation with the scene it was built from and the folder it writes to.
+/// A simulation with the folder that it writes to.
 pub struct Session {
     /// The simulation.
     pub sim: Simulation,
-    /// Its scene.
-    pub source: Source,
-    /// Where it writes.
-    pub folder: PathBuf,
+    folder: PathBuf,
+    source: Source,
 }
 
 impl Session {
+    /// Builds the simulation.
+    pub fn new(
+        scene: &Scene,
+        source: &Source,
+        registry: &Registry,
+        output: OutputOptions,
+    ) -> Result<Self, SceneError> {
+        let folder = output.folder.clone();
+        // Checkpoints keep the name: files that a scene mentions are found from any place a run goes on from.
+        let anchored = Source::new(absolute(&source.name), source.text.clone());
+        let sim = plugin::build_with(scene, &anchored, registry, &BuildOptions { output: Some(output) })
+            .map_err(|error| SceneError { source: source.clone(), ..error })?;
+        Ok(Self { sim, folder, source: anchored })
+    }
+
     /// Does the steps, shows how far they are, and reports at the end.
     pub fn carry_out(mut self, how: &How) -> Result<(), Failure> {
         let interrupt = Interrupt::listen()?;
         let mut progress = Progress::new(&self.sim, how.quiet);
-        let ending = self.steps(how.steps, &interrupt, &mut progress);
-        progress.finish();
-        let checkpoint = self.leave_checkpoint(&ending)?;
-        for warning in self.sim.warnings() {
-            complain(&format!("warning: {warning}"));
+        let steps = self.steps(how.steps, &interrupt, &mut progress);
+        progress.finish(&self.sim);
+        let failed_state = steps.is_err().then(|| self.keep_failed_state()).flatten();
+        let finished = self.sim.finish();
+        if let Ok(summary) = &finished {
+            if !how.quiet {
+                say(&summary::text(
+                    summary,
+                    self.sim.ledger(),
+                    progress.steps(&self.sim),
+                    &self.sim.state_hash(),
+                ));
+                say(&self.files()?);
+            }
+            if how.profile {
+                say(&profile::text(summary, progress.steps(&self.sim)));
+            }
         }
-        if !how.quiet {
-            say(&summary::text(&self, &ending, &progress));
+        if let Err(error) = steps {
+            let state = failed_state.map(|file| format!("\nthe state is kept in {}", file.display()));
+            return Err(Failure::Run(format!("{error}{}", state.unwrap_or_default())));
         }
-        if how.profile {
-            say(&profile::text(&self.sim, &progress));
-        }
-        if let (Some(checkpoint), false, false) =
-            (&checkpoint, how.quiet, matches!(ending, Ending::Failed(_)))
-        {
-            say(&format!("to go on: meshless resume {}", checkpoint.display()));
-        }
-        match ending {
-            Ending::Complete | Ending::Stopped(_) | Ending::StepLimit => Ok(()),
-            Ending::Interrupted => Err(Failure::Interrupted),
-            Ending::Failed(error) => Err(Failure::Run(match checkpoint {
-                Some(state) => format!("{error}\nthe state is in {}", state.display()),
-                None => error.to_string(),
-            })),
-        }
+        finished.map_err(|error| Failure::Run(error.to_string()))?;
+        if interrupt.asked() && !self.sim.is_finished() { Err(Failure::Interrupted) } else { Ok(()) }
     }
 
-    fn steps(&mut self, limit: Option<u64>, interrupt: &Interrupt, progress: &mut Progress) -> Ending {
-        if let Err(error) = self.sim.start() {
-            return Ending::Failed(error);
-        }
-        loop {
-            if let Some(reason) = self.sim.stop_reason() {
-                return Ending::Stopped(reason.to_owned());
-            }
-            if self.sim.is_finished() {
-                return Ending::Complete;
-            }
-            if interrupt.asked() {
-                return Ending::Interrupted;
-            }
+    fn steps(
+        &mut self,
+        limit: Option<u64>,
+        interrupt: &Interrupt,
+        progress: &mut Progress,
+    ) -> Result<(), RunError> {
+        self.sim.start()?;
+        while !self.sim.is_finished() && !interrupt.asked() {
             if limit.is_some_and(|limit| progress.steps(&self.sim) >= limit) {
-                return Ending::StepLimit;
+                break;
             }
-            if let Err(error) = self.sim.step() {
-                return Ending::Failed(error);
-            }
+            self.sim.step()?;
             progress.update(&self.sim);
         }
+        Ok(())
     }
 
-    /// Saves the state of a run that has not come to its end.
-    fn leave_checkpoint(&self, ending: &Ending) -> Result<Option<PathBuf>, Failure> {
-        let name = match ending {
-            Ending::Complete | Ending::Stopped(_) => return Ok(None),
-            Ending::StepLimit | Ending::Interrupted => folder::CHECKPOINT,
-            Ending::Failed(_) => folder::FAILED,
-        };
-        let path = self.folder.join(name);
-        let source = Source::new(absolute(&self.source.name), self.source.text.clone());
-        match (self.sim.save(&path, &source), ending) {
-            (Ok(()), _) => Ok(Some(path)),
-            (Err(error), Ending::Failed(_)) => {
+    /// Saves the state of a run that cannot go on, beside the last checkpoint.
+    fn keep_failed_state(&self) -> Option<PathBuf> {
+        let file = self.folder.join(FAILED);
+        match self.sim.save(&file, &self.source) {
+            Ok(()) => Some(file),
+            Err(error) => {
                 complain(&format!("warning: the state could not be saved: {error}"));
-                Ok(None)
+                None
             }
-            (Err(error), _) => Err(Failure::Run(error.to_string())),
         }
+    }
+
+    /// What lies in the output folder, and what to do with it.
+    fn files(&self) -> Result<String, Failure> {
+        let (mut names, mut frames) = (Vec::new(), 0);
+        for file in folder::files(&self.folder)? {
+            match file.extension().and_then(|extension| extension.to_str()) {
+                Some("vtu") => frames += 1,
+                _ => names.extend(file.file_name().map(|name| name.display().to_string())),
+            }
+        }
+        if frames > 0 {
+            names.push(format!("{frames} ParaView frames"));
+        }
+        let folder = self.folder.display();
+        let mut text = format!("files in {folder}: {}", names.join(", "));
+        if names.iter().any(|name| name.ends_with(".rrd")) {
+            text += &format!("\nto look at the recording: meshless view {folder}");
+        }
+        if !self.sim.is_finished() && names.iter().any(|name| name == folder::CHECKPOINT) {
+            text += &format!("\nto go on: meshless resume {folder}");
+        }
+        Ok(text)
     }
 }
 
-/// Files that a scene names are relative to its folder, also for a run that goes on from elsewhere.
 fn absolute(name: &str) -> String {
     std::path::absolute(Path::new(name)).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }

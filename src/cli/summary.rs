@@ -1,40 +1,41 @@
-//! What a run tells at its end: times, energies, warnings, sources of the methods, files.
+//! What a run tells at its end: times, energies, warnings, sources of the methods.
 
 use std::fmt::Write;
 
+use meshless_engine::record::StateHash;
 use meshless_engine::schedule::{AccountKind, Ledger};
+use meshless_engine::simulation::{Outcome, Summary};
 
-use super::progress::Progress;
-use super::session::{Ending, Session};
 use super::text::{Table, counted, duration};
 
-/// The summary.
-pub fn text(session: &Session, ending: &Ending, progress: &Progress) -> String {
-    let sim = &session.sim;
-    let clock = sim.clock();
+/// The summary; `steps` are those done since the run was started or taken up.
+pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -> String {
     let mut text = String::new();
-    let how = match ending {
-        Ending::Complete => "complete".to_owned(),
-        Ending::Stopped(reason) => format!("stopped: {reason}"),
-        Ending::StepLimit => "stopped after the steps asked for".to_owned(),
-        Ending::Interrupted => "interrupted".to_owned(),
-        Ending::Failed(_) => "failed".to_owned(),
+    let how = match &summary.outcome {
+        Outcome::Finished => "complete".to_owned(),
+        Outcome::Stopped(why) => format!("stopped ({why})"),
+        Outcome::Interrupted => "stopped before its end".to_owned(),
+        Outcome::Failed(_) => "failed".to_owned(),
     };
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "{how} at {:.6e} s of {:.6e} s, step {}", clock.time, sim.end(), clock.step);
     let _ = writeln!(
         text,
-        "{} steps of {} particles in {}: {} on {} threads",
-        progress.steps(sim),
-        sim.world().len(),
-        duration(progress.elapsed()),
-        counted(progress.rate(sim), "particle-steps/s"),
-        rayon::current_num_threads()
+        "{how} at {:.6e} s of {:.6e} s, step {}",
+        summary.time, summary.end_time, summary.steps
     );
-    let _ = write!(text, "\n{}", energies(sim.ledger()));
-    list(&mut text, "warnings", sim.warnings());
-    list(&mut text, "methods", sim.references());
-    let _ = writeln!(text, "\nstate hash {}", sim.state_hash());
+    let _ = writeln!(
+        text,
+        "{steps} steps of {} particles in {}: {} on {} threads",
+        summary.particles,
+        duration(summary.wall_seconds),
+        counted(summary.particle_steps_per_second, "particle-steps/s"),
+        summary.threads
+    );
+    let _ = write!(text, "\n{}", energies(ledger));
+    extremes(&mut text, summary);
+    list(&mut text, "warnings", &summary.warnings);
+    list(&mut text, "methods", &summary.references);
+    let _ = writeln!(text, "\nstate hash {state}");
     text
 }
 
@@ -51,6 +52,29 @@ fn energies(ledger: &Ledger) -> String {
     table.row(["balance error".into(), String::new(), format!("{:.2e}", ledger.balance_error())]);
     table.row(["over the largest energy".into(), String::new(), format!("{:.1e}", ledger.relative_error())]);
     table.render()
+}
+
+fn extremes(text: &mut String, summary: &Summary) {
+    if summary.probes.values().all(Vec::is_empty) {
+        return;
+    }
+    let mut table = Table::new(&["probe", "", "", "least", "at s", "most", "at s", "last"], 5);
+    for (probe, columns) in &summary.probes {
+        for column in columns {
+            let number = |value: f64| format!("{value:.5e}");
+            table.row([
+                probe.clone(),
+                column.name.clone(),
+                column.unit.clone(),
+                number(column.min),
+                format!("{:.4e}", column.min_time),
+                number(column.max),
+                format!("{:.4e}", column.max_time),
+                number(column.last),
+            ]);
+        }
+    }
+    let _ = write!(text, "\n{}", table.render());
 }
 
 fn list(text: &mut String, heading: &str, lines: &[String]) {

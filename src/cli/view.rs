@@ -7,7 +7,7 @@ use std::process::Command;
 use clap::Args;
 
 use super::failure::Failure;
-use super::folder::newest;
+use super::folder;
 
 /// Open a recording in the rerun viewer
 #[derive(Args)]
@@ -19,7 +19,7 @@ pub struct Arguments {
 
 /// Opens the viewer and waits until it is closed.
 pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
-    let recording = newest(&arguments.path, "rrd", "recording")?;
+    let recording = folder::recording(&arguments.path)?;
     let status = Command::new("rerun").arg(&recording).status().map_err(|error| match error.kind() {
         ErrorKind::NotFound => Failure::Run(format!(
             "the rerun viewer is not installed, or not where programs are looked for\n\
