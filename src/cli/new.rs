@@ -32,7 +32,16 @@ macro_rules! templates {
 }
 
 /// The scenes of the project are the templates.
-const TEMPLATES: [Template; 1] = templates!["cantilever"];
+const TEMPLATES: [Template; 8] = templates![
+    "cantilever",
+    "oscillating_plate",
+    "rubber_pull",
+    "thrown_ring",
+    "turek_hron_csm3",
+    "cook_membrane",
+    "bending_column",
+    "twisting_column",
+];
 
 impl Template {
     /// The first line of the comment that a scene begins with.
