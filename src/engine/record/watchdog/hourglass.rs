@@ -8,11 +8,17 @@ use crate::world::BodyId;
 /// Hourglass energy over strain energy that is worth a warning (the usual figure of finite-element practice).
 const SHARE: f64 = 0.1;
 
+/// Hourglass energy, over the largest energy of any kind that the body has had, below which its share says nothing: at
+/// the start of a run all that a body has may be kinetic.
+const LEAST: f64 = 0.02;
+
 /// Watches the hourglass energy of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct HourglassShare {
     /// Largest strain energy of each body so far, J: a body that swings through its rest shape is no reason to warn.
     largest_strain: Vec<f64>,
+    /// Largest energy of any account of each body so far, J.
+    largest: Vec<f64>,
     /// Bodies that the user has been warned of.
     warned: Vec<bool>,
 }
@@ -21,9 +27,14 @@ impl HourglassShare {
     /// Takes in a step.
     pub fn look(&mut self, ledger: &Ledger, bodies: usize) {
         self.largest_strain.resize(bodies, 0.0);
+        self.largest.resize(bodies, 0.0);
         self.warned.resize(bodies, false);
         for (k, largest) in self.largest_strain.iter_mut().enumerate() {
             *largest = largest.max(energy(ledger, "strain", k));
+        }
+        for (k, largest) in self.largest.iter_mut().enumerate() {
+            let energies = ledger.accounts().iter().map(|account| account.of(BodyId(k)).abs());
+            *largest = energies.fold(*largest, f64::max);
         }
     }
 
@@ -31,7 +42,8 @@ impl HourglassShare {
     pub fn warn(&mut self, step: &mut Step<'_>) {
         for (k, body) in step.world.bodies().iter().enumerate() {
             let (hourglass, strain) = (energy(step.ledger, "hourglass", k), self.largest_strain[k]);
-            if self.warned[k] || strain <= 0.0 || hourglass <= SHARE * strain {
+            let small = hourglass <= SHARE * strain || hourglass <= LEAST * self.largest[k];
+            if self.warned[k] || strain <= 0.0 || small {
                 continue;
             }
             self.warned[k] = true;
