@@ -1,6 +1,6 @@
 //! The loop over the steps of a run, and how it ends.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
@@ -58,11 +58,8 @@ impl Session {
         output: OutputOptions,
     ) -> Result<Self, SceneError> {
         let folder = output.folder.clone();
-        // Checkpoints keep the name: files that a scene mentions are found from any place a run goes on from.
-        let anchored = Source::new(absolute(&source.name), source.text.clone());
-        let sim = plugin::build_with(scene, &anchored, registry, &BuildOptions { output: Some(output) })
-            .map_err(|error| SceneError { source: source.clone(), ..error })?;
-        Ok(Self { sim, folder, source: anchored })
+        let sim = plugin::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
+        Ok(Self { sim, folder, source: source.clone() })
     }
 
     /// Does the steps, shows how far they are, and reports at the end.
@@ -146,8 +143,4 @@ impl Session {
         }
         Ok(text)
     }
-}
-
-fn absolute(name: &str) -> String {
-    std::path::absolute(Path::new(name)).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }

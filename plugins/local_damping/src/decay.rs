@@ -61,6 +61,11 @@ pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepErro
     Ok(())
 }
 
+/// Opens the account of the plugin, so that it is there from the first step on even if nothing is damped yet.
+pub fn open_account(step: &mut Step<'_>) {
+    step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+}
+
 /// Decay at a constant rate.
 pub struct Decay {
     /// Bodies.
@@ -73,6 +78,7 @@ pub struct Decay {
 
 impl Run for Decay {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        open_account(step);
         let time = self.window.share(&step.clock);
         if time > 0.0 && self.rate > 0.0 {
             // Exact for any rate: no limit of the time step follows from the damping.

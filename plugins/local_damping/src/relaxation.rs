@@ -8,7 +8,7 @@
 use meshless_engine::schedule::{AccountKind, Run, Step, StepError};
 use meshless_engine::world::BodySet;
 
-use crate::decay::{Window, damp};
+use crate::decay::{Window, damp, open_account};
 use crate::stiffness::{Motion, look};
 use meshless_engine::parallel::BlockSum;
 
@@ -54,6 +54,7 @@ impl Relaxation {
 
 impl Run for Relaxation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        open_account(step);
         let mut motion = Motion::default();
         for body in self.bodies.iter() {
             motion.add(&look(step, body)?);

@@ -8,7 +8,7 @@ use crate::world::BodyId;
 /// Hourglass energy over strain energy that is worth a warning (the usual figure of finite-element practice).
 const SHARE: f64 = 0.1;
 
-/// Hourglass energy, over the largest energy of any kind that the body has had, below which its share says nothing: at
+/// Hourglass energy, over the largest energy of any other kind that the body has had, below which its share says nothing: at
 /// the start of a run all that a body has may be kinetic.
 const LEAST: f64 = 0.02;
 
@@ -17,7 +17,7 @@ const LEAST: f64 = 0.02;
 pub(super) struct HourglassShare {
     /// Largest strain energy of each body so far, J: a body that swings through its rest shape is no reason to warn.
     largest_strain: Vec<f64>,
-    /// Largest energy of any account of each body so far, J.
+    /// Largest energy of any other account of each body so far, J.
     largest: Vec<f64>,
     /// Bodies that the user has been warned of.
     warned: Vec<bool>,
@@ -33,7 +33,8 @@ impl HourglassShare {
             *largest = largest.max(energy(ledger, "strain", k));
         }
         for (k, largest) in self.largest.iter_mut().enumerate() {
-            let energies = ledger.accounts().iter().map(|account| account.of(BodyId(k)).abs());
+            let others = ledger.accounts().iter().filter(|account| account.name != "hourglass");
+            let energies = others.map(|account| account.of(BodyId(k)).abs());
             *largest = energies.fold(*largest, f64::max);
         }
     }

@@ -18,7 +18,7 @@ struct Watchdog {
     energy: EnergyGrowth,
     hourglass: HourglassShare,
     domain: Option<DomainCheck>,
-    /// Looks that end in a warning come with the frames.
+    /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
     frames: Trigger,
     end: f64,
 }
@@ -30,7 +30,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         energy: EnergyGrowth::default(),
         hourglass: HourglassShare::default(),
         domain,
-        frames: Trigger::new(sim.scene().record_interval()),
+        frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
     };
     sim.add_system(System::new(Stage::Record, WATCHDOG, watchdog).touches(Position::NAME, Mode::Reads));
