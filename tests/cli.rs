@@ -57,7 +57,11 @@ fn a_run_ends_with_a_summary_and_leaves_a_checkpoint_if_it_is_cut_short() {
         assert!(text.contains(expected), "`{expected}` is missing in\n{text}");
     }
     assert!(text.contains("ns/particle-step"), "the table of --profile is missing in\n{text}");
-    assert!(folder.path().join("out/cantilever/checkpoint.mlc").is_file());
+    for file in ["checkpoint.mlc", "cantilever.rrd", "energy.csv", "tip.csv", "summary.json"] {
+        assert!(folder.path().join("out/cantilever").join(file).is_file(), "{file} is not there");
+        assert!(text.contains(file), "{file} is not named in\n{text}");
+    }
+    assert!(text.contains("meshless view out/cantilever"), "{text}");
 }
 
 #[test]

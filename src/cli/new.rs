@@ -32,10 +32,11 @@ macro_rules! templates {
 }
 
 /// The scenes of the project are the templates.
-const TEMPLATES: [Template; 8] = templates![
+const TEMPLATES: [Template; 9] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
+    "patch_breathing",
     "thrown_ring",
     "turek_hron_csm3",
     "cook_membrane",
