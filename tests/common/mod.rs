@@ -1,0 +1,49 @@
+//! What several tests share.
+
+use meshless::scene::{Source, parse};
+use meshless::simulation::Simulation;
+use meshless::{plugin, standard_plugins};
+
+/// Two bodies in two or three dimensions, one irregular, loaded and damped, with every stabilizer of solids.
+pub fn all_plugins(dimension: usize) -> Source {
+    let (name, shapes, load) = if dimension == 2 {
+        (
+            "Two",
+            ["Box(min: (0, 0), max: (1.0, 0.4))", "Box(min: (2, 0), max: (3.0, 0.4))"],
+            r#"("0.2*t", "-0.01*x")"#,
+        )
+    } else {
+        (
+            "Three",
+            ["Box(min: (0, 0, 0), max: (1.0, 0.4, 0.4))", "Box(min: (2, 0, 0), max: (3.0, 0.4, 0.4))"],
+            r#"("0.2*t", "-0.01*x", "0.02")"#,
+        )
+    };
+    let spacing = if dimension == 2 { 0.02 } else { 0.05 };
+    let [first, second] = shapes;
+    let text = format!(
+        r#"(dimension: {name}, gravity: (0.01, -0.02),
+            materials: {{"soft": NeoHookean(density: 1, young: 1, poisson: 0.3),
+                         "hard": StVenantKirchhoff(density: 2, young: 3, poisson: 0.2)}},
+            bodies: [
+                (name: "a", material: "soft", shape: {first}, spacing: {spacing:?}, lattice: Relaxed(seed: 5, iterations: 2),
+                 formulation: TotalLagrangian, plugins: [hourglass_control()]),
+                (name: "b", material: "hard", shape: {second}, spacing: {spacing:?}, formulation: TotalLagrangian,
+                 plugins: [hourglass_control(form: Ganzenmueller2015)]),
+            ],
+            conditions: [
+                Fix(on: Select(body: "a", face: MinX)),
+                Traction(on: Select(body: "a", face: MaxX), value: {load}),
+                InitialVelocity(on: Select(body: "b"), value: ("0.1*sin(9*y)", "0.1*x")),
+            ],
+            plugins: [artificial_viscosity(), local_damping(rate: 0.1)],
+            time: (end: 10.0))"#
+    );
+    Source::new("determinism.ron", text)
+}
+
+/// The simulation of a scene with the standard plugins.
+pub fn simulation(source: &Source) -> Simulation {
+    let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
+    plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}

@@ -1,0 +1,28 @@
+//! The same scene gives the same bits on any number of threads.
+
+mod common;
+
+use common::{all_plugins, simulation};
+use meshless::record::StateHash;
+use meshless::scene::Source;
+
+fn hash_after(source: &Source, threads: usize, steps: u64) -> StateHash {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
+    pool.install(|| {
+        let mut sim = simulation(source);
+        sim.run(|sim| sim.clock().step < steps).expect("a run");
+        assert_eq!(sim.clock().step, steps);
+        sim.state_hash()
+    })
+}
+
+#[test]
+fn one_two_and_seven_threads_give_the_same_bits() {
+    for dimension in [2, 3] {
+        let source = all_plugins(dimension);
+        let one = hash_after(&source, 1, 150);
+        assert_eq!(one, hash_after(&source, 2, 150), "{dimension} dimensions, two threads");
+        assert_eq!(one, hash_after(&source, 7, 150), "{dimension} dimensions, seven threads");
+        assert_ne!(one, hash_after(&source, 1, 149), "the hash tells states apart");
+    }
+}

@@ -1,0 +1,33 @@
+//! A run that is taken up from a checkpoint equals one that was not interrupted, bit for bit.
+
+mod common;
+
+use common::{all_plugins, simulation};
+
+#[test]
+fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("state.mlc");
+    // The memory of the time step is longer than 500 steps: some restarts fall before, some after it turns over.
+    for (dimension, steps, seed) in [(2, 700u64, 11u64), (2, 700, 12), (3, 200, 13)] {
+        let source = all_plugins(dimension);
+        let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);
+        let mut whole = simulation(&source);
+        whole.run(|sim| sim.clock().step < steps).expect("a run");
+        let mut first = simulation(&source);
+        first.run(|sim| sim.clock().step < break_at).expect("a run");
+        first.save(&path, &source).expect("a checkpoint");
+        drop(first);
+        let checkpoint = meshless::simulation::Checkpoint::read(&path).expect("a checkpoint");
+        let mut second = simulation(&checkpoint.source());
+        second.restore(&checkpoint).expect("a restart");
+        assert_eq!(second.clock().step, break_at);
+        second.run(|sim| sim.clock().step < steps).expect("a run");
+        assert_eq!(
+            whole.state_hash(),
+            second.state_hash(),
+            "{dimension} dimensions, break at step {break_at}"
+        );
+        assert_eq!(whole.ledger().balance_error().to_bits(), second.ledger().balance_error().to_bits());
+    }
+}
