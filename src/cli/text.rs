@@ -35,7 +35,7 @@ pub fn bytes(count: usize) -> String {
 /// A duration in the two largest units that say something: `2 h 5 min`, `12 s`, `0.35 s`.
 pub fn duration(seconds: f64) -> String {
     // Beyond a million hours the number says all there is to say.
-    if !(seconds < 3.6e9) {
+    if seconds.is_nan() || seconds >= 3.6e9 {
         return "very long".into();
     }
     let whole = Duration::from_secs_f64(seconds.max(0.0)).as_secs();

@@ -12,7 +12,7 @@ use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::BodySet;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use variational::Variational;
 
 /// Registers the plugin.
@@ -37,7 +37,7 @@ impl Default for HourglassControl {
 }
 
 /// Forms of the control.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Form {
     /// The whole error vector, with the weights of the deformation gradient: the exact gradient of an energy.
     Variational,
