@@ -28,3 +28,18 @@ pub fn standard_plugins() -> Registry {
         .with(artificial_viscosity::register)
         .with(rerun_recorder::register)
 }
+
+/// The code of the recipes, compiled with the tests of the documentation.
+#[cfg(doctest)]
+mod recipes {
+    #[doc = include_str!("../docs/add-a-boundary-condition.md")]
+    mod boundary_condition {}
+    #[doc = include_str!("../docs/add-a-kernel.md")]
+    mod kernel {}
+    #[doc = include_str!("../docs/add-a-material.md")]
+    mod material {}
+    #[doc = include_str!("../docs/add-a-plugin.md")]
+    mod plugin {}
+    #[doc = include_str!("../docs/add-a-system.md")]
+    mod system {}
+}

@@ -1,0 +1,171 @@
+//! The architecture itself: who depends on whom, what every plugin has, how long files are.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// What is in a folder, in the order of names.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let read = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut entries: Vec<PathBuf> = read.map(|entry| entry.expect("an entry").path()).collect();
+    entries.sort();
+    entries
+}
+
+fn plugins() -> Vec<PathBuf> {
+    entries(&root().join("plugins")).into_iter().filter(|path| path.is_dir()).collect()
+}
+
+fn collect_sources(folder: &Path, sources: &mut Vec<PathBuf>) {
+    for path in entries(folder) {
+        if path.is_dir() {
+            collect_sources(&path, sources);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            sources.push(path);
+        }
+    }
+}
+
+/// Every source file of the project.
+fn sources() -> Vec<PathBuf> {
+    let mut sources = Vec::new();
+    for folder in ["src", "plugins", "tests", "examples"] {
+        collect_sources(&root().join(folder), &mut sources);
+    }
+    sources
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).display().to_string()
+}
+
+/// The names under `[dependencies]` of a package.
+fn dependencies(manifest: &Path) -> Vec<String> {
+    let text = read(manifest);
+    let section = text.split("[dependencies]").nth(1).expect("a section of dependencies");
+    let lines = section.lines().skip(1).take_while(|line| !line.starts_with('['));
+    let names = lines.filter_map(|line| line.split(['.', '=', ' ']).next()).filter(|name| !name.is_empty());
+    names.filter(|name| !name.starts_with('#')).map(str::to_owned).collect()
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+#[test]
+fn the_engine_depends_on_no_plugin_and_on_neither_the_viewer_nor_the_command_line() {
+    let engine = dependencies(&root().join("src/engine/Cargo.toml"));
+    assert!(engine.contains(&"hecs".to_owned()), "the list is read wrongly: {engine:?}");
+    for plugin in plugins() {
+        assert!(!engine.contains(&name(&plugin)), "the engine depends on {}", name(&plugin));
+    }
+    for other in ["rerun", "clap", "indicatif", "ctrlc", "anyhow", "meshless"] {
+        assert!(!engine.contains(&other.to_owned()), "the engine depends on {other}");
+    }
+}
+
+#[test]
+fn plugins_depend_on_the_engine_and_not_on_each_other() {
+    let names: Vec<String> = plugins().iter().map(|plugin| name(plugin)).collect();
+    for plugin in plugins() {
+        let own = dependencies(&plugin.join("Cargo.toml"));
+        assert!(own.contains(&"meshless_engine".to_owned()), "{} does not use the engine", name(&plugin));
+        assert!(!own.contains(&"meshless".to_owned()), "{} depends on the application", name(&plugin));
+        assert!(own.iter().all(|other| !names.contains(other)), "{} depends on a plugin", name(&plugin));
+        let sees_rerun = own.contains(&"rerun".to_owned());
+        assert_eq!(sees_rerun, name(&plugin) == "rerun_recorder", "{} and rerun", name(&plugin));
+    }
+}
+
+#[test]
+fn every_plugin_has_a_page_a_scene_and_a_test() {
+    for plugin in plugins() {
+        for file in ["README.md", "scene.ron"] {
+            assert!(plugin.join(file).is_file(), "{} has no {file}", name(&plugin));
+        }
+        let mut files = Vec::new();
+        collect_sources(&plugin, &mut files);
+        let tested = files.iter().any(|file| read(file).contains("#[test]"));
+        assert!(tested, "{} has no test", name(&plugin));
+        let page = read(&plugin.join("README.md"));
+        assert!(
+            page.starts_with(&format!("# {}\n", name(&plugin))),
+            "the page of {} has no title",
+            name(&plugin)
+        );
+    }
+}
+
+#[test]
+fn files_are_short() {
+    let mut lengths: Vec<(usize, String)> =
+        sources().iter().map(|path| (read(path).lines().count(), shown(path))).collect();
+    lengths.sort();
+    let longest = lengths.last().expect("there are sources");
+    assert!(longest.0 <= 500, "{} has {} lines", longest.1, longest.0);
+    let median = lengths[lengths.len() / 2].0;
+    assert!(median <= 150, "the median is {median} lines");
+}
+
+#[test]
+fn nothing_is_left_open_and_nothing_is_a_grab_bag() {
+    let open = ["TO", "DO"].concat();
+    for path in sources() {
+        assert!(!read(&path).contains(&open), "{} has a {open}", shown(&path));
+        let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let grab_bag = ["utils", "util", "helpers", "misc", "common"].contains(&stem.as_str());
+        assert!(!grab_bag, "{} says nothing about what is in it", shown(&path));
+    }
+}
+
+/// Whether the line begins a function.
+fn is_function(line: &str) -> bool {
+    let line = line.trim_start();
+    let public =
+        line.strip_prefix("pub").map_or(line, |rest| rest.split_once(' ').map_or("", |(_, rest)| rest));
+    public.starts_with("fn ")
+}
+
+#[test]
+fn module_files_only_list() {
+    // In a folder of tests, `mod.rs` holds what the tests share.
+    let of_tests = |path: &Path| path.iter().any(|part| part == "tests");
+    let lists = |path: &&PathBuf| name(path) == "mod.rs" && !of_tests(path);
+    for path in sources().iter().filter(lists) {
+        let text = read(path);
+        let others: Vec<&str> =
+            text.lines().filter(|line| is_function(line) && !line.contains("fn register(")).collect();
+        assert!(others.is_empty(), "{} holds {others:?}", shown(path));
+    }
+}
+
+/// Targets of the links of a page, without those to other sites.
+fn links(page: &str) -> impl Iterator<Item = &str> {
+    page.split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split([')', '#']).next())
+        .filter(|link| !link.contains("://"))
+}
+
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let pages =
+        ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "assets/README.md"].map(|page| root().join(page));
+    let docs =
+        entries(&root().join("docs")).into_iter().filter(|path| path.extension().is_some_and(|e| e == "md"));
+    let own = plugins().into_iter().map(|plugin| plugin.join("README.md"));
+    for page in pages.into_iter().chain(docs).chain(own) {
+        let folder = page.parent().expect("a folder");
+        let text = read(&page);
+        for link in links(&text).filter(|link| !link.is_empty()) {
+            assert!(folder.join(link).exists(), "{} links to {link}, which is not there", shown(&page));
+        }
+    }
+}
