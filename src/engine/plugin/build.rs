@@ -48,6 +48,10 @@ fn build_in(
     registry: &Registry,
     options: &BuildOptions,
 ) -> Result<Simulation, Vec<Problem>> {
+    if !scene.contacts.is_empty() {
+        let problem = Problem::at_path("contacts[0]", "contact between bodies is not there yet");
+        return Err(vec![problem.help("a later version will have it; leave `contacts` out until then")]);
+    }
     let (bodies, phases, parsed) = place_bodies(scene, source, registry)?;
     let overlaps = overlap::problems(&bodies);
     if !overlaps.is_empty() {
