@@ -2,6 +2,7 @@
 
 mod check;
 mod commands;
+mod execution;
 mod failure;
 mod folder;
 mod interrupt;
@@ -14,7 +15,6 @@ mod resume;
 mod run;
 mod scene_file;
 mod schema;
-mod session;
 mod summary;
 mod text;
 pub mod validate;

@@ -8,9 +8,9 @@ use meshless_engine::record::Existing;
 use meshless_engine::scene::{self, Scene, SceneError, Source};
 use meshless_engine::simulation::Checkpoint;
 
+use super::execution::{Execution, How};
 use super::failure::Failure;
 use super::folder;
-use super::session::{How, Session};
 use super::text::complain;
 
 /// Go on from a checkpoint
@@ -47,9 +47,9 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     }
     let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
     let output = OutputOptions { folder, existing: Existing::Replace, resume: true };
-    let mut session = Session::new(&scene, &source, registry, output)?;
-    session.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
-    session.carry_out(&how)
+    let mut execution = Execution::new(&scene, &source, registry, output)?;
+    execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
+    execution.carry_out(&how)
 }
 
 /// The scene with another end time. What follows from the end time where the scene is silent stays as it was.

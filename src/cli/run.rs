@@ -6,10 +6,10 @@ use clap::Args;
 use meshless_engine::plugin::{OutputOptions, Registry};
 use meshless_engine::record::Existing;
 
+use super::execution::{Execution, How};
 use super::failure::Failure;
 use super::folder::{FAILED, default_folder};
 use super::scene_file::SceneFile;
-use super::session::{How, Session};
 
 /// Run a scene
 #[derive(Args)]
@@ -34,11 +34,12 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let folder = out.unwrap_or_else(|| default_folder(&file.path));
     let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };
-    let session = Session::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
+    let execution =
+        Execution::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
     if failed.exists() {
         std::fs::remove_file(&failed).map_err(|error| {
             Failure::Run(format!("`{}` of an earlier run cannot be removed: {error}", failed.display()))
         })?;
     }
-    session.carry_out(&how)
+    execution.carry_out(&how)
 }

@@ -42,14 +42,14 @@ impl How {
 }
 
 /// A simulation with the folder that it writes to.
-pub struct Session {
+pub struct Execution {
     /// The simulation.
     pub sim: Simulation,
     folder: PathBuf,
     source: Source,
 }
 
-impl Session {
+impl Execution {
     /// Builds the simulation.
     pub fn new(
         scene: &Scene,
