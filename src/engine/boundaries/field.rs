@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::part::Part;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
@@ -64,6 +65,19 @@ impl Field {
     pub fn at(&self, point: DVec3, t: f64) -> DVec3 {
         let component = |axis: usize| self.components[axis].as_ref().map_or(0.0, |f| f.eval(point, t));
         DVec3::new(component(0), component(1), component(2))
+    }
+
+    /// An error unless the values at the start are finite on all parts; `what` names them.
+    pub fn require_finite(&self, parts: &[Part], what: &str) -> Result<(), SetupError> {
+        let values = parts.iter().flat_map(|part| &part.points).map(|&point| (point, self.at(point, 0.0)));
+        match values.into_iter().find(|(_, value)| !value.is_finite()) {
+            None => Ok(()),
+            Some((point, value)) => Err(SetupError::parameter(
+                "value",
+                format!("the {what} at {point} is {value}"),
+                "give an expression that is finite on all selected particles",
+            )),
+        }
     }
 
     /// The values at the given places; `by` names the condition in errors.

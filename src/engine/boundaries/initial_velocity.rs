@@ -29,16 +29,7 @@ impl Plugin for InitialVelocity {
         let selection = sim.select(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
         let parts = parts_of(&selection, sim);
-        for part in &parts {
-            let values = part.points.iter().map(|&point| (point, field.at(point, 0.0)));
-            if let Some((point, value)) = values.into_iter().find(|(_, value)| !value.is_finite()) {
-                return Err(SetupError::parameter(
-                    "value",
-                    format!("the velocity at {point} is {value}"),
-                    "give an expression that is finite on all selected particles",
-                ));
-            }
-        }
+        field.require_finite(&parts, "velocity")?;
         sim.add_setup(move |setup| {
             let axes = field.axes();
             for part in &parts {

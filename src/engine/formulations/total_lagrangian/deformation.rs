@@ -11,7 +11,9 @@ use super::bonds::Bonds;
 use super::rows::{PairStress, PairStressRows, Site};
 use crate::linalg::Sym3;
 use crate::materials::{SolidLaw, StressRows};
-use crate::parallel::{Arithmetic, BLOCK, BlockSum, HotLoop, Lanes4, Split, for_each_block, run_hot};
+use crate::parallel::{
+    Arithmetic, BLOCK, BlockSum, HotLoop, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot, run_hot_in,
+};
 
 /// Largest number of bond terms on one body.
 pub(super) const MAX_TERMS: usize = 4;
@@ -97,11 +99,7 @@ impl DeformationPass<'_> {
             misfit: &mut misfit,
             volume: &mut volume,
         };
-        if self.plane {
-            run_hot(Plane(gather))
-        } else {
-            run_hot(Solid(gather))
-        };
+        run_hot_in(self.plane, gather);
         let (stress, energy, modulus) = (rows.stress, &mut energy[..n], &mut modulus[..n]);
         self.law.stress(&mut StressRows {
             deformation: rows.deformation,
@@ -141,28 +139,7 @@ struct Gather<'a> {
     volume: &'a mut [f64; BLOCK],
 }
 
-struct Plane<'a>(Gather<'a>);
-struct Solid<'a>(Gather<'a>);
-
-impl HotLoop for Plane<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        self.0.run::<A, 2>();
-    }
-}
-
-impl HotLoop for Solid<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        self.0.run::<A, 3>();
-    }
-}
-
-impl Gather<'_> {
+impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self) {
         let Self { bonds, sites, first, deformation, gradient, misfit, volume } = self;

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::bonds::Bonds;
 use super::rows::{PairStress, Site};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot};
+use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::world::Force;
 
 /// The pass over all bodies of the phase.
@@ -27,8 +27,7 @@ impl InternalForce<'_> {
     /// Writes the force on every particle: gravity plus internal force, N.
     pub fn run(&self, force: &mut [Force]) {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
-            let rows = ForceRows { pass: self, first, force };
-            if self.plane { run_hot(Plane(rows)) } else { run_hot(Solid(rows)) }
+            run_hot_in(self.plane, ForceRows { pass: self, first, force });
         });
     }
 }
@@ -39,28 +38,7 @@ struct ForceRows<'a> {
     force: &'a mut [Force],
 }
 
-struct Plane<'a>(ForceRows<'a>);
-struct Solid<'a>(ForceRows<'a>);
-
-impl HotLoop for Plane<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        self.0.run::<A, 2>();
-    }
-}
-
-impl HotLoop for Solid<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        self.0.run::<A, 3>();
-    }
-}
-
-impl ForceRows<'_> {
+impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self) {
         let InternalForce { bonds, sites, pair_stress, mass, gravity, .. } = *self.pass;

@@ -1,0 +1,25 @@
+//! Hot loops with a plane and a solid version: in plane strain the third axis is left out of the sums.
+
+use super::path::{Arithmetic, HotLoop, run_hot};
+
+/// A loop that is compiled for two and for three axes, each for every instruction path.
+pub trait PlaneOrSolid {
+    /// The loop over `D` axes; mark it `#[inline(always)]`.
+    fn run<A: Arithmetic, const D: usize>(self);
+}
+
+struct Axes<L, const D: usize>(L);
+
+impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self) {
+        self.0.run::<A, D>();
+    }
+}
+
+/// Runs the plane or the solid version on the best instruction path of this processor.
+pub fn run_hot_in<L: PlaneOrSolid>(plane: bool, hot: L) {
+    if plane { run_hot(Axes::<L, 2>(hot)) } else { run_hot(Axes::<L, 3>(hot)) }
+}
