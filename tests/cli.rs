@@ -294,3 +294,24 @@ fn an_interrupted_run_can_go_on() {
     assert!(out(&output).contains("meshless resume o"), "{}", out(&output));
     assert_success(&meshless(&folder, &["resume", "o", "--steps", "1"]));
 }
+
+#[test]
+fn a_benchmark_measures_a_work_and_names_the_works_there_are() {
+    let folder = folder();
+    let list = meshless(&folder, &["bench", "--list"]);
+    assert_success(&list);
+    let works: Vec<String> =
+        out(&list).lines().filter_map(|line| Some(line.split_whitespace().next()?.to_owned())).collect();
+    assert!(works.len() > 4, "{works:?}");
+    for work in &works {
+        let output = meshless(&folder, &["bench", work, "--particles", "1k", "--seconds", "0", "--json"]);
+        assert_success(&output);
+        let record: serde_json::Value = serde_json::from_str(&out(&output)).expect("a record in JSON");
+        let number = |name: &str| record[name].as_f64().expect("a number");
+        assert!((500.0..2000.0).contains(&number("particles")), "{record}");
+        assert!(number("particle_steps_per_second") > 0.0 && number("neighbors") > 10.0, "{record}");
+    }
+    let unknown = meshless(&folder, &["bench", "solid"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(err(&unknown).contains("there is no work `solid`") && err(&unknown).contains("solid-31"));
+}

@@ -10,6 +10,7 @@ use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Mass};
 
 use super::failure::Failure;
+use super::memory::resident_bytes;
 use super::neighbors::Neighbors;
 use super::scene_file::SceneFile;
 use super::text::{Table, bytes, complain, counted, duration, say};
@@ -111,14 +112,6 @@ fn memory(sim: &Simulation) -> String {
         let _ = write!(text, "; the whole program takes {}", bytes(resident));
     }
     text + "\n"
-}
-
-/// Memory that this program takes, where the system tells, B.
-fn resident_bytes() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kilobytes: usize = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    Some(kilobytes * 1024)
 }
 
 /// Some steps to measure the speed with.

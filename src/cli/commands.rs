@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
-use super::{check, new, plugins, resume, schema, validate, view};
+use super::{bench, check, new, plugins, resume, schema, validate, view};
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
 #[derive(Parser)]
@@ -21,6 +21,7 @@ enum Command {
     Run(super::run::Arguments),
     Resume(resume::Arguments),
     Check(check::Arguments),
+    Bench(bench::Arguments),
     New(new::Arguments),
     Plugins(plugins::Arguments),
     Schema(schema::Arguments),
@@ -34,6 +35,7 @@ impl Command {
             Self::Run(arguments) => super::run::execute(arguments, registry),
             Self::Resume(arguments) => resume::execute(arguments, registry),
             Self::Check(arguments) => check::execute(&arguments, registry),
+            Self::Bench(arguments) => bench::execute(&arguments, registry),
             Self::New(arguments) => new::execute(arguments),
             Self::Plugins(arguments) => plugins::execute(&arguments, registry),
             Self::Schema(arguments) => schema::execute(&arguments, registry),

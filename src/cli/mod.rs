@@ -1,11 +1,13 @@
 //! The command line: a file for each command, and what they share.
 
+mod bench;
 mod check;
 mod commands;
 mod execution;
 mod failure;
 mod folder;
 mod interrupt;
+mod memory;
 mod neighbors;
 mod new;
 mod plugins;
@@ -16,6 +18,7 @@ mod run;
 mod scene_file;
 mod schema;
 mod summary;
+mod template;
 mod text;
 pub mod validate;
 mod view;

@@ -15,13 +15,13 @@ mod oscillating_plate;
 mod patch;
 mod report;
 mod rubber_pull;
-mod template;
 mod turek_hron;
 mod twisting_column;
 
 use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
+use super::template;
 use super::text::say;
 pub use case::{CASES, Case};
 pub use check::{Check, Tolerance};

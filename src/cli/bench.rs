@@ -1,0 +1,110 @@
+//! `meshless bench`: how fast the program is on the standard works, with everything on and output off.
+//!
+//! A work is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
+//! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of works
+//! measured in one call count.
+
+mod apart;
+mod machine;
+mod measure;
+mod report;
+mod work;
+
+use std::time::Duration;
+
+use clap::Args;
+use meshless_engine::plugin::Registry;
+
+use super::failure::Failure;
+use super::text::say;
+use measure::Measurement;
+use work::{WORKS, Work};
+
+/// Measure the speed on standard works: particle-steps/s, pairs/s, memory, share of each system
+#[derive(Args)]
+pub struct Arguments {
+    /// Works to run; all if none is given
+    #[arg(value_name = "WORK")]
+    works: Vec<String>,
+    /// Numbers of particles, about; with k or M for thousands and millions
+    #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = count, value_name = "N")]
+    particles: Vec<usize>,
+    /// Numbers of threads
+    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Vec<u16>,
+    /// Least wall time of a measurement, s
+    #[arg(long, default_value_t = 3.0, value_parser = seconds, value_name = "S")]
+    seconds: f64,
+    /// List the works, run nothing
+    #[arg(long)]
+    list: bool,
+    /// Print the share of every system too
+    #[arg(long)]
+    profile: bool,
+    /// Print one JSON object for each measurement, in place of tables
+    #[arg(long)]
+    json: bool,
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    let (digits, factor) = match text.trim_end_matches(['k', 'M']) {
+        digits if text.ends_with('k') => (digits, 1e3),
+        digits if text.ends_with('M') => (digits, 1e6),
+        digits => (digits, 1.0),
+    };
+    match digits.parse::<f64>() {
+        Ok(value) if (1.0..=4e9).contains(&(value * factor)) => Ok((value * factor) as usize),
+        _ => Err("expected a number of particles, as in `32k` or `1M`".into()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("expected a number of seconds, as in `3` or `0.5`".into()),
+    }
+}
+
+/// Measures the works that were asked for.
+pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+    let works = chosen(&arguments.works)?;
+    if arguments.list {
+        say(&report::list(&works));
+        return Ok(());
+    }
+    if !arguments.json {
+        say(&report::heading(&machine::describe()));
+    }
+    let alone = works.len() * arguments.particles.len() * arguments.threads.len() == 1;
+    for &particles in &arguments.particles {
+        for work in &works {
+            for &threads in &arguments.threads {
+                let least = Duration::from_secs_f64(arguments.seconds);
+                let measurement = if alone {
+                    Measurement::take(work, particles, threads, least, registry)?
+                } else {
+                    apart::take(work, particles, threads, least)?
+                };
+                say(&if arguments.json {
+                    report::json(&measurement)?
+                } else {
+                    report::text(&measurement, arguments.profile)
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn chosen(names: &[String]) -> Result<Vec<&'static Work>, Failure> {
+    if names.is_empty() {
+        return Ok(WORKS.iter().collect());
+    }
+    let find = |name: &String| {
+        WORKS.iter().find(|work| work.name == name).ok_or_else(|| {
+            let known: Vec<&str> = WORKS.iter().map(|work| work.name).collect();
+            Failure::Usage(format!("there is no work `{name}`; there are: {}", known.join(", ")))
+        })
+    };
+    names.iter().map(find).collect()
+}

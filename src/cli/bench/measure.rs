@@ -1,0 +1,143 @@
+//! One measurement: a work at a number of particles on a number of threads.
+
+use std::time::{Duration, Instant};
+
+use meshless_engine::plugin::Registry;
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::BodyId;
+use serde::{Deserialize, Serialize};
+
+use super::super::failure::Failure;
+use super::super::memory::resident_bytes;
+use super::super::neighbors::Neighbors;
+use super::machine;
+use super::work::Work;
+
+/// Steps before the clock starts: lists and buffers have their size then.
+const WARM_UP: u64 = 3;
+
+/// What was measured.
+#[derive(Serialize, Deserialize)]
+pub struct Measurement {
+    /// Name of the work.
+    pub work: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Mean number of neighbours.
+    pub neighbors: f64,
+    /// Threads.
+    pub threads: u16,
+    /// Steps that were timed.
+    pub steps: u64,
+    /// Their wall time, s.
+    pub seconds: f64,
+    /// Particles times steps per second.
+    pub particle_steps_per_second: f64,
+    /// Directed pairs times steps per second.
+    pub directed_pairs_per_second: f64,
+    /// Growth of the program while it was built, over particles, B; none where the system does not tell.
+    pub bytes_per_particle: Option<f64>,
+    /// From the scene to the end of the first step, s.
+    pub first_step_after: f64,
+    /// Time of every system, in the order of the step, s.
+    pub systems: Vec<System>,
+    /// The machine and the program.
+    pub machine: machine::Machine,
+}
+
+/// Time of one system.
+#[derive(Serialize, Deserialize)]
+pub struct System {
+    /// Label.
+    pub label: String,
+    /// Time, s.
+    pub seconds: f64,
+}
+
+impl Measurement {
+    /// Builds the work and times its steps.
+    pub fn take(
+        work: &Work,
+        particles: usize,
+        threads: u16,
+        least: Duration,
+        registry: &Registry,
+    ) -> Result<Self, Failure> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
+        let pool = pool.map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))?;
+        pool.install(|| Self::take_here(work, particles, threads, least, registry))
+    }
+
+    fn take_here(
+        work: &Work,
+        particles: usize,
+        threads: u16,
+        least: Duration,
+        registry: &Registry,
+    ) -> Result<Self, Failure> {
+        let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
+        let before = resident_bytes();
+        let begun = Instant::now();
+        let scene = work.scene(particles).map_err(|error| failed(&error))?;
+        let mut sim = scene.build(registry)?;
+        sim.step().map_err(|error| failed(&error))?;
+        let first_step_after = begun.elapsed().as_secs_f64();
+        let after = resident_bytes();
+        while sim.clock().step < WARM_UP {
+            sim.step().map_err(|error| failed(&error))?;
+        }
+        let (first, timers) = (sim.clock().step, timers(&sim));
+        let begun = Instant::now();
+        while begun.elapsed() < least || sim.clock().step == first {
+            sim.step().map_err(|error| failed(&error))?;
+        }
+        let seconds = begun.elapsed().as_secs_f64();
+        let particles = sim.world().len();
+        let steps = sim.clock().step - first;
+        let rate = particles as f64 * steps as f64 / seconds;
+        let neighbors = mean_neighbors(&sim)?;
+        let grown = before.zip(after).map(|(before, after)| after.saturating_sub(before) as f64);
+        Ok(Self {
+            work: work.name.to_owned(),
+            particles,
+            neighbors,
+            threads,
+            steps,
+            seconds,
+            particle_steps_per_second: rate,
+            directed_pairs_per_second: rate * neighbors,
+            bytes_per_particle: grown.map(|grown| grown / particles.max(1) as f64),
+            first_step_after,
+            systems: since(timers, &sim),
+            machine: machine::describe(),
+        })
+    }
+}
+
+fn timers(sim: &Simulation) -> Vec<Duration> {
+    sim.schedule().timers().map(|(_, _, time)| time).collect()
+}
+
+fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<System> {
+    let timers = sim.schedule().timers().zip(before);
+    timers
+        .map(|((label, _, time), before)| System {
+            label: label.to_owned(),
+            seconds: (time - before).as_secs_f64(),
+        })
+        .collect()
+}
+
+/// Mean over the bodies that have neighbours.
+fn mean_neighbors(sim: &Simulation) -> Result<f64, Failure> {
+    let (mut sum, mut particles) = (0.0, 0.0);
+    for k in 0..sim.world().bodies().len() {
+        let (view, rows) = sim.world().body_view(BodyId(k));
+        let count = rows.len() as f64;
+        if let Some(neighbors) = Neighbors::count(&view, rows)? {
+            sum += neighbors.mean * count;
+            particles += count;
+        }
+    }
+    Ok(if particles > 0.0 { sum / particles } else { 0.0 })
+}

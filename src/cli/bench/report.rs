@@ -1,0 +1,67 @@
+//! Measurements as lines for people and as JSON for programs.
+
+use std::fmt::Write;
+
+use super::super::failure::Failure;
+use super::super::text::{Table, counted};
+use super::machine::Machine;
+use super::measure::Measurement;
+use super::work::Work;
+
+/// The works, one a line.
+pub fn list(works: &[&Work]) -> String {
+    works.iter().map(|work| format!("{:<14} {}\n", work.name, work.title)).collect()
+}
+
+/// What is measured, and on what.
+pub fn heading(machine: &Machine) -> String {
+    format!(
+        "{}, {}, meshless {}\n\
+         {:<14} {:>10} {:>8} {:>8} {:>12} {:>14} {:>12} {:>11}",
+        machine.processor,
+        machine.instruction_path,
+        machine.version,
+        "work",
+        "particles",
+        "threads",
+        "neighb.",
+        "M p-steps/s",
+        "M pairs/s",
+        "B/particle",
+        "1st step s",
+    )
+}
+
+/// One line, and the share of every system under it if that is asked for.
+pub fn text(measured: &Measurement, profile: bool) -> String {
+    let bytes = measured.bytes_per_particle.map_or_else(|| "-".to_owned(), |bytes| format!("{bytes:.0}"));
+    let mut text = format!(
+        "{:<14} {:>10} {:>8} {:>8.1} {:>12.3} {:>14.1} {:>12} {:>11.2}",
+        measured.work,
+        counted(measured.particles as f64, "").trim_end(),
+        measured.threads,
+        measured.neighbors,
+        1e-6 * measured.particle_steps_per_second,
+        1e-6 * measured.directed_pairs_per_second,
+        bytes,
+        measured.first_step_after,
+    );
+    if profile {
+        let work = measured.steps as f64 * measured.particles as f64;
+        let mut table = Table::new(&["system", "share", "ns/particle-step"], 2);
+        for system in measured.systems.iter().filter(|system| system.seconds > 0.0) {
+            table.row([
+                system.label.clone(),
+                format!("{:.1} %", 100.0 * system.seconds / measured.seconds),
+                format!("{:.1}", 1e9 * system.seconds / work),
+            ]);
+        }
+        let _ = write!(text, "\n{}", table.render());
+    }
+    text
+}
+
+/// One JSON object on one line.
+pub fn json(measured: &Measurement) -> Result<String, Failure> {
+    serde_json::to_string(measured).map_err(|error| Failure::Run(error.to_string()))
+}
