@@ -8,7 +8,9 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use super::elastic_constants::ElasticConstants;
+use super::state::StateRows;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::world::ColumnSet;
 
 /// A parameter that is out of its range.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -65,9 +67,12 @@ pub trait MaterialModel: DeserializeOwned + JsonSchema + 'static {
     fn build(self) -> Result<Material, ParameterError>;
 }
 
-/// A block of particles of one material: deformation in, stress out. All slices have one length.
+/// A block of particles of one material: deformation and state in, stress and state out. All slices have one length.
 pub struct StressRows<'a> {
-    /// Deformation gradient F; in plane strain F_33 = 1.
+    /// Time in which the deformation came about since the last call, s. Every accepted step makes one call. With 0, in
+    /// the evaluation before the first step, state must stay as it is.
+    pub dt: f64,
+    /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
     /// First Piola-Kirchhoff stress P, Pa: to be written.
     pub stress: &'a mut [DMat3],
@@ -75,6 +80,11 @@ pub struct StressRows<'a> {
     pub energy: &'a mut [f64],
     /// Modulus that hourglass control resists with, Pa: Young's modulus, the yield stress after yield; to be written.
     pub modulus: &'a mut [f64],
+    /// Plastic work done in this step per reference volume, J/m3; zero before the call. Heat that it turns into is part
+    /// of it.
+    pub plastic_work: &'a mut [f64],
+    /// The columns that the law has declared in [`SolidLaw::state`].
+    pub state: StateRows<'a>,
 }
 
 /// A solid law, called once for every block of particles.
@@ -88,7 +98,13 @@ pub trait SolidLaw: Send + Sync {
     /// Factor of the stable time step at the smallest and largest principal stretch of a body.
     fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64;
 
-    /// Computes stress, energy and modulus of a block.
+    /// Adds the columns that hold the state of the law, at most [`MAX_STATE`](super::MAX_STATE).
+    fn state(&self, _columns: &mut ColumnSet) {}
+
+    /// Fills the state of undeformed particles, before the first step; it is zero before the call.
+    fn start(&self, _state: StateRows<'_>) {}
+
+    /// Computes stress, energy and modulus of a block, and advances its state by the step.
     fn stress(&self, rows: &mut StressRows<'_>);
 }
 
@@ -123,7 +139,7 @@ impl<H: Hyperelastic> HotLoop for StressLoop<'_, '_, H> {
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
         let young = self.law.elastic().young;
-        let StressRows { deformation, stress, energy, modulus } = self.rows;
+        let StressRows { deformation, stress, energy, modulus, .. } = self.rows;
         let n = deformation.len();
         let (stress, energy) = (&mut stress[..n], &mut energy[..n]);
         for k in 0..n {

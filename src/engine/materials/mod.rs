@@ -5,6 +5,7 @@ mod elastic_constants;
 mod law;
 mod neo_hookean;
 mod st_venant_kirchhoff;
+mod state;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +14,7 @@ pub use elastic_constants::ElasticConstants;
 pub use law::{Hyperelastic, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 pub use neo_hookean::NeoHookean;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use state::{MAX_STATE, StateColumns, StateRows};
 
 use crate::plugin::Registry;
 

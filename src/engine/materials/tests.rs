@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{DecoupledNeoHookean, Material, MaterialModel, NeoHookean, StVenantKirchhoff, StressRows};
+use super::{
+    DecoupledNeoHookean, Material, MaterialModel, NeoHookean, StVenantKirchhoff, StateRows, StressRows,
+};
 
 const YOUNG: f64 = 1000.0;
 const POISSON: f64 = 0.3;
@@ -10,10 +12,13 @@ const POISSON: f64 = 0.3;
 fn stress_and_energy(material: &Material, deformation: DMat3) -> (DMat3, f64) {
     let (mut stress, mut energy, mut modulus) = ([DMat3::ZERO], [0.0], [0.0]);
     material.law.stress(&mut StressRows {
+        dt: 0.0,
         deformation: &[deformation],
         stress: &mut stress,
         energy: &mut energy,
         modulus: &mut modulus,
+        plastic_work: &mut [0.0],
+        state: StateRows::default(),
     });
     (stress[0], energy[0])
 }

@@ -154,6 +154,7 @@ fn place_bodies<'r>(
             lens.push(0);
             phases.len() - 1
         });
+        material.law.state(&mut phases[phase].1);
         let start = lens[phase];
         lens[phase] += sites.len();
         bodies.push(BodyPlan {

@@ -3,10 +3,13 @@
 use glam::DVec3;
 
 use super::builder::SimBuilder;
+use super::plan::BodyPlan;
+use crate::materials::{StateColumns, StateRows};
+use crate::parallel::Split;
 use crate::scene::Dimension;
 use crate::world::{
-    Body, ColumnSet, Force, Mass, Mobility, ParticleId, Position, ReferencePosition, ReferenceVolume,
-    Velocity, World,
+    Body, ColumnSet, Force, Mass, Mobility, ParticleId, PhaseId, PhaseView, Position, ReferencePosition,
+    ReferenceVolume, Velocity, World,
 };
 
 /// Adds the columns that every phase has.
@@ -44,7 +47,7 @@ pub(super) fn spawn(sim: &SimBuilder<'_>) -> World {
     world
 }
 
-fn fill(sim: &SimBuilder<'_>, world: &World, phase: crate::world::PhaseId, id: &mut u64) {
+fn fill(sim: &SimBuilder<'_>, world: &World, phase: PhaseId, id: &mut u64) {
     let view = world.phase(phase);
     let columns = || -> Result<_, crate::world::MissingColumn> {
         Ok((
@@ -76,5 +79,18 @@ fn fill(sim: &SimBuilder<'_>, world: &World, phase: crate::world::PhaseId, id: &
             let free = |axis: usize| if held[axis].is_some() { 0.0 } else { 1.0 / m };
             mobility[row] = Mobility(DVec3::new(free(0), free(1), if plane { 0.0 } else { free(2) }));
         }
+        start_state(body, &view);
     }
+}
+
+/// Lets the law of a body fill its state.
+fn start_state(body: &BodyPlan, view: &PhaseView<'_>) {
+    let mut columns = ColumnSet::default();
+    body.material.law.state(&mut columns);
+    // A law with too many columns is refused where its formulation is assembled.
+    let Some(state) = StateColumns::new(&columns) else { return };
+    view.write_bytes_of(state.as_slice(), &mut |bytes| {
+        let (_, rows) = StateRows::new(&state, bytes).split(body.rows.start);
+        body.material.law.start(rows.split(body.rows.len()).0);
+    });
 }

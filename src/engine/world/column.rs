@@ -3,6 +3,8 @@
 use bytemuck::Pod;
 use glam::{DMat3, DVec3};
 
+use crate::linalg::Sym3;
+
 /// What one row of a column holds: a number, a vector, a tensor, seen as a fixed list of components.
 pub trait Value: Pod + Send + Sync + 'static {
     /// Names of the components, in the order in which [`Value::component`] counts; `[""]` for a number.
@@ -65,6 +67,19 @@ impl Value for DMat3 {
     fn mirrored(self, signs: DVec3) -> Self {
         let column = |axis: usize| self.col(axis) * signs * signs[axis];
         DMat3::from_cols(column(0), column(1), column(2))
+    }
+}
+
+impl Value for Sym3 {
+    const COMPONENTS: &'static [&'static str] = &["xx", "yy", "zz", "xy", "xz", "yz"];
+
+    fn component(&self, k: usize) -> f64 {
+        [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz][k]
+    }
+
+    fn mirrored(self, signs: DVec3) -> Self {
+        let DVec3 { x, y, z } = signs;
+        Self { xy: x * y * self.xy, xz: x * z * self.xz, yz: y * z * self.yz, ..self }
     }
 }
 

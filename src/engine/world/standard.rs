@@ -1,8 +1,9 @@
-//! The columns that every solid phase shares.
+//! The columns that every solid phase shares, and the state of materials, of which a phase has what its materials need.
 
 use glam::{DMat3, DVec3};
 
 use crate::column;
+use crate::linalg::Sym3;
 
 column! {
     /// Identity of the particle: it stays with the particle when rows are sorted.
@@ -27,4 +28,12 @@ column! {
     pub struct DeformationGradient(DMat3) = "deformation_gradient", "F", "1";
     /// First Piola-Kirchhoff stress, P = J sigma F^-T.
     pub struct PiolaStress(DMat3) = "piola_stress", "P", "Pa";
+    /// Accumulated equivalent plastic strain, the integral of sqrt(2/3 D_p : D_p).
+    pub struct PlasticStrain(f64) = "plastic_strain", "eps_p", "1";
+    /// Inverse of the plastic right Cauchy-Green tensor, (F_p^T F_p)^-1.
+    pub struct InversePlasticCauchyGreen(Sym3) = "inverse_plastic_cauchy_green", "Cp^-1", "1";
+    /// Equivalent stress of the last step, sqrt(3/2 s : s) of the Kirchhoff stress.
+    pub struct EquivalentStress(f64) = "equivalent_stress", "q", "Pa";
+    /// Temperature.
+    pub struct Temperature(f64) = "temperature", "T", "K";
 }

@@ -187,6 +187,29 @@ impl<'a> PhaseView<'a> {
         column.write(self.archetype, f);
     }
 
+    /// Calls `f` with the writable bytes of several columns, at most `N`, in their order; slices that no column takes are
+    /// empty. Nothing is called where the phase lacks one of them.
+    pub fn write_bytes_of<const N: usize>(&self, columns: &[ColumnInfo], f: &mut dyn FnMut([&mut [u8]; N])) {
+        self.borrow_next(columns, 0, std::array::from_fn(|_| Default::default()), f);
+    }
+
+    fn borrow_next<const N: usize>(
+        &self,
+        columns: &[ColumnInfo],
+        k: usize,
+        held: [&mut [u8]; N],
+        f: &mut dyn FnMut([&mut [u8]; N]),
+    ) {
+        let Some(column) = columns.get(k) else { return f(held) };
+        let mut held = Some(held);
+        self.write_bytes(column, &mut |bytes| {
+            if let Some(mut held) = held.take() {
+                held[k] = bytes;
+                self.borrow_next(columns, k + 1, held, f);
+            }
+        });
+    }
+
     /// Appends component `k` of the rows of a column to `out`.
     pub fn component(&self, column: &ColumnInfo, rows: Range<usize>, k: usize, out: &mut Vec<f64>) {
         column.component(self.archetype, rows, k, out);

@@ -10,7 +10,7 @@ use super::bond_terms::{BondRows, BondTerm};
 use super::bonds::Bonds;
 use super::rows::{PairStress, PairStressRows, Site};
 use crate::linalg::Sym3;
-use crate::materials::{SolidLaw, StressRows};
+use crate::materials::{SolidLaw, StateRows, StressRows};
 use crate::parallel::{
     Arithmetic, BLOCK, BlockSum, HotLoop, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot, run_hot_in,
 };
@@ -23,6 +23,8 @@ pub(super) const MAX_TERMS: usize = 4;
 pub(super) struct DeformationSum {
     /// Strain energy, J.
     pub strain: f64,
+    /// Plastic work of the step, J.
+    pub plastic_work: f64,
     /// Energy stored by each bond term, J.
     pub terms: [f64; MAX_TERMS],
     /// Row with det F <= 0 that comes first, counted from one; zero if there is none.
@@ -32,6 +34,7 @@ pub(super) struct DeformationSum {
 impl BlockSum for DeformationSum {
     fn add(&mut self, next: &Self) {
         self.strain += next.strain;
+        self.plastic_work += next.plastic_work;
         for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
             *sum += next;
         }
@@ -46,6 +49,7 @@ pub(super) struct DeformationRows<'a> {
     pub deformation: &'a mut [DMat3],
     pub stress: &'a mut [DMat3],
     pub pair_stress: &'a mut [PairStress],
+    pub state: StateRows<'a>,
 }
 
 impl Split for DeformationRows<'_> {
@@ -57,9 +61,15 @@ impl Split for DeformationRows<'_> {
         let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
         let (stress, stress_rest) = self.stress.split_at_mut(at);
         let (pair_stress, pair_stress_rest) = self.pair_stress.split_at_mut(at);
+        let (state, state_rest) = self.state.split(at);
         (
-            Self { deformation, stress, pair_stress },
-            Self { deformation: deformation_rest, stress: stress_rest, pair_stress: pair_stress_rest },
+            Self { deformation, stress, pair_stress, state },
+            Self {
+                deformation: deformation_rest,
+                stress: stress_rest,
+                pair_stress: pair_stress_rest,
+                state: state_rest,
+            },
         )
     }
 }
@@ -74,6 +84,8 @@ pub(super) struct DeformationPass<'a> {
     pub first_row: usize,
     /// Plane strain.
     pub plane: bool,
+    /// Length of the step, s; zero before the first.
+    pub dt: f64,
 }
 
 impl DeformationPass<'_> {
@@ -89,6 +101,7 @@ impl DeformationPass<'_> {
         let mut volume = [0.0; BLOCK];
         let mut energy = [0.0; BLOCK];
         let mut modulus = [0.0; BLOCK];
+        let mut plastic_work = [0.0; BLOCK];
         let (bonds, sites) = (self.bonds, self.sites);
         let gather = Gather {
             bonds,
@@ -102,10 +115,13 @@ impl DeformationPass<'_> {
         run_hot_in(self.plane, gather);
         let (stress, energy, modulus) = (rows.stress, &mut energy[..n], &mut modulus[..n]);
         self.law.stress(&mut StressRows {
+            dt: self.dt,
             deformation: rows.deformation,
             stress: &mut *stress,
             energy: &mut *energy,
             modulus: &mut *modulus,
+            plastic_work: &mut plastic_work[..n],
+            state: rows.state,
         });
         let inverse_moment = &bonds.inverse_moment[first..first + n];
         run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
@@ -122,6 +138,7 @@ impl DeformationPass<'_> {
         }
         for k in 0..n {
             sum.strain += energy[k] * volume[k];
+            sum.plastic_work += plastic_work[k] * volume[k];
         }
         let inverted = rows.deformation.iter().position(|f| f.determinant() <= 0.0);
         sum.inverted = inverted.map_or(0, |k| first + k + 1);

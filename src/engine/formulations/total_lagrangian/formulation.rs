@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
-use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
+use super::constitutive::{Deformation, body_law};
 use super::images::{Images, MirrorPlane, Repeat};
 use super::internal_force::InternalForce;
 use super::pairs::BondPairs;
@@ -14,14 +14,11 @@ use super::repeats::repeats_of;
 use super::rows::{PairStress, Site};
 use super::stable_step::StepEstimate;
 use crate::kernels::{Kernel, KernelName};
-use crate::linalg::smallest_and_largest_stretch;
-use crate::materials::Material;
 use crate::neighbors::NeighborSearch;
 use crate::pair::add_pair_systems;
-use crate::parallel::for_each_block;
 use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
-use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Stage, Step, StepError, System};
 use crate::world::{
     BodyId, BodySet, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
     ReferencePosition, ReferenceVolume, SupportRadius,
@@ -71,22 +68,11 @@ pub(super) struct PackedRows {
     pub(super) bonds: Bonds,
     pub(super) images: Images,
     pub(super) sites: Vec<Site>,
-    pair_stress: Vec<PairStress>,
+    pub(super) pair_stress: Vec<PairStress>,
     /// Kernel of each body.
     pub(super) kernels: Vec<(BodyId, Kernel)>,
     /// Stable step of each body in its reference configuration, s.
-    stable_step: Vec<f64>,
-}
-
-/// A body as the deformation system sees it.
-struct BodyLaw {
-    id: BodyId,
-    material: Material,
-    estimate: StepEstimate,
-    /// Accounts and indices into the list of terms.
-    terms: Vec<usize>,
-    /// Factor of the stable step by the stretches of the body.
-    stretch_factor: f64,
+    pub(super) stable_step: Vec<f64>,
 }
 
 impl Formulation for TotalLagrangian {
@@ -115,19 +101,16 @@ impl Formulation for TotalLagrangian {
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
-        sim.add_system(
-            System::new(
-                Stage::Constitutive,
-                DEFORMATION,
-                Deformation { phase, plane, laws, terms, sums: Vec::new() },
-            )
+        let deformation = Deformation::new(phase, plane, laws, terms);
+        let state = deformation.state();
+        let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])
             .reads::<Position>()
             .reads::<ReferencePosition>()
             .reads::<ReferenceVolume>()
             .writes::<DeformationGradient>()
-            .writes::<PiolaStress>(),
-        );
+            .writes::<PiolaStress>();
+        sim.add_system(state.iter().fold(system, |system, column| system.touches(column.name, Mode::Writes)));
         let gravity = sim.gravity();
         sim.add_system(
             System::new(Stage::Rates, INTERNAL_FORCE, move |step: &mut Step<'_>| {
@@ -158,23 +141,6 @@ impl TotalLagrangian {
             format!("give a support of {fewest} to 10 spacings; 2.41 is usual"),
         ))
     }
-}
-
-fn body_law(id: BodyId, sim: &SimBuilder<'_>, all: &[BodyBondTerm]) -> Result<BodyLaw, SetupError> {
-    let body = sim.body(id);
-    let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
-    if terms.len() > MAX_TERMS {
-        let message = format!("body `{}` has {} bond terms, more than {MAX_TERMS}", body.name, terms.len());
-        return Err(SetupError::parameter("", message, "remove plugins that add bond terms"));
-    }
-    let material = body.material.clone();
-    let elastic = material.law.elastic();
-    let factor: f64 = terms.iter().map(|&k| all[k].term.stiffness_factor()).sum();
-    let estimate = StepEstimate {
-        wave: elastic.longitudinal_modulus() / material.density,
-        bond: factor * elastic.young / material.density,
-    };
-    Ok(BodyLaw { id, material, estimate, terms, stretch_factor: 1.0 })
 }
 
 fn set_up(
@@ -231,153 +197,6 @@ fn set_up(
     let sites = vec![Site::default(); view.len() + images.len()];
     let pair_stress = vec![PairStress::default(); view.len() + images.len()];
     setup.resources.insert(PackedRows { bonds, images, sites, pair_stress, kernels, stable_step });
-    Ok(())
-}
-
-/// Steps between two looks at the stretches: they change slowly against the stable step.
-const STRETCH_INTERVAL: u64 = 10;
-
-struct Deformation {
-    phase: PhaseId,
-    plane: bool,
-    laws: Vec<BodyLaw>,
-    terms: Vec<BodyBondTerm>,
-    sums: Vec<DeformationSum>,
-}
-
-impl Run for Deformation {
-    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let view = step.world.phase(self.phase);
-        let mut packed = step.resources.get_mut::<PackedRows>();
-        let PackedRows { bonds, images, sites, pair_stress, stable_step, .. } = &mut *packed;
-        pack(&view, &mut sites[..view.len()])?;
-        images.fill_sites(sites);
-        let mut gradient = view.write::<DeformationGradient>()?;
-        let mut stress = view.write::<PiolaStress>()?;
-        let strain = step.ledger.account("strain", AccountKind::Stored);
-        for (law, stable_step) in self.laws.iter_mut().zip(stable_step) {
-            let body = step.world.body(law.id);
-            let rows = body.rows.clone();
-            let mut terms: [&dyn BondTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
-            for (slot, &k) in terms.iter_mut().zip(&law.terms) {
-                *slot = &*self.terms[k].term;
-            }
-            let pass = DeformationPass {
-                bonds,
-                sites,
-                law: &*law.material.law,
-                terms: &terms[..law.terms.len()],
-                first_row: rows.start,
-                plane: self.plane,
-            };
-            let written = DeformationRows {
-                deformation: bytemuck::cast_slice_mut(&mut gradient[rows.clone()]),
-                stress: bytemuck::cast_slice_mut(&mut stress[rows.clone()]),
-                pair_stress: &mut pair_stress[rows.clone()],
-            };
-            let sum = pass.run(written, &mut self.sums);
-            step.ledger.set(strain, law.id, sum.strain);
-            for (&k, energy) in law.terms.iter().zip(sum.terms) {
-                let account = step.ledger.account(&self.terms[k].account, AccountKind::Stored);
-                step.ledger.set(account, law.id, energy);
-            }
-            if sum.inverted > 0 && law.material.law.needs_positive_volume() {
-                let particle = sum.inverted - 1 - rows.start;
-                return Err(step.unstable("negative volume (det F <= 0)", law.id, particle));
-            }
-            if step.clock.step.is_multiple_of(STRETCH_INTERVAL) {
-                law.refresh(&gradient[rows]);
-            }
-            let by = || law.limited_by(&body.name);
-            step.limits.propose(*stable_step * law.stretch_factor, by);
-        }
-        images.fill_pair_stress(pair_stress);
-        Ok(())
-    }
-
-    fn save(&self) -> Vec<u8> {
-        self.laws.iter().flat_map(|law| law.stretch_factor.to_le_bytes()).collect()
-    }
-
-    fn restore(&mut self, state: &[u8]) -> bool {
-        let factors = state.as_chunks::<8>();
-        if factors.0.len() != self.laws.len() || !factors.1.is_empty() {
-            return false;
-        }
-        for (law, bytes) in self.laws.iter_mut().zip(factors.0) {
-            law.stretch_factor = f64::from_le_bytes(*bytes);
-        }
-        true
-    }
-}
-
-/// Fills an unused slot of the list of terms.
-struct NoTerm;
-
-impl BondTerm for NoTerm {
-    fn add(&self, _: &mut super::BondRows<'_>) -> f64 {
-        0.0
-    }
-
-    fn stiffness_factor(&self) -> f64 {
-        0.0
-    }
-}
-
-impl BodyLaw {
-    fn refresh(&mut self, gradient: &[DeformationGradient]) {
-        let stretches = for_each_block(gradient, &mut Vec::new(), &|_, rows: &[DeformationGradient]| {
-            rows.iter().fold(Stretches::default(), |all, row| all.with(smallest_and_largest_stretch(row.0)))
-        });
-        self.stretch_factor = self.material.law.stable_step_factor(stretches.smallest, stretches.largest);
-    }
-
-    fn limited_by(&self, body: &str) -> String {
-        let cause = if self.estimate.bond_limited() { "bond stiffness" } else { "wave speed" };
-        if self.stretch_factor < 0.99 {
-            format!("{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
-        } else {
-            format!("{cause} of `{body}`")
-        }
-    }
-}
-
-/// Smallest and largest principal stretch; one where nothing is stretched.
-#[derive(Clone, Copy)]
-struct Stretches {
-    smallest: f64,
-    largest: f64,
-}
-
-impl Default for Stretches {
-    fn default() -> Self {
-        Self { smallest: 1.0, largest: 1.0 }
-    }
-}
-
-impl Stretches {
-    fn with(self, (smallest, largest): (f64, f64)) -> Self {
-        Self { smallest: self.smallest.min(smallest), largest: self.largest.max(largest) }
-    }
-}
-
-impl crate::parallel::BlockSum for Stretches {
-    fn add(&mut self, next: &Self) {
-        *self = self.with((next.smallest, next.largest));
-    }
-}
-
-fn pack(view: &crate::world::PhaseView<'_>, sites: &mut [Site]) -> Result<(), StepError> {
-    let position = view.read::<Position>()?;
-    let reference = view.read::<ReferencePosition>()?;
-    let volume = view.read::<ReferenceVolume>()?;
-    let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
-    type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
-    for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
-        for (k, site) in sites.iter_mut().enumerate() {
-            *site = Site::new(reference[k].0, x[k].0, volume[k].0);
-        }
-    });
     Ok(())
 }
 

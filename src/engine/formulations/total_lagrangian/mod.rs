@@ -6,6 +6,7 @@
 
 mod bond_terms;
 mod bonds;
+mod constitutive;
 mod deformation;
 mod fields;
 mod formulation;
@@ -15,6 +16,9 @@ mod pairs;
 mod repeats;
 mod rows;
 mod stable_step;
+#[cfg(test)]
+mod state_tests;
+mod stretches;
 
 pub use bond_terms::{BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};

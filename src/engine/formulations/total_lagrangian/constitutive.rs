@@ -1,0 +1,204 @@
+//! The system of the first pass: every body with its law, its bond terms and the energies that they report.
+
+use super::bond_terms::BondTerm;
+use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
+use super::formulation::{BodyBondTerm, PackedRows};
+use super::rows::Site;
+use super::stable_step::StepEstimate;
+use super::stretches::Stretches;
+use crate::materials::{MAX_STATE, Material, StateColumns, StateRows};
+use crate::parallel::{Split, for_each_block};
+use crate::plugin::{SetupError, SimBuilder};
+use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
+use crate::world::{
+    BodyId, ColumnSet, DeformationGradient, PhaseId, PhaseView, PiolaStress, Position, ReferencePosition,
+    ReferenceVolume,
+};
+
+/// A body as the deformation system sees it.
+pub(super) struct BodyLaw {
+    id: BodyId,
+    material: Material,
+    /// The state columns of its law.
+    state: StateColumns,
+    pub(super) estimate: StepEstimate,
+    /// Accounts and indices into the list of terms.
+    terms: Vec<usize>,
+    /// Factor of the stable step by the stretches of the body.
+    stretch_factor: f64,
+}
+
+/// The law of a body, and what it is to be run with.
+pub(super) fn body_law(
+    id: BodyId,
+    sim: &SimBuilder<'_>,
+    all: &[BodyBondTerm],
+) -> Result<BodyLaw, SetupError> {
+    let body = sim.body(id);
+    let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
+    if terms.len() > MAX_TERMS {
+        let message = format!("body `{}` has {} bond terms, more than {MAX_TERMS}", body.name, terms.len());
+        return Err(SetupError::parameter("", message, "remove plugins that add bond terms"));
+    }
+    let material = body.material.clone();
+    let elastic = material.law.elastic();
+    let factor: f64 = terms.iter().map(|&k| all[k].term.stiffness_factor()).sum();
+    let estimate = StepEstimate {
+        wave: elastic.longitudinal_modulus() / material.density,
+        bond: factor * elastic.young / material.density,
+    };
+    let mut columns = ColumnSet::default();
+    material.law.state(&mut columns);
+    let state = StateColumns::new(&columns).ok_or_else(|| {
+        let message = format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
+        SetupError::parameter("", message, "this is a fault of the material, not of the scene")
+    })?;
+    Ok(BodyLaw { id, material, state, estimate, terms, stretch_factor: 1.0 })
+}
+
+/// Steps between two looks at the stretches: they change slowly against the stable step.
+const STRETCH_INTERVAL: u64 = 10;
+
+pub(super) struct Deformation {
+    phase: PhaseId,
+    plane: bool,
+    laws: Vec<BodyLaw>,
+    terms: Vec<BodyBondTerm>,
+    sums: Vec<DeformationSum>,
+}
+
+impl Deformation {
+    pub fn new(phase: PhaseId, plane: bool, laws: Vec<BodyLaw>, terms: Vec<BodyBondTerm>) -> Self {
+        Self { phase, plane, laws, terms, sums: Vec::new() }
+    }
+
+    /// The state columns of all laws.
+    pub fn state(&self) -> ColumnSet {
+        let mut columns = ColumnSet::default();
+        self.laws.iter().for_each(|law| law.material.law.state(&mut columns));
+        columns
+    }
+}
+
+impl Run for Deformation {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let view = step.world.phase(self.phase);
+        let mut packed = step.resources.get_mut::<PackedRows>();
+        let PackedRows { bonds, images, sites, pair_stress, stable_step, .. } = &mut *packed;
+        pack(&view, &mut sites[..view.len()])?;
+        images.fill_sites(sites);
+        let mut gradient = view.write::<DeformationGradient>()?;
+        let mut stress = view.write::<PiolaStress>()?;
+        for (law, stable_step) in self.laws.iter_mut().zip(stable_step) {
+            let body = step.world.body(law.id);
+            let rows = body.rows.clone();
+            let mut terms: [&dyn BondTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
+            for (slot, &k) in terms.iter_mut().zip(&law.terms) {
+                *slot = &*self.terms[k].term;
+            }
+            let pass = DeformationPass {
+                bonds,
+                sites,
+                law: &*law.material.law,
+                terms: &terms[..law.terms.len()],
+                first_row: rows.start,
+                plane: self.plane,
+                dt: step.clock.dt,
+            };
+            let mut sum = DeformationSum::default();
+            view.write_bytes_of(law.state.as_slice(), &mut |bytes| {
+                let (_, state) = StateRows::new(&law.state, bytes).split(rows.start);
+                let written = DeformationRows {
+                    deformation: bytemuck::cast_slice_mut(&mut gradient[rows.clone()]),
+                    stress: bytemuck::cast_slice_mut(&mut stress[rows.clone()]),
+                    pair_stress: &mut pair_stress[rows.clone()],
+                    state: state.split(rows.len()).0,
+                };
+                sum = pass.run(written, &mut self.sums);
+            });
+            law.book(&sum, &self.terms, step.ledger);
+            if sum.inverted > 0 && law.material.law.needs_positive_volume() {
+                let particle = sum.inverted - 1 - rows.start;
+                return Err(step.unstable("negative volume (det F <= 0)", law.id, particle));
+            }
+            if step.clock.step.is_multiple_of(STRETCH_INTERVAL) {
+                law.refresh(&gradient[rows]);
+            }
+            let by = || law.limited_by(&body.name);
+            step.limits.propose(*stable_step * law.stretch_factor, by);
+        }
+        images.fill_pair_stress(pair_stress);
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.laws.iter().flat_map(|law| law.stretch_factor.to_le_bytes()).collect()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let factors = state.as_chunks::<8>();
+        if factors.0.len() != self.laws.len() || !factors.1.is_empty() {
+            return false;
+        }
+        for (law, bytes) in self.laws.iter_mut().zip(factors.0) {
+            law.stretch_factor = f64::from_le_bytes(*bytes);
+        }
+        true
+    }
+}
+
+/// Fills an unused slot of the list of terms.
+struct NoTerm;
+
+impl BondTerm for NoTerm {
+    fn add(&self, _: &mut super::BondRows<'_>) -> f64 {
+        0.0
+    }
+
+    fn stiffness_factor(&self) -> f64 {
+        0.0
+    }
+}
+
+impl BodyLaw {
+    fn book(&self, sum: &DeformationSum, terms: &[BodyBondTerm], ledger: &mut Ledger) {
+        let strain = ledger.account("strain", AccountKind::Stored);
+        ledger.set(strain, self.id, sum.strain);
+        if !self.state.as_slice().is_empty() {
+            let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
+            ledger.add(plastic, self.id, sum.plastic_work);
+        }
+        for (&k, energy) in self.terms.iter().zip(sum.terms) {
+            let account = ledger.account(&terms[k].account, AccountKind::Stored);
+            ledger.set(account, self.id, energy);
+        }
+    }
+
+    fn refresh(&mut self, gradient: &[DeformationGradient]) {
+        let stretches = Stretches::of(gradient);
+        self.stretch_factor = self.material.law.stable_step_factor(stretches.smallest, stretches.largest);
+    }
+
+    fn limited_by(&self, body: &str) -> String {
+        let cause = if self.estimate.bond_limited() { "bond stiffness" } else { "wave speed" };
+        if self.stretch_factor < 0.99 {
+            format!("{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
+        } else {
+            format!("{cause} of `{body}`")
+        }
+    }
+}
+
+fn pack(view: &PhaseView<'_>, sites: &mut [Site]) -> Result<(), StepError> {
+    let position = view.read::<Position>()?;
+    let reference = view.read::<ReferencePosition>()?;
+    let volume = view.read::<ReferenceVolume>()?;
+    let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
+    type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
+    for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
+        for (k, site) in sites.iter_mut().enumerate() {
+            *site = Site::new(reference[k].0, x[k].0, volume[k].0);
+        }
+    });
+    Ok(())
+}
