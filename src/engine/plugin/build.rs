@@ -1,7 +1,6 @@
 //! Scene to simulation: materials, particles, plugins, systems, columns.
 
 use std::any::Any;
-use std::path::Path;
 
 use super::builder::SimBuilder;
 use super::memory;
@@ -57,7 +56,7 @@ fn build_in(
     if !overlaps.is_empty() {
         return Err(overlaps);
     }
-    let mut sim = SimBuilder::new(scene, bodies, phases);
+    let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     assemble(scene, parsed, &mut sim)?;
     crate::integrate::add_systems(&mut sim);
@@ -115,7 +114,7 @@ fn place_bodies<'r>(
             Err(found) => problems.extend(found),
         }
     }
-    let folder = Path::new(&source.name).parent().unwrap_or(Path::new("."));
+    let folder = source.folder();
     let mut room = memory::particle_limit();
     let mut bodies: Vec<BodyPlan> = Vec::new();
     let mut phases: Vec<(&'static str, ColumnSet)> = Vec::new();
@@ -130,7 +129,7 @@ fn place_bodies<'r>(
             }
         };
         let filled = shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room);
-        let region = body.shape.region(scene.dimension, "shape");
+        let region = body.shape.region(scene.dimension, folder, "shape");
         let (sites, bounds) = match (filled, region) {
             (Ok(sites), Ok(region)) => (sites, region.bounds()),
             (Ok(sites), Err(_)) => {

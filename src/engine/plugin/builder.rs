@@ -2,6 +2,7 @@
 
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use glam::DVec3;
 
@@ -11,11 +12,13 @@ use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
 use crate::scene::{Dimension, Scene, Select};
 use crate::schedule::{Stage, Step, System};
+use crate::shapes::{Shape, Surface};
 use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
 
 /// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms, columns.
 pub struct SimBuilder<'s> {
     pub(super) scene: &'s Scene,
+    pub(super) folder: &'s Path,
     pub(super) bodies: Vec<BodyPlan>,
     pub(super) phases: Vec<(&'static str, ColumnSet)>,
     pub(super) systems: Vec<System>,
@@ -30,11 +33,13 @@ pub struct SimBuilder<'s> {
 impl<'s> SimBuilder<'s> {
     pub(super) fn new(
         scene: &'s Scene,
+        folder: &'s Path,
         bodies: Vec<BodyPlan>,
         phases: Vec<(&'static str, ColumnSet)>,
     ) -> Self {
         Self {
             scene,
+            folder,
             bodies,
             phases,
             systems: Vec::new(),
@@ -50,6 +55,11 @@ impl<'s> SimBuilder<'s> {
     /// The scene.
     pub fn scene(&self) -> &'s Scene {
         self.scene
+    }
+
+    /// The folder that files named in the scene are relative to.
+    pub fn folder(&self) -> &'s Path {
+        self.folder
     }
 
     /// Plane strain or three dimensions.
@@ -127,7 +137,14 @@ impl<'s> SimBuilder<'s> {
 
     /// The rows that a selection means; `field` is its name among the parameters, for errors.
     pub fn select(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
-        selection::resolve(select, field, &self.bodies, self.scene.dimension)
+        selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
+    }
+
+    /// The surface of a shape, which a tool has; `field` is the shape's name among the parameters, for errors.
+    pub fn surface(&self, shape: &Shape, field: &str) -> Result<Box<dyn Surface>, SetupError> {
+        shape.surface(self.scene.dimension, self.folder, field).map_err(|error| {
+            SetupError::parameter(error.path, error.kind.to_string(), error.kind.help().unwrap_or_default())
+        })
     }
 
     /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that the

@@ -1,5 +1,7 @@
 //! Selections: the rows that a condition or a probe acts on.
 
+use std::path::Path;
+
 use glam::DVec3;
 
 use super::error::SetupError;
@@ -32,6 +34,7 @@ pub(super) fn resolve(
     field: &str,
     bodies: &[BodyPlan],
     dimension: Dimension,
+    folder: &Path,
 ) -> Result<Selection, SetupError> {
     let path = |name: &str| if field.is_empty() { name.to_owned() } else { format!("{field}.{name}") };
     if let Some(name) = &select.body
@@ -46,7 +49,7 @@ pub(super) fn resolve(
         return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
     }
     let within = match &select.within {
-        Some(shape) => Some(shape.region(dimension, &path("within")).map_err(|error| {
+        Some(shape) => Some(shape.region(dimension, folder, &path("within")).map_err(|error| {
             SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")
         })?),
         None => None,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::region::{Aabb, Region};
+use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 
 /// A box along the axes; in two dimensions a rectangle.
 pub(super) struct Block {
@@ -36,5 +37,17 @@ impl Region for Block {
             faces[k].extend([self.corners.min[k], self.corners.max[k]]);
         }
         true
+    }
+}
+
+impl Surface for Block {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let nearer_face = |k: usize| {
+            let axis = DVec3::AXES[k];
+            let below = Facing { normal: -axis, distance: self.corners.min[k] - point[k] };
+            Facing { normal: axis, distance: point[k] - self.corners.max[k] }.outermost(below)
+        };
+        let faces = [0, 1, 2].map(nearer_face);
+        behind_all(point, &faces[..self.axes])
     }
 }

@@ -3,32 +3,46 @@
 use glam::DVec3;
 
 use super::region::{Aabb, Region};
-
-type Part = Box<dyn Region>;
+use super::surface::{Surface, SurfacePoint};
 
 /// Cells that the faces of boxes may make before the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
 
 /// What is in any of the parts.
-pub(super) struct Union {
-    pub parts: Vec<Part>,
+pub(super) struct Union<R: ?Sized> {
+    pub parts: Vec<Box<R>>,
     pub axes: usize,
 }
 
 /// What is in all of the parts.
 pub(super) struct Intersection {
-    pub parts: Vec<Part>,
+    pub parts: Vec<Box<dyn Region>>,
     pub axes: usize,
 }
 
 /// What is in the first part, but not inside the second.
-pub(super) struct Difference {
-    pub whole: Part,
-    pub hole: Part,
+pub(super) struct Difference<R: ?Sized> {
+    pub whole: Box<R>,
+    pub hole: Box<R>,
     pub axes: usize,
 }
 
-impl Region for Union {
+impl<R: Region + ?Sized> Union<R> {
+    /// Whether the boxes about the parts, with `margin` \[m\] added, have nothing in common.
+    pub fn is_apart(&self, margin: f64) -> bool {
+        let bounds: Vec<Aabb> = self.parts.iter().map(|part| part.bounds().grown(margin)).collect();
+        (0..bounds.len()).all(|i| bounds[..i].iter().all(|other| other.is_apart(&bounds[i], self.axes)))
+    }
+}
+
+impl<R: Region + ?Sized> Difference<R> {
+    /// Whether all of the hole, with `margin` \[m\] about it, is known to be inside the whole.
+    pub fn is_hollow(&self, margin: f64) -> bool {
+        holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
+    }
+}
+
+impl<R: Region + ?Sized> Region for Union<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.parts.iter().map(|part| part.distance(point)).fold(f64::INFINITY, f64::min)
     }
@@ -39,10 +53,7 @@ impl Region for Union {
     }
 
     fn volume(&self) -> Option<f64> {
-        let bounds: Vec<Aabb> = self.parts.iter().map(|part| part.bounds()).collect();
-        let apart =
-            (0..bounds.len()).all(|i| bounds[..i].iter().all(|other| other.is_apart(&bounds[i], self.axes)));
-        if apart {
+        if self.is_apart(0.0) {
             self.parts.iter().map(|part| part.volume()).sum()
         } else {
             volume_of_boxes(self, self.axes)
@@ -73,7 +84,8 @@ impl Region for Intersection {
     }
 
     fn frame(&self) -> Aabb {
-        self.parts[0].frame()
+        let bounded = self.parts.iter().map(|part| part.frame()).find(Aabb::is_bounded);
+        bounded.unwrap_or_else(|| self.parts[0].frame())
     }
 
     fn box_faces(&self, faces: &mut [Vec<f64>; 3]) -> bool {
@@ -81,7 +93,7 @@ impl Region for Intersection {
     }
 }
 
-impl Region for Difference {
+impl<R: Region + ?Sized> Region for Difference<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.whole.distance(point).max(-self.hole.distance(point))
     }
@@ -91,11 +103,10 @@ impl Region for Difference {
     }
 
     fn volume(&self) -> Option<f64> {
-        let hole = self.hole.bounds();
-        if self.whole.bounds().is_apart(&hole, self.axes) {
+        if self.whole.bounds().is_apart(&self.hole.bounds(), self.axes) {
             return self.whole.volume();
         }
-        if holds(self.whole.as_ref(), &hole, self.axes) {
+        if self.is_hollow(0.0) {
             return Some(self.whole.volume()? - self.hole.volume()?);
         }
         volume_of_boxes(self, self.axes)
@@ -110,8 +121,29 @@ impl Region for Difference {
     }
 }
 
+/// For parts that are apart only: the nearest point of one could be inside another.
+impl<R: Surface + ?Sized> Surface for Union<R> {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let nearer =
+            |a: SurfacePoint, b: SurfacePoint| if b.signed_distance < a.signed_distance { b } else { a };
+        let first = self.parts[0].closest(point);
+        self.parts[1..].iter().map(|part| part.closest(point)).fold(first, nearer)
+    }
+}
+
+/// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no boundary.
+impl<R: Surface + ?Sized> Surface for Difference<R> {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let (outer, inner) = (self.whole.closest(point), self.hole.closest(point));
+        if outer.signed_distance >= -inner.signed_distance {
+            return outer;
+        }
+        SurfacePoint { point: inner.point, normal: -inner.normal, signed_distance: -inner.signed_distance }
+    }
+}
+
 /// Whether `region` is known to hold all of `part`: it is a single box that does, or a ball about `part` is inside.
-fn holds(region: &dyn Region, part: &Aabb, axes: usize) -> bool {
+fn holds<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if region.box_faces(&mut faces) && faces[0].len() == 2 {
         return (0..axes).all(|k| faces[k][0] <= part.min[k] && part.max[k] <= faces[k][1]);
@@ -120,7 +152,7 @@ fn holds(region: &dyn Region, part: &Aabb, axes: usize) -> bool {
 }
 
 /// Volume of a region made of boxes along the axes: all their faces cut space into cells that are in or out as a whole.
-fn volume_of_boxes(region: &dyn Region, axes: usize) -> Option<f64> {
+fn volume_of_boxes<R: Region + ?Sized>(region: &R, axes: usize) -> Option<f64> {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if !region.box_faces(&mut faces) {
         return None;

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::concentric::Rings;
 use super::region::{Aabb, Region, capped};
+use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 
 /// A circular cylinder with flat ends; `inner` is 0 where it is solid.
 pub(super) struct Cylinder {
@@ -45,5 +46,23 @@ impl Region for Cylinder {
 
     fn rings(&self) -> Option<Rings> {
         Some(Rings::Axial { from: self.from, to: self.to, inner: self.inner, outer: self.outer })
+    }
+}
+
+impl Surface for Cylinder {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let half = 0.5 * (self.to - self.from);
+        let length = half.length();
+        let axis = half / length;
+        let from_middle = point - self.from - half;
+        let along = from_middle.dot(axis);
+        let arm = from_middle - along * axis;
+        let radial = arm.try_normalize().unwrap_or_else(|| axis.any_orthonormal_vector());
+        let mut side = Facing { normal: radial, distance: arm.length() - self.outer };
+        if self.inner > 0.0 {
+            side = side.outermost(Facing { normal: -radial, distance: self.inner - arm.length() });
+        }
+        let end = Facing { normal: if along < 0.0 { -axis } else { axis }, distance: along.abs() - length };
+        behind_all(point, &[side, end])
     }
 }

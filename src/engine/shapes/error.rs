@@ -77,6 +77,15 @@ pub enum FillErrorKind {
     /// A combination of nothing.
     #[error("needs at least one shape")]
     NoShapes,
+    /// A normal of no length.
+    #[error("the normal has no length")]
+    NoNormal,
+    /// A shape without end where a body is to be filled.
+    #[error("the shape has no end, it cannot be filled with particles")]
+    Unbounded,
+    /// A shape whose nearest surface points have no closed form.
+    #[error("a tool needs a surface with known nearest points: {0}")]
+    NoSurface(&'static str),
     /// A rotation axis of no length.
     #[error("the axis has no length")]
     NoAxis,
@@ -147,7 +156,13 @@ impl FillErrorKind {
                 "leave one of them out; the first point is not repeated at the end".into()
             }
             Self::NoInside => {
-                "it can fill a body, but not be combined with shapes, nor select particles".into()
+                "it can fill a body, but not be combined with shapes, select particles, or be a tool".into()
+            }
+            Self::Unbounded => "cut it with others: `Intersection([Box(...), HalfSpace(...)])`".into(),
+            Self::NoSurface(_) => {
+                "a single shape has them, moved, turned or equally scaled; so has a mesh, a `Union` of shapes that \
+                 are apart, and a `Difference` whose hole is all inside; or use several tools"
+                    .into()
             }
             Self::NotConcentric => {
                 "it fits `Sphere`, `Ring`, `Cylinder` and `Tube`; use `Regular` here".into()

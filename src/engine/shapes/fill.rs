@@ -4,13 +4,13 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::build::Check;
 use super::cells::{self, Packing};
+use super::check::Check;
 use super::error::{FillError, FillErrorKind};
 use super::lattice::Lattice;
 use super::region::Region;
 use super::shape::Shape;
-use super::transform::Rotated;
+use super::transform::turned;
 use super::{concentric, morton_order, points, quadrature, relaxed};
 use crate::scene::Dimension;
 
@@ -66,7 +66,7 @@ pub fn fill(
 
 impl Filling<'_> {
     fn sites(&self, shape: &Shape, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
-        let check = Check { dimension: self.dimension, path };
+        let check = Check { dimension: self.dimension, folder: self.folder, path };
         match shape {
             Shape::Points { file } => points::read(self.folder, file, self.dimension, self.limit, path),
             Shape::Translate { shape, by } => {
@@ -75,14 +75,14 @@ impl Filling<'_> {
             }
             Shape::Rotate { shape, axis, angle_degrees, about } => {
                 let (turn, about) = check.turn(*axis, *angle_degrees, *about)?;
-                self.moved(shape, spacing, &check, 1.0, |position| Rotated::apply(turn, about, position))
+                self.moved(shape, spacing, &check, 1.0, |position| turned(turn, about, position))
             }
             Shape::Scale { shape, by, about } if is_uniform(shape, by.0, self.dimension) => {
                 let (by, about) = check.scale(*by, *about)?;
                 let growth = by.element_product();
                 self.moved(shape, spacing / by.x, &check, growth, |position| about + by * (position - about))
             }
-            _ => self.of_region(shape.region(self.dimension, path)?.as_ref(), spacing, path),
+            _ => self.of_region(shape.region(self.dimension, self.folder, path)?.as_ref(), spacing, path),
         }
     }
 
@@ -102,6 +102,9 @@ impl Filling<'_> {
 
     fn of_region(&self, region: &dyn Region, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
         let axes = self.dimension.count();
+        if !region.bounds().is_bounded() {
+            return Err(FillError::new(path, FillErrorKind::Unbounded));
+        }
         let within_limit = |volume: f64, factor: f64| {
             let estimate = volume / spacing.powi(axes as i32);
             if estimate <= factor * self.limit as f64 {

@@ -4,10 +4,12 @@ mod block;
 mod boolean;
 mod build;
 mod cells;
+mod check;
 mod concentric;
 mod cylinder;
 mod error;
 mod fill;
+mod half_space;
 mod lattice;
 mod morton;
 mod points;
@@ -18,6 +20,7 @@ mod relaxed;
 mod ring;
 mod shape;
 mod sphere;
+mod surface;
 mod tiling;
 mod transform;
 mod voronoi;
@@ -29,6 +32,7 @@ pub use lattice::Lattice;
 pub use morton::morton_order;
 pub use region::{Aabb, Region};
 pub use shape::Shape;
+pub use surface::{Surface, SurfacePoint};
 
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::error::FillErrorKind;
 use super::region::{Aabb, Region, capped};
+use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 
 /// A polygon in x-y that does not cross itself.
 pub(super) struct Polygon {
@@ -66,16 +67,20 @@ impl Polygon {
             || (b_side == 0.0 && within(c, d, b))
     }
 
-    fn area(&self) -> f64 {
+    /// Twice the area, positive if the corners go round counter-clockwise.
+    fn twice_area(&self) -> f64 {
         // Relative to a corner: far from the origin the products would cancel.
         let origin = self.corners[0];
-        let twice: f64 = (0..self.corners.len())
+        (0..self.corners.len())
             .map(|i| {
                 let (a, b) = self.edge(i);
                 (a - origin).perp_dot(b - origin)
             })
-            .sum();
-        0.5 * twice.abs()
+            .sum()
+    }
+
+    fn area(&self) -> f64 {
+        0.5 * self.twice_area().abs()
     }
 
     fn distance(&self, point: DVec2) -> f64 {
@@ -91,6 +96,38 @@ impl Polygon {
             }
         }
         if inside { -nearest.sqrt() } else { nearest.sqrt() }
+    }
+
+    /// The outward normal at the nearest point of the outline, and the distance along it.
+    fn facing(&self, point: DVec2) -> Facing {
+        let n = self.corners.len();
+        let turn = if self.twice_area() > 0.0 { 1.0 } else { -1.0 };
+        let normal = |i: usize| {
+            let (a, b) = self.edge(i);
+            -turn * (b - a).perp().normalize()
+        };
+        let mut nearest = (f64::INFINITY, 0, 0.0);
+        for i in 0..n {
+            let (a, b) = self.edge(i);
+            let edge = b - a;
+            let part = ((point - a).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+            let distance = point.distance_squared(a + part * edge);
+            if distance < nearest.0 {
+                nearest = (distance, i, part);
+            }
+        }
+        let (_, i, part) = nearest;
+        if part > 0.0 && part < 1.0 {
+            let distance = (point - self.corners[i]).dot(normal(i));
+            return Facing { normal: normal(i).extend(0.0), distance };
+        }
+        // At a corner the point is outside if it is in front of the mean of both edges.
+        let corner = if part == 0.0 { i } else { (i + 1) % n };
+        let mean = (normal(corner) + normal((corner + n - 1) % n)).normalize();
+        let arm = point - self.corners[corner];
+        let sign = if arm.dot(mean) < 0.0 { -1.0 } else { 1.0 };
+        let direction = arm.try_normalize().map_or(mean, |direction| sign * direction);
+        Facing { normal: direction.extend(0.0), distance: sign * arm.length() }
     }
 
     fn bounds(&self) -> (DVec2, DVec2) {
@@ -130,5 +167,20 @@ impl Region for Extrusion {
 
     fn volume(&self) -> Option<f64> {
         Some(self.polygon.area() * (self.to - self.from))
+    }
+}
+
+impl Surface for Polygon {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        self.facing(point.truncate()).foot(point)
+    }
+}
+
+impl Surface for Extrusion {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let side = self.polygon.facing(point.truncate());
+        let top = Facing { normal: DVec3::Z, distance: point.z - self.to };
+        let end = top.outermost(Facing { normal: -DVec3::Z, distance: self.from - point.z });
+        behind_all(point, &[side, end])
     }
 }

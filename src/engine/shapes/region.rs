@@ -21,6 +21,22 @@ impl Aabb {
         all.unwrap_or(of_point(DVec3::ZERO))
     }
 
+    /// The box of no bounds; in two dimensions the plane z = 0.
+    pub(super) fn everything(axes: usize) -> Self {
+        let far = DVec3::new(f64::INFINITY, f64::INFINITY, if axes == 3 { f64::INFINITY } else { 0.0 });
+        Self { min: -far, max: far }
+    }
+
+    /// Whether no side goes on for ever.
+    pub fn is_bounded(&self) -> bool {
+        self.min.is_finite() && self.max.is_finite()
+    }
+
+    /// The box with `margin` \[m\] on all sides.
+    pub fn grown(&self, margin: f64) -> Self {
+        Self { min: self.min - margin, max: self.max + margin }
+    }
+
     /// Lengths of the sides \[m\].
     pub fn extent(&self) -> DVec3 {
         self.max - self.min
@@ -69,9 +85,10 @@ pub trait Region: Send + Sync {
     fn volume(&self) -> Option<f64>;
 
     /// Whether `point` is inside or on the boundary. Points closer to the boundary than 1e-9 of the diagonal of the bounding box
-    /// are on it, so that round-off decides nothing.
+    /// (without one, of the distance from the origin) are on it, so that round-off decides nothing.
     fn contains(&self, point: DVec3) -> bool {
-        self.distance(point) <= self.tolerance()
+        let tolerance = self.tolerance();
+        self.distance(point) <= if tolerance.is_finite() { tolerance } else { 1e-9 * point.length() }
     }
 
     /// The distance below which a point counts as on the boundary \[m\].

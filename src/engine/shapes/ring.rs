@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::concentric::Rings;
 use super::region::{Aabb, Region};
+use super::surface::{Facing, Surface, SurfacePoint};
 
 /// The region between two concentric circles in z = 0.
 pub(super) struct Ring {
@@ -35,5 +36,14 @@ impl Region for Ring {
 
     fn rings(&self) -> Option<Rings> {
         Some(Rings::Plane { center: self.center, inner: self.inner, outer: self.outer })
+    }
+}
+
+impl Surface for Ring {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let arm = point - self.center;
+        let radial = arm.try_normalize().unwrap_or(DVec3::X);
+        let outer = Facing { normal: radial, distance: arm.length() - self.outer };
+        outer.outermost(Facing { normal: -radial, distance: self.inner - arm.length() }).foot(point)
     }
 }

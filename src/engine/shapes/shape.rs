@@ -26,6 +26,14 @@ pub enum Shape {
         /// Radius \[m\].
         radius: f64,
     },
+    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes, selects, is a tool, but
+    /// fills no body.
+    HalfSpace {
+        /// A point of the plane \[m\].
+        point: Vec3,
+        /// Direction out of the half-space, at right angles to the plane, of any length \[-\].
+        normal: Vec3,
+    },
     /// Circular cylinder with flat ends (three dimensions; in two use `Sphere` or `Box`).
     Cylinder {
         /// Centre of one end \[m\].

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::concentric::Rings;
 use super::region::{Aabb, Region};
+use super::surface::{Surface, SurfacePoint};
 
 /// A sphere; in two dimensions a disc.
 pub(super) struct Sphere {
@@ -34,5 +35,16 @@ impl Region for Sphere {
         } else {
             Rings::Plane { center: self.center, inner: 0.0, outer: self.radius }
         })
+    }
+}
+
+impl Surface for Sphere {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let normal = (point - self.center).try_normalize().unwrap_or(DVec3::X);
+        SurfacePoint {
+            point: self.center + self.radius * normal,
+            normal,
+            signed_distance: self.distance(point),
+        }
     }
 }

@@ -3,36 +3,35 @@
 use glam::{DQuat, DVec3};
 
 use super::region::{Aabb, Region};
+use super::surface::{Surface, SurfacePoint};
 
 /// A region moved by `by`.
-pub(super) struct Translated {
-    pub region: Box<dyn Region>,
+pub(super) struct Translated<R: ?Sized> {
+    pub region: Box<R>,
     pub by: DVec3,
 }
 
 /// A region turned by `turn` about the point `about`.
-pub(super) struct Rotated {
-    pub region: Box<dyn Region>,
+pub(super) struct Rotated<R: ?Sized> {
+    pub region: Box<R>,
     pub turn: DQuat,
     pub about: DVec3,
 }
 
 /// A region stretched by positive factors from the point `about`; in two dimensions the factor along z is 1.
-pub(super) struct Scaled {
-    pub region: Box<dyn Region>,
+pub(super) struct Scaled<R: ?Sized> {
+    pub region: Box<R>,
     pub by: DVec3,
     pub about: DVec3,
     pub axes: usize,
 }
 
-impl Rotated {
-    /// Where the rotation takes a point of the region.
-    pub fn apply(turn: DQuat, about: DVec3, point: DVec3) -> DVec3 {
-        about + turn * (point - about)
-    }
+/// Where a rotation about the point `about` takes a point.
+pub(super) fn turned(turn: DQuat, about: DVec3, point: DVec3) -> DVec3 {
+    about + turn * (point - about)
 }
 
-impl Region for Translated {
+impl<R: Region + ?Sized> Region for Translated<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.region.distance(point - self.by)
     }
@@ -61,13 +60,17 @@ impl Region for Translated {
     }
 }
 
-impl Region for Rotated {
+impl<R: Region + ?Sized> Region for Rotated<R> {
     fn distance(&self, point: DVec3) -> f64 {
-        self.region.distance(Self::apply(self.turn.inverse(), self.about, point))
+        self.region.distance(turned(self.turn.inverse(), self.about, point))
     }
 
     fn bounds(&self) -> Aabb {
-        Aabb::around(self.region.bounds().corners().map(|corner| Self::apply(self.turn, self.about, corner)))
+        let inner = self.region.bounds();
+        if !inner.is_bounded() {
+            return Aabb::everything(if inner.extent().z > 0.0 { 3 } else { 2 });
+        }
+        Aabb::around(inner.corners().map(|corner| turned(self.turn, self.about, corner)))
     }
 
     fn volume(&self) -> Option<f64> {
@@ -75,7 +78,7 @@ impl Region for Rotated {
     }
 }
 
-impl Region for Scaled {
+impl<R: Region + ?Sized> Region for Scaled<R> {
     fn distance(&self, point: DVec3) -> f64 {
         // The smallest factor makes this a lower bound of the distance; the sign is exact.
         let smallest = if self.axes == 3 { self.by.min_element() } else { self.by.truncate().min_element() };
@@ -110,5 +113,32 @@ impl Region for Scaled {
             faces[k][start[k]..].iter_mut().for_each(|face| *face = about + by * (*face - about));
         }
         made_of_boxes
+    }
+}
+
+impl<R: Surface + ?Sized> Surface for Translated<R> {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let found = self.region.closest(point - self.by);
+        SurfacePoint { point: found.point + self.by, ..found }
+    }
+}
+
+impl<R: Surface + ?Sized> Surface for Rotated<R> {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let found = self.region.closest(turned(self.turn.inverse(), self.about, point));
+        let (point, normal) = (turned(self.turn, self.about, found.point), self.turn * found.normal);
+        SurfacePoint { point, normal, ..found }
+    }
+}
+
+/// For equal factors only: others turn the nearest point into one that is not.
+impl<R: Surface + ?Sized> Surface for Scaled<R> {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        let found = self.region.closest(self.about + (point - self.about) / self.by);
+        SurfacePoint {
+            point: self.about + self.by * (found.point - self.about),
+            normal: found.normal,
+            signed_distance: self.by.x * found.signed_distance,
+        }
     }
 }

@@ -8,7 +8,7 @@ use crate::shapes::{FillErrorKind, Lattice, fill};
 
 #[test]
 fn numbers_that_cannot_be() {
-    let cases: [(&str, Dimension, &str, &str); 25] = [
+    let cases: [(&str, Dimension, &str, &str); 27] = [
         (
             "Box(min: (0, 0), max: (1, 0))",
             Two,
@@ -34,6 +34,13 @@ fn numbers_that_cannot_be() {
             Two,
             "shape.min",
             "z must be left out or 0 in two dimensions, found 1",
+        ),
+        ("HalfSpace(point: (0, 0), normal: (0, 0))", Two, "shape.normal", "the normal has no length"),
+        (
+            "Union([Box(min: (0, 0), max: (1, 1)), HalfSpace(point: (0, 0), normal: (0, 1))])",
+            Two,
+            "shape",
+            "the shape has no end, it cannot be filled with particles; cut it with others: `Intersection([Box(...), HalfSpace(...)])`",
         ),
         ("Sphere(center: (0, 0), radius: 0)", Two, "shape.radius", "must be greater than 0, found 0"),
         ("Sphere(center: (0, 0), radius: -1)", Two, "shape.radius", "must be greater than 0, found -1"),
@@ -127,7 +134,7 @@ fn numbers_that_cannot_be() {
             "Difference(Sphere(center: (0, 0), radius: 1), Points(file: \"a.csv\"))",
             Two,
             "shape[1]",
-            "a particle file has no inside; it can fill a body, but not be combined with shapes, nor select particles",
+            "a particle file has no inside; it can fill a body, but not be combined with shapes, select particles, or be a tool",
         ),
     ];
     for (text, dimension, path, message) in cases {

@@ -8,6 +8,7 @@ mod points;
 mod regions;
 mod regular;
 mod relaxed;
+mod surfaces;
 mod text;
 
 use std::path::Path;

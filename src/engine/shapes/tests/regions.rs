@@ -1,5 +1,7 @@
 //! Which points a shape contains, its bounds, its distance.
 
+use std::path::Path;
+
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -8,12 +10,15 @@ use crate::scene::Dimension::{self, Three, Two};
 use crate::shapes::{Aabb, Region};
 
 fn region(text: &str, dimension: Dimension) -> Box<dyn Region> {
-    shape(text).region(dimension, "shape").unwrap()
+    shape(text).region(dimension, Path::new(""), "shape").unwrap()
 }
 
 /// Shapes with a second, plain statement of what is inside.
 type Inside = fn(DVec3) -> bool;
-const PLANE: [(&str, Inside); 8] = [
+const PLANE: [(&str, Inside); 9] = [
+    ("Intersection([HalfSpace(point: (0, 0.1), normal: (1, 1)), Box(min: (-1, -1), max: (1, 1))])", |p| {
+        p.x + p.y <= 0.1 && p.x.abs() <= 1.0 && p.y.abs() <= 1.0
+    }),
     ("Box(min: (-1, 0), max: (1, 0.5))", |p| p.x.abs() <= 1.0 && p.y >= 0.0 && p.y <= 0.5),
     ("Sphere(center: (0.5, 0), radius: 1)", |p| (p.x - 0.5).hypot(p.y) <= 1.0),
     ("Ring(center: (0, 0.5), inner: 0.5, outer: 1)", |p| (0.5..=1.0).contains(&p.x.hypot(p.y - 0.5))),

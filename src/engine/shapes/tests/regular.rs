@@ -169,3 +169,12 @@ fn transforms_take_the_lattice_along() {
         standing.iter().all(|site| site.position.x > 0.0 && site.position.z < 0.0 && site.position.z > -0.2)
     );
 }
+
+#[test]
+fn a_half_space_cuts_a_box() {
+    let cut = "Intersection([HalfSpace(point: (0.5, 0), normal: (1, 0)), Box(min: (0, 0), max: (1, 1))])";
+    let sites = filled(cut, Lattice::Regular, 0.1, Two);
+    assert_eq!(sites.len(), 50);
+    assert!(sites.iter().all(|site| site.position.x < 0.5));
+    assert_close(total(&sites), 0.5, 1e-3);
+}

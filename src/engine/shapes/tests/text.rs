@@ -26,6 +26,7 @@ fn every_form_reads_and_writes() {
     );
     for text in [
         "Sphere(center: (0.0, 0.0, 1.0), radius: 2)",
+        "HalfSpace(point: (0, 0, 1), normal: (0, 0, 1))",
         "Cylinder(from: (0, 0, 0), to: (0, 0, 1), radius: 0.5)",
         "Ring(center: (0, 0), inner: 1, outer: 2)",
         "Tube(from: (0, 0, 0), to: (0, 0, 1), inner: 0.5, outer: 1)",

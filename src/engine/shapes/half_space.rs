@@ -1,0 +1,33 @@
+//! Half-spaces, bounded by a plane; half-planes in two dimensions.
+
+use glam::DVec3;
+
+use super::region::{Aabb, Region};
+use super::surface::{Facing, Surface, SurfacePoint};
+
+/// All that lies behind the plane through `point` with the unit normal `normal`.
+pub(super) struct HalfSpace {
+    pub point: DVec3,
+    pub normal: DVec3,
+    pub axes: usize,
+}
+
+impl Region for HalfSpace {
+    fn distance(&self, point: DVec3) -> f64 {
+        (point - self.point).dot(self.normal)
+    }
+
+    fn bounds(&self) -> Aabb {
+        Aabb::everything(self.axes)
+    }
+
+    fn volume(&self) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+}
+
+impl Surface for HalfSpace {
+    fn closest(&self, point: DVec3) -> SurfacePoint {
+        Facing { normal: self.normal, distance: self.distance(point) }.foot(point)
+    }
+}

@@ -1,0 +1,63 @@
+//! The surface of a shape: what a tool needs to be touched.
+
+use glam::DVec3;
+
+use super::region::Region;
+
+/// The point of a surface that is nearest to a given one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// The nearest point of the surface \[m\].
+    pub point: DVec3,
+    /// n, unit normal of the surface there, outward \[-\]. At edges and corners it is along the line from `point` to the point asked for (against
+    /// it from inside); for a point on them, the mean of the normals that meet there.
+    pub normal: DVec3,
+    /// Distance from the point asked for, negative inside \[m\].
+    pub signed_distance: f64,
+}
+
+/// A region that knows the nearest point of its surface exactly. In two dimensions everything lies in z = 0.
+pub trait Surface: Region {
+    /// The point of the surface that is nearest to `point`. Of several equally near ones the choice is fixed: the same `point` always has
+    /// the same answer.
+    fn closest(&self, point: DVec3) -> SurfacePoint;
+}
+
+/// A face at a signed distance along its outward normal.
+#[derive(Clone, Copy)]
+pub(super) struct Facing {
+    pub normal: DVec3,
+    pub distance: f64,
+}
+
+impl Facing {
+    /// The nearer one of two faces of which a point inside is behind both.
+    pub fn outermost(self, other: Self) -> Self {
+        if other.distance > self.distance { other } else { self }
+    }
+
+    /// The foot of `point` on this face.
+    pub fn foot(self, point: DVec3) -> SurfacePoint {
+        SurfacePoint {
+            point: point - self.distance * self.normal,
+            normal: self.normal,
+            signed_distance: self.distance,
+        }
+    }
+}
+
+/// The nearest point of what lies behind all `faces`, whose normals are at right angles to each other: inside that of the nearest face, outside
+/// that of the edge or corner of all faces that the point is in front of.
+pub(super) fn behind_all(point: DVec3, faces: &[Facing]) -> SurfacePoint {
+    let in_front = faces.iter().filter(|face| face.distance > 0.0);
+    let out: DVec3 = in_front.map(|face| face.distance * face.normal).sum();
+    let distance = out.length();
+    if distance > 0.0 {
+        return SurfacePoint { point: point - out, normal: out / distance, signed_distance: distance };
+    }
+    let on: DVec3 = faces.iter().filter(|face| face.distance == 0.0).map(|face| face.normal).sum();
+    if on != DVec3::ZERO {
+        return SurfacePoint { point, normal: on.normalize(), signed_distance: 0.0 };
+    }
+    faces[1..].iter().fold(faces[0], |nearest, &face| nearest.outermost(face)).foot(point)
+}
