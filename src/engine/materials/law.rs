@@ -137,7 +137,7 @@ impl<H: Hyperelastic> HotLoop for StressLoop<'_, '_, H> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self) {
+    fn run<A: Arithmetic>(self, _: A) {
         let young = self.law.elastic().young;
         let StressRows { deformation, stress, energy, modulus, .. } = self.rows;
         let n = deformation.len();

@@ -1,11 +1,12 @@
 //! Hot loops with a plane and a solid version: in plane strain the third axis is left out of the sums.
 
-use super::path::{Arithmetic, HotLoop, run_hot};
+use super::arithmetic::Arithmetic;
+use super::path::{HotLoop, run_hot};
 
 /// A loop that is compiled for two and for three axes, each for every instruction path.
 pub trait PlaneOrSolid {
     /// The loop over `D` axes; mark it `#[inline(always)]`.
-    fn run<A: Arithmetic, const D: usize>(self);
+    fn run<A: Arithmetic, const D: usize>(self, arithmetic: A);
 }
 
 struct Axes<L, const D: usize>(L);
@@ -14,8 +15,8 @@ impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self) {
-        self.0.run::<A, D>();
+    fn run<A: Arithmetic>(self, arithmetic: A) {
+        self.0.run::<A, D>(arithmetic);
     }
 }
 

@@ -1,11 +1,13 @@
 //! Parallel loops with the same result on any number of threads, and the instruction path of the hot loops.
 
+mod arithmetic;
 mod blocks;
 mod dimension;
 mod lanes;
 mod path;
 
+pub use arithmetic::Arithmetic;
 pub use blocks::{BLOCK, BlockSum, Split, block_count, for_each_block};
 pub use dimension::{PlaneOrSolid, run_hot_in};
 pub use lanes::Lanes4;
-pub use path::{Arithmetic, HotLoop, instruction_path, run_hot};
+pub use path::{HotLoop, instruction_path, run_hot};

@@ -3,33 +3,7 @@
 //! A hot loop is written once, generic over [`Arithmetic`], and compiled for both paths. The two differ in the last
 //! bits (a fused multiply-add rounds once), so the path is part of a checkpoint.
 
-/// How a product is added to a sum.
-pub trait Arithmetic: Copy + Send + Sync + 'static {
-    /// `a b + c`.
-    fn mul_add(a: f64, b: f64, c: f64) -> f64;
-}
-
-/// Product and sum, rounded once.
-#[derive(Clone, Copy)]
-struct Fused;
-
-/// Product and sum, rounded twice.
-#[derive(Clone, Copy)]
-struct Portable;
-
-impl Arithmetic for Fused {
-    #[inline(always)]
-    fn mul_add(a: f64, b: f64, c: f64) -> f64 {
-        a.mul_add(b, c)
-    }
-}
-
-impl Arithmetic for Portable {
-    #[inline(always)]
-    fn mul_add(a: f64, b: f64, c: f64) -> f64 {
-        a * b + c
-    }
-}
+use super::arithmetic::{Arithmetic, Portable};
 
 /// A loop that is compiled once for every instruction path.
 ///
@@ -38,7 +12,7 @@ pub trait HotLoop {
     /// What the loop returns.
     type Output;
     /// The loop.
-    fn run<A: Arithmetic>(self) -> Self::Output;
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -48,16 +22,16 @@ mod detected {
     use pulp::NullaryFnOnce;
     use pulp::x86::V3;
 
-    use super::{Fused, HotLoop, Portable};
+    use super::{HotLoop, Portable};
 
-    struct WithFma<L>(L);
+    struct WithV3<L>(L, V3);
 
-    impl<L: HotLoop> NullaryFnOnce for WithFma<L> {
+    impl<L: HotLoop> NullaryFnOnce for WithV3<L> {
         type Output = L::Output;
 
         #[inline(always)]
         fn call(self) -> L::Output {
-            self.0.run::<Fused>()
+            self.0.run(self.1)
         }
     }
 
@@ -68,8 +42,8 @@ mod detected {
 
     pub fn run<L: HotLoop>(hot: L) -> L::Output {
         match v3() {
-            Some(v3) => v3.vectorize(WithFma(hot)),
-            None => hot.run::<Portable>(),
+            Some(v3) => v3.vectorize(WithV3(hot, v3)),
+            None => hot.run(Portable),
         }
     }
 
@@ -80,12 +54,10 @@ mod detected {
 
 #[cfg(not(target_arch = "x86_64"))]
 mod detected {
-    use super::{Fused, HotLoop, Portable};
+    use super::{HotLoop, Portable};
 
-    /// Other processors that this runs on have a fused multiply-add in their base instruction set, or emulate it too
-    /// slowly to be used.
     pub fn run<L: HotLoop>(hot: L) -> L::Output {
-        if cfg!(target_arch = "aarch64") { hot.run::<Fused>() } else { hot.run::<Portable>() }
+        hot.run(Portable)
     }
 
     pub fn name() -> &'static str {

@@ -158,7 +158,7 @@ struct Gather<'a> {
 
 impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self) {
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
         let Self { bonds, sites, first, deformation, gradient, misfit, volume } = self;
         for (k, f_i) in deformation.iter_mut().enumerate() {
             let i = first + k;
@@ -169,16 +169,16 @@ impl PlaneOrSolid for Gather<'_> {
             let mut square = Lanes4::default();
             for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
                 let other = &sites[j as usize];
-                let reference = other.reference.minus(site.reference);
-                let displacement = other.displacement.minus(site.displacement);
-                let weighted = displacement.scale(f64::from(weight) * other.reference.0[3]);
+                let reference = a.minus(other.reference, site.reference);
+                let displacement = a.minus(other.displacement, site.displacement);
+                let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
                 for (axis, column) in spread.iter_mut().enumerate() {
-                    *column = weighted.scale_add::<A>(reference.0[axis], *column);
+                    *column = a.scale_add(reference.0[axis], weighted, *column);
                 }
-                square = displacement.multiply_add::<A>(weighted, square);
+                square = a.times_add(displacement, weighted, square);
             }
             // A free particle has a zero inverse, and so F = I.
-            let h = fit::<A, D>(&spread, &bonds.inverse_moment[i]);
+            let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
             let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
             misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
@@ -191,13 +191,13 @@ impl PlaneOrSolid for Gather<'_> {
 
 /// The columns of a weighted sum times the inverse moment matrix.
 #[inline(always)]
-fn fit<A: Arithmetic, const D: usize>(spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
+fn fit<A: Arithmetic, const D: usize>(a: A, spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
     let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let mut f = [Lanes4::default(); 3];
     for c in 0..D {
         for axis in 0..D {
-            f[c] = spread[axis].scale_add::<A>(rows[axis][c], f[c]);
+            f[c] = a.scale_add(rows[axis][c], spread[axis], f[c]);
         }
     }
     f
@@ -213,10 +213,10 @@ impl HotLoop for MakePairStress<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self) {
+    fn run<A: Arithmetic>(self, a: A) {
         for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
             let columns = [p.x_axis, p.y_axis, p.z_axis].map(|column| Lanes4::new(column, 0.0));
-            out.0 = fit::<A, 3>(&columns, inverse);
+            out.0 = fit::<A, 3>(a, &columns, inverse);
         }
     }
 }

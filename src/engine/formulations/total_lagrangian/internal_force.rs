@@ -40,7 +40,7 @@ struct ForceRows<'a> {
 
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self) {
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
         let InternalForce { bonds, sites, pair_stress, mass, gravity, .. } = *self.pass;
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
@@ -51,13 +51,14 @@ impl PlaneOrSolid for ForceRows<'_> {
             for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
                 let other = &sites[j as usize];
                 let stress = &pair_stress[j as usize];
-                let reference = other.reference.minus(site.reference);
-                let displacement = other.displacement.minus(site.displacement);
-                let mut pull = displacement.scale(own.stiffness() + stress.stiffness());
+                let reference = a.minus(other.reference, site.reference);
+                let displacement = a.minus(other.displacement, site.displacement);
+                let mut pull = a.scale(own.stiffness() + stress.stiffness(), displacement);
                 for axis in 0..D {
-                    pull = own.0[axis].plus(stress.0[axis]).scale_add::<A>(reference.0[axis], pull);
+                    let column = a.plus(own.0[axis], stress.0[axis]);
+                    pull = a.scale_add(reference.0[axis], column, pull);
                 }
-                sum = pull.scale_add::<A>(f64::from(weight) * other.reference.0[3], sum);
+                sum = a.scale_add(f64::from(weight) * other.reference.0[3], pull, sum);
             }
             *force = Force(sum.xyz() * site.reference.0[3] + gravity * mass[i]);
         }

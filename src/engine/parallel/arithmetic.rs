@@ -1,0 +1,110 @@
+//! The arithmetic of an instruction path: numbers, and vectors of four lanes.
+//!
+//! A loop that is written with [`Lanes4`] and these operations keeps its vectors in registers of four lanes. Left to
+//! itself, the compiler takes rows of four apart and puts the pieces together in pairs: twice the instructions.
+
+use super::lanes::Lanes4;
+
+/// Operations of an instruction path; a hot loop gets the one it is compiled for.
+pub trait Arithmetic: Copy + Send + Sync {
+    /// `a b + c`.
+    fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
+
+    /// `a + b`, lane by lane.
+    fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// `a - b`, lane by lane.
+    fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// `a b`, lane by lane.
+    fn times(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// `a b + c`, lane by lane.
+    fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
+
+    /// `s a`.
+    #[inline(always)]
+    fn scale(self, s: f64, a: Lanes4) -> Lanes4 {
+        self.times(a, Lanes4([s; 4]))
+    }
+
+    /// `s a + c`.
+    #[inline(always)]
+    fn scale_add(self, s: f64, a: Lanes4, c: Lanes4) -> Lanes4 {
+        self.times_add(a, Lanes4([s; 4]), c)
+    }
+}
+
+/// The instructions that every processor of the architecture has.
+#[derive(Clone, Copy)]
+pub(super) struct Portable;
+
+impl Arithmetic for Portable {
+    #[inline(always)]
+    fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+        // Where a fused multiply-add is not in the base instruction set it would be a call.
+        if cfg!(target_arch = "aarch64") { a.mul_add(b, c) } else { a * b + c }
+    }
+
+    #[inline(always)]
+    fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0] + b.0[0], a.0[1] + b.0[1], a.0[2] + b.0[2], a.0[3] + b.0[3]])
+    }
+
+    #[inline(always)]
+    fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0] - b.0[0], a.0[1] - b.0[1], a.0[2] - b.0[2], a.0[3] - b.0[3]])
+    }
+
+    #[inline(always)]
+    fn times(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0] * b.0[0], a.0[1] * b.0[1], a.0[2] * b.0[2], a.0[3] * b.0[3]])
+    }
+
+    #[inline(always)]
+    fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+        Lanes4([
+            self.mul_add(a.0[0], b.0[0], c.0[0]),
+            self.mul_add(a.0[1], b.0[1], c.0[1]),
+            self.mul_add(a.0[2], b.0[2], c.0[2]),
+            self.mul_add(a.0[3], b.0[3], c.0[3]),
+        ])
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod v3 {
+    use bytemuck::cast;
+    use pulp::f64x4;
+    use pulp::x86::V3;
+
+    use super::{Arithmetic, Lanes4};
+
+    /// AVX2 and FMA: product and sum are rounded once.
+    impl Arithmetic for V3 {
+        #[inline(always)]
+        fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+            a.mul_add(b, c)
+        }
+
+        #[inline(always)]
+        fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast::<f64x4, Lanes4>(self.add_f64x4(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast::<f64x4, Lanes4>(self.sub_f64x4(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn times(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast::<f64x4, Lanes4>(self.mul_f64x4(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+            cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
+        }
+    }
+}
