@@ -5,7 +5,6 @@
 
 use std::error::Error;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use meshless::prelude::*;
 
@@ -35,7 +34,7 @@ impl MaterialModel for MooneyRivlin {
         ParameterError::require_positive("bulk", self.bulk)?;
         let elastic = ElasticConstants::from_bulk_shear(self.bulk, 2.0 * (self.c1 + self.c2));
         let law = MooneyRivlinLaw { c1: self.c1, c2: self.c2, elastic };
-        Ok(Material { density: self.density, law: Arc::new(law) })
+        Ok(Material::solid(self.density, law))
     }
 }
 

@@ -45,12 +45,9 @@ impl Plugin for ArtificialViscosity {
         }
         for id in sim.scope().clone().iter() {
             let material = &sim.body(id).material;
-            let term = Approach {
-                alpha: self.alpha,
-                beta: self.beta,
-                density: material.density,
-                sound_speed: material.law.elastic().longitudinal_speed(material.density),
-            };
+            let Some(sound_speed) = material.sound_speed() else { continue };
+            let term =
+                Approach { alpha: self.alpha, beta: self.beta, density: material.density, sound_speed };
             sim.add_pair_term(BodySet::new([id]), Self::NAME, term);
         }
         Ok(())

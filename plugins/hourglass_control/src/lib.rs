@@ -64,12 +64,9 @@ impl Plugin for HourglassControl {
             Form::Variational => sim.add_bond_term(bodies, "hourglass", Variational { alpha }),
             Form::Ganzenmueller2015 => {
                 for id in bodies.iter() {
-                    let material = &sim.body(id).material;
-                    let term = Ganzenmueller2015 {
-                        alpha,
-                        young: material.law.elastic().young,
-                        density: material.density,
-                    };
+                    let body = sim.body(id);
+                    let young = body.solid_law()?.elastic().young;
+                    let term = Ganzenmueller2015 { alpha, young, density: body.material.density };
                     sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
                 }
             }

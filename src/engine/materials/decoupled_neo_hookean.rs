@@ -1,7 +1,5 @@
 //! Neo-Hookean law with decoupled shape and volume change.
 
-use std::sync::Arc;
-
 use glam::DMat3;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,7 +35,7 @@ impl MaterialModel for DecoupledNeoHookean {
     fn build(self) -> Result<Material, ParameterError> {
         ParameterError::require_positive("density", self.density)?;
         let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
-        Ok(Material { density: self.density, law: Arc::new(DecoupledNeoHookeanLaw(elastic)) })
+        Ok(Material::solid(self.density, DecoupledNeoHookeanLaw(elastic)))
     }
 }
 

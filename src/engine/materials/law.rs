@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use super::elastic_constants::ElasticConstants;
+use super::fluid::FluidLaw;
 use super::state::StateRows;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::ColumnSet;
@@ -52,8 +53,49 @@ impl ParameterError {
 pub struct Material {
     /// Density in the reference configuration rho_0, kg/m3.
     pub density: f64,
-    /// The law of a solid.
-    pub law: Arc<dyn SolidLaw>,
+    /// What the stress depends on.
+    pub law: Law,
+}
+
+/// What the stress of a material depends on.
+#[derive(Clone)]
+pub enum Law {
+    /// On the deformation.
+    Solid(Arc<dyn SolidLaw>),
+    /// On density and shear rate.
+    Fluid(FluidLaw),
+    /// On nothing: walls that are no more than a surface.
+    Nothing,
+}
+
+impl Material {
+    /// A solid of reference density rho_0, kg/m3.
+    pub fn solid(density: f64, law: impl SolidLaw + 'static) -> Self {
+        Self { density, law: Law::Solid(Arc::new(law)) }
+    }
+
+    /// What walls are made of that name no material of the scene: they have no mass.
+    pub fn nothing() -> Self {
+        Self { density: 0.0, law: Law::Nothing }
+    }
+
+    /// What the material is, in words.
+    pub fn word(&self) -> &'static str {
+        match self.law {
+            Law::Solid(_) => "a solid",
+            Law::Fluid(_) => "a fluid",
+            Law::Nothing => "no material",
+        }
+    }
+
+    /// Speed of sound, m/s: of longitudinal waves in a solid; none where the material does not say.
+    pub fn sound_speed(&self) -> Option<f64> {
+        match &self.law {
+            Law::Solid(law) => Some(law.elastic().longitudinal_speed(self.density)),
+            Law::Fluid(law) => law.sound_speed,
+            Law::Nothing => None,
+        }
+    }
 }
 
 /// A material as a scene names it: its fields are its parameters.

@@ -2,6 +2,7 @@
 
 mod decoupled_neo_hookean;
 mod elastic_constants;
+mod fluid;
 mod law;
 mod neo_hookean;
 mod st_venant_kirchhoff;
@@ -11,7 +12,8 @@ mod tests;
 
 pub use decoupled_neo_hookean::DecoupledNeoHookean;
 pub use elastic_constants::ElasticConstants;
-pub use law::{Hyperelastic, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
+pub use fluid::{EquationOfState, Fluid, FluidLaw};
+pub use law::{Hyperelastic, Law, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 pub use neo_hookean::NeoHookean;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use state::{MAX_STATE, StateColumns, StateRows};
@@ -20,5 +22,9 @@ use crate::plugin::Registry;
 
 /// Registers all materials of the engine.
 pub fn register(registry: &mut Registry) {
-    registry.material::<StVenantKirchhoff>().material::<NeoHookean>().material::<DecoupledNeoHookean>();
+    registry
+        .material::<StVenantKirchhoff>()
+        .material::<NeoHookean>()
+        .material::<DecoupledNeoHookean>()
+        .material::<Fluid>();
 }

@@ -1,7 +1,5 @@
 //! Compressible neo-Hookean law with a logarithmic volume term.
 
-use std::sync::Arc;
-
 use glam::DMat3;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -36,7 +34,7 @@ impl MaterialModel for NeoHookean {
     fn build(self) -> Result<Material, ParameterError> {
         ParameterError::require_positive("density", self.density)?;
         let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
-        Ok(Material { density: self.density, law: Arc::new(NeoHookeanLaw(elastic)) })
+        Ok(Material::solid(self.density, NeoHookeanLaw(elastic)))
     }
 }
 

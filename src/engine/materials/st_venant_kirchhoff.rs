@@ -1,7 +1,5 @@
 //! St Venant-Kirchhoff: linear between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
-use std::sync::Arc;
-
 use glam::DMat3;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,7 +35,7 @@ impl MaterialModel for StVenantKirchhoff {
     fn build(self) -> Result<Material, ParameterError> {
         ParameterError::require_positive("density", self.density)?;
         let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
-        Ok(Material { density: self.density, law: Arc::new(StVenantKirchhoffLaw(elastic)) })
+        Ok(Material::solid(self.density, StVenantKirchhoffLaw(elastic)))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::{
-    DecoupledNeoHookean, Material, MaterialModel, NeoHookean, StVenantKirchhoff, StateRows, StressRows,
+    DecoupledNeoHookean, Law, Material, MaterialModel, NeoHookean, StVenantKirchhoff, StateRows, StressRows,
 };
 
 const YOUNG: f64 = 1000.0;
@@ -11,7 +11,8 @@ const POISSON: f64 = 0.3;
 
 fn stress_and_energy(material: &Material, deformation: DMat3) -> (DMat3, f64) {
     let (mut stress, mut energy, mut modulus) = ([DMat3::ZERO], [0.0], [0.0]);
-    material.law.stress(&mut StressRows {
+    let Law::Solid(law) = &material.law else { panic!("a solid") };
+    law.stress(&mut StressRows {
         dt: 0.0,
         deformation: &[deformation],
         stress: &mut stress,

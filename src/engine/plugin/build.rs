@@ -10,6 +10,7 @@ use super::plan::BodyPlan;
 use super::registry::{FormulationEntry, Kind, Registry};
 use super::setup::Setup;
 use super::spawn;
+use crate::materials::{Law, Material};
 use crate::record::{OutputPlan, Recorder};
 use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
 use crate::schedule::{Resources, Schedule};
@@ -142,7 +143,11 @@ fn place_bodies<'r>(
                 continue;
             }
         };
-        let Some((_, material)) = materials.iter().find(|(name, _)| *name == body.material) else { continue };
+        let material = match materials.iter().find(|(name, _)| *name == body.material) {
+            Some((_, material)) => material.clone(),
+            None if scene.materials.contains_key(&body.material) => continue,
+            None => Material::nothing(),
+        };
         room = room.saturating_sub(sites.len());
         let name = formulation.0.name;
         let phase = phases.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
@@ -153,7 +158,9 @@ fn place_bodies<'r>(
             lens.push(0);
             phases.len() - 1
         });
-        material.law.state(&mut phases[phase].1);
+        if let Law::Solid(law) = &material.law {
+            law.state(&mut phases[phase].1);
+        }
         let start = lens[phase];
         lens[phase] += sites.len();
         bodies.push(BodyPlan {
@@ -164,7 +171,7 @@ fn place_bodies<'r>(
             rows: start..lens[phase],
             spacing: body.spacing,
             material_name: body.material.clone(),
-            material: material.clone(),
+            material,
             sites,
             bounds,
             velocity: body.velocity,

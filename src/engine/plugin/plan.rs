@@ -1,9 +1,11 @@
 //! A body between the scene and the world: its particles are placed, its columns not yet made.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use crate::materials::Material;
-use crate::scene::Vec3;
+use super::error::SetupError;
+use crate::materials::{FluidLaw, Law, Material, SolidLaw};
+use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, PhaseId};
 
@@ -32,4 +34,39 @@ pub struct BodyPlan {
     pub bounds: Aabb,
     /// Velocity at the start, m/s.
     pub velocity: Option<Vec3>,
+}
+
+impl BodyPlan {
+    /// The law of the solid that the body is made of.
+    ///
+    /// # Errors
+    /// Its material is not a solid.
+    pub fn solid_law(&self) -> Result<&Arc<dyn SolidLaw>, SetupError> {
+        match &self.material.law {
+            Law::Solid(law) => Ok(law),
+            _ => Err(self.wrong_material("a solid")),
+        }
+    }
+
+    /// The law of the fluid that the body is made of.
+    ///
+    /// # Errors
+    /// Its material is not a fluid.
+    pub fn fluid_law(&self) -> Result<&FluidLaw, SetupError> {
+        match &self.material.law {
+            Law::Fluid(law) => Ok(law),
+            _ => Err(self.wrong_material("a fluid")),
+        }
+    }
+
+    fn wrong_material(&self, wanted: &str) -> SetupError {
+        let Self { name, material_name, formulation, .. } = self;
+        let message = format!(
+            "body `{name}` moves by `{formulation}`, and its material `{material_name}` is {}, not {wanted}",
+            self.material.word()
+        );
+        let help = format!("give {wanted} as `material`, or another `formulation`");
+        let problem = Problem::at_path(format!("bodies[{}].material", self.id.0), message).help(help);
+        SetupError::Problems(vec![problem])
+    }
 }

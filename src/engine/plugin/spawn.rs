@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::builder::SimBuilder;
 use super::plan::BodyPlan;
-use crate::materials::{StateColumns, StateRows};
+use crate::materials::{Law, StateColumns, StateRows};
 use crate::parallel::Split;
 use crate::scene::Dimension;
 use crate::world::{
@@ -85,12 +85,13 @@ fn fill(sim: &SimBuilder<'_>, world: &World, phase: PhaseId, id: &mut u64) {
 
 /// Lets the law of a body fill its state.
 fn start_state(body: &BodyPlan, view: &PhaseView<'_>) {
+    let Law::Solid(law) = &body.material.law else { return };
     let mut columns = ColumnSet::default();
-    body.material.law.state(&mut columns);
+    law.state(&mut columns);
     // A law with too many columns is refused where its formulation is assembled.
     let Some(state) = StateColumns::new(&columns) else { return };
     view.write_bytes_of(state.as_slice(), &mut |bytes| {
         let (_, rows) = StateRows::new(&state, bytes).split(body.rows.start);
-        body.material.law.start(rows.split(body.rows.len()).0);
+        law.start(rows.split(body.rows.len()).0);
     });
 }

@@ -1,12 +1,14 @@
 //! The system of the first pass: every body with its law, its bond terms and the energies that they report.
 
+use std::sync::Arc;
+
 use super::bond_terms::BondTerm;
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
 use super::rows::Site;
 use super::stable_step::StepEstimate;
 use super::stretches::Stretches;
-use crate::materials::{MAX_STATE, Material, StateColumns, StateRows};
+use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows};
 use crate::parallel::{Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
@@ -18,7 +20,7 @@ use crate::world::{
 /// A body as the deformation system sees it.
 pub(super) struct BodyLaw {
     id: BodyId,
-    material: Material,
+    law: Arc<dyn SolidLaw>,
     /// The state columns of its law.
     state: StateColumns,
     pub(super) estimate: StepEstimate,
@@ -40,20 +42,21 @@ pub(super) fn body_law(
         let message = format!("body `{}` has {} bond terms, more than {MAX_TERMS}", body.name, terms.len());
         return Err(SetupError::parameter("", message, "remove plugins that add bond terms"));
     }
-    let material = body.material.clone();
-    let elastic = material.law.elastic();
+    let law = Arc::clone(body.solid_law()?);
+    let elastic = law.elastic();
+    let density = body.material.density;
     let factor: f64 = terms.iter().map(|&k| all[k].term.stiffness_factor()).sum();
     let estimate = StepEstimate {
-        wave: elastic.longitudinal_modulus() / material.density,
-        bond: factor * elastic.young / material.density,
+        wave: elastic.longitudinal_modulus() / density,
+        bond: factor * elastic.young / density,
     };
     let mut columns = ColumnSet::default();
-    material.law.state(&mut columns);
+    law.state(&mut columns);
     let state = StateColumns::new(&columns).ok_or_else(|| {
         let message = format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
         SetupError::parameter("", message, "this is a fault of the material, not of the scene")
     })?;
-    Ok(BodyLaw { id, material, state, estimate, terms, stretch_factor: 1.0 })
+    Ok(BodyLaw { id, law, state, estimate, terms, stretch_factor: 1.0 })
 }
 
 /// Steps between two looks at the stretches: they change slowly against the stable step.
@@ -75,7 +78,7 @@ impl Deformation {
     /// The state columns of all laws.
     pub fn state(&self) -> ColumnSet {
         let mut columns = ColumnSet::default();
-        self.laws.iter().for_each(|law| law.material.law.state(&mut columns));
+        self.laws.iter().for_each(|law| law.law.state(&mut columns));
         columns
     }
 }
@@ -99,7 +102,7 @@ impl Run for Deformation {
             let pass = DeformationPass {
                 bonds,
                 sites,
-                law: &*law.material.law,
+                law: &*law.law,
                 terms: &terms[..law.terms.len()],
                 first_row: rows.start,
                 plane: self.plane,
@@ -117,7 +120,7 @@ impl Run for Deformation {
                 sum = pass.run(written, &mut self.sums);
             });
             law.book(&sum, &self.terms, step.ledger);
-            if sum.inverted > 0 && law.material.law.needs_positive_volume() {
+            if sum.inverted > 0 && law.law.needs_positive_volume() {
                 let particle = sum.inverted - 1 - rows.start;
                 return Err(step.unstable("negative volume (det F <= 0)", law.id, particle));
             }
@@ -176,7 +179,7 @@ impl BodyLaw {
 
     fn refresh(&mut self, gradient: &[DeformationGradient]) {
         let stretches = Stretches::of(gradient);
-        self.stretch_factor = self.material.law.stable_step_factor(stretches.smallest, stretches.largest);
+        self.stretch_factor = self.law.stable_step_factor(stretches.smallest, stretches.largest);
     }
 
     fn limited_by(&self, body: &str) -> String {

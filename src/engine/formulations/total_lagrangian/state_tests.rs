@@ -1,7 +1,5 @@
 //! A law with state sees every accepted step once, whatever else happens.
 
-use std::sync::Arc;
-
 use glam::DMat3;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -29,7 +27,7 @@ impl MaterialModel for Witness {
 
     fn build(self) -> Result<Material, ParameterError> {
         let law = WitnessLaw(ElasticConstants::from_young_poisson(1.0e6, 0.3));
-        Ok(Material { density: self.density, law: Arc::new(law) })
+        Ok(Material::solid(self.density, law))
     }
 }
 
