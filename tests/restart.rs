@@ -2,15 +2,20 @@
 
 mod common;
 
-use common::{all_plugins, simulation};
+use common::{all_plugins, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("state.mlc");
     // The memory of the time step is longer than 500 steps: some restarts fall before, some after it turns over.
-    for (dimension, steps, seed) in [(2, 700u64, 11u64), (2, 700, 12), (3, 200, 13)] {
-        let source = all_plugins(dimension);
+    let scenes = [
+        (all_plugins(2), 700u64, 11u64),
+        (all_plugins(2), 700, 12),
+        (all_plugins(3), 200, 13),
+        (removal(), 300, 14),
+    ];
+    for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);
         let mut whole = simulation(&source);
         whole.run(|sim| sim.clock().step < steps).expect("a run");
@@ -23,11 +28,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         second.restore(&checkpoint).expect("a restart");
         assert_eq!(second.clock().step, break_at);
         second.run(|sim| sim.clock().step < steps).expect("a run");
-        assert_eq!(
-            whole.state_hash(),
-            second.state_hash(),
-            "{dimension} dimensions, break at step {break_at}"
-        );
+        assert_eq!(whole.state_hash(), second.state_hash(), "scene {scene}, break at step {break_at}");
+        assert_eq!(whole.summary().removed_of, second.summary().removed_of);
         assert_eq!(whole.ledger().balance_error().to_bits(), second.ledger().balance_error().to_bits());
     }
 }

@@ -31,6 +31,10 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
         counted(summary.particle_steps_per_second, "particle-steps/s"),
         summary.threads
     );
+    for (body, count) in &summary.removed_of {
+        let of = summary.particles_of.get(body).copied().unwrap_or_default();
+        let _ = writeln!(text, "{count} of {of} particles of `{body}` have been removed");
+    }
     let _ = write!(text, "\n{}", energies(ledger));
     extremes(&mut text, summary);
     list(&mut text, "warnings", &summary.warnings);

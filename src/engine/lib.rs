@@ -26,6 +26,7 @@ pub mod pair;
 pub mod parallel;
 pub mod plugin;
 pub mod record;
+pub mod removal;
 pub mod scene;
 pub mod schedule;
 pub mod shapes;

@@ -42,6 +42,18 @@ pub fn all_plugins(dimension: usize) -> Source {
     Source::new("determinism.ron", text)
 }
 
+/// A body that swings and leaves its domain bit by bit.
+pub fn removal() -> Source {
+    let text = r#"(dimension: Two, gravity: (0.1, -0.2), domain: (min: (-1, -1), max: (1.05, 1), outside: Remove),
+        materials: {"soft": NeoHookean(density: 1, young: 1, poisson: 0.3)},
+        bodies: [(name: "a", material: "soft", shape: Box(min: (0, 0), max: (1.0, 0.4)), spacing: 0.04,
+                  formulation: TotalLagrangian, plugins: [hourglass_control()])],
+        conditions: [InitialVelocity(on: Select(body: "a"), value: ("0.5 + 0.3*x - 0.2*y", "0.2*x"))],
+        plugins: [artificial_viscosity(), local_damping(rate: 0.1)],
+        time: (end: 10.0))"#;
+    Source::new("removal.ron", text)
+}
+
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));

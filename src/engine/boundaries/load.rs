@@ -8,7 +8,7 @@ use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
 use crate::plugin::{Selection, SimBuilder};
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use crate::world::{Force, Velocity};
+use crate::world::{Force, Removed, Velocity};
 
 /// What gives the force on every particle of a part.
 pub(super) trait LoadLaw: Send + 'static {
@@ -53,8 +53,8 @@ pub(super) fn apply(
     let phases = phases_of(selection, sim);
     let forces = vec![Vec::new(); parts.len()];
     let load = Load { label, law: Box::new(law), parts, forces, next: Vec::new() };
-    let system =
-        System::new(Stage::External, label, load).on_phases(phases).reads::<Velocity>().adds::<Force>();
+    let system = System::new(Stage::External, label, load).on_phases(phases);
+    let system = system.reads::<Velocity>().reads::<Removed>().adds::<Force>();
     sim.add_system(declare(system));
 }
 
@@ -82,9 +82,12 @@ impl Run for Load {
             }
             let (view, _) = step.world.body_view(part.body);
             let velocity = view.read::<Velocity>()?;
+            let removed = view.read::<Removed>()?;
             let mut force = view.write::<Force>()?;
             let mut power = 0.0;
-            for ((&row, last), &next) in part.rows.iter().zip(last.iter()).zip(&self.next) {
+            let loaded = part.rows.iter().zip(last.iter()).zip(&self.next);
+            for ((&row, last), &next) in loaded.filter(|((row, _), _)| removed[**row as usize] == Removed::NO)
+            {
                 force[row as usize].0 += next;
                 power += 0.5 * (*last + next).dot(velocity[row as usize].0);
             }

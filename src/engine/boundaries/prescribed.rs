@@ -13,7 +13,7 @@ use super::part::{Part, parts_of, phases_of};
 use crate::integrate::KICK;
 use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Column, Mass, Position, Velocity};
+use crate::world::{Column, Mass, Position, Removed, Velocity};
 
 /// How the value of a condition gives the velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,12 +56,14 @@ pub(super) fn prescribe(
             .on_phases(phases.clone())
             .reads::<Position>()
             .reads::<Mass>()
+            .reads::<Removed>()
             .touches(Velocity::NAME, Mode::Adds),
     );
     sim.add_system(
         System::new(Stage::FinalIntegrate, label, at_end)
             .on_phases(phases)
             .reads::<Mass>()
+            .reads::<Removed>()
             .touches(Velocity::NAME, Mode::Adds)
             .after(KICK),
     );
@@ -120,9 +122,11 @@ impl Run for SetVelocity {
             self.motion.velocities(part, self.end_of_step, step, &mut self.values)?;
             let (view, _) = step.world.body_view(part.body);
             let mass = view.read::<Mass>()?;
+            let removed = view.read::<Removed>()?;
             let mut velocity = view.write::<Velocity>()?;
             let mut gain = 0.0;
-            for (&row, value) in part.rows.iter().zip(&self.values) {
+            let moved = part.rows.iter().zip(&self.values);
+            for (&row, value) in moved.filter(|(row, _)| removed[**row as usize] == Removed::NO) {
                 let v = &mut velocity[row as usize].0;
                 let before = v.length_squared();
                 for axis in (0..3).filter(|&axis| axes[axis]) {

@@ -60,6 +60,7 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     assemble(scene, parsed, &mut sim)?;
+    crate::removal::add_system(&mut sim);
     crate::integrate::add_systems(&mut sim);
     crate::record::watchdog::add_system(&mut sim);
     let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;

@@ -9,7 +9,7 @@ use crate::parallel::Split;
 use crate::scene::Dimension;
 use crate::world::{
     Body, ColumnSet, Force, Mass, Mobility, ParticleId, PhaseId, PhaseView, Position, ReferencePosition,
-    ReferenceVolume, Velocity, World,
+    ReferenceVolume, Removed, Velocity, World,
 };
 
 /// Adds the columns that every phase has.
@@ -22,7 +22,8 @@ pub(super) fn standard_columns(columns: &mut ColumnSet) {
         .add::<Force>()
         .add::<Mass>()
         .add::<Mobility>()
-        .add::<ReferenceVolume>();
+        .add::<ReferenceVolume>()
+        .add::<Removed>();
 }
 
 /// The world with all particles in their places.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::Simulation;
 use crate::parallel::instruction_path;
 use crate::record::output::Extreme;
-use crate::world::BodyId;
+use crate::world::{Body, BodyId, Removed};
 
 /// How a run has ended.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -45,6 +45,8 @@ pub struct Summary {
     pub particles: usize,
     /// Number of particles of each body.
     pub particles_of: BTreeMap<String, usize>,
+    /// Number of particles of each body that have been taken out of the run; bodies that have lost none are left out.
+    pub removed_of: BTreeMap<String, usize>,
     /// Time that passed from the start (or from the checkpoint on) to now, s.
     pub wall_seconds: f64,
     /// Particles times steps per second, since the start or the checkpoint.
@@ -122,6 +124,7 @@ impl Simulation {
             limited_by: self.next_limit.as_ref().map(|limit| limit.by.clone()),
             particles,
             particles_of: bodies().map(|(_, body)| (body.name.clone(), body.rows.len())).collect(),
+            removed_of: self.removed_of(),
             wall_seconds,
             particle_steps_per_second: if wall_seconds > 0.0 { work / wall_seconds } else { 0.0 },
             threads: rayon::current_num_threads(),
@@ -143,6 +146,16 @@ impl Simulation {
                 })
                 .collect(),
         }
+    }
+
+    fn removed_of(&self) -> BTreeMap<String, usize> {
+        let count = |body: &Body| {
+            let removed = self.world.phase(body.phase).read::<Removed>();
+            let gone = |rows: &[Removed]| rows.iter().filter(|row| **row != Removed::NO).count();
+            removed.map_or(0, |removed| gone(&removed[body.rows.clone()]))
+        };
+        let counts = self.world.bodies().iter().map(|body| (body.name.clone(), count(body)));
+        counts.filter(|(_, count)| *count > 0).collect()
     }
 
     fn outcome(&self) -> Outcome {

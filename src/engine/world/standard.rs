@@ -20,6 +20,10 @@ column! {
     pub struct Mass(f64) = "mass", "m", "kg";
     /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
     pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
+    /// Whether the particle has been taken out of the run: [`Removed::NO`] or [`Removed::YES`]. A removed particle stays a
+    /// row that nothing moves: it carries no stress and no force, and lists and sums leave it out. The systems of
+    /// [`removal`](crate::removal) set it, and nothing takes it back.
+    pub struct Removed(u32) = "removed", "-", "1";
     /// Volume in the reference configuration; in two dimensions per metre of thickness.
     pub struct ReferenceVolume(f64) = "reference_volume", "V0", "m^3";
     /// Support radius in the reference configuration: pairs farther apart than the mean of two radii do not interact.
@@ -36,4 +40,11 @@ column! {
     pub struct EquivalentStress(f64) = "equivalent_stress", "q", "Pa";
     /// Temperature.
     pub struct Temperature(f64) = "temperature", "T", "K";
+}
+
+impl Removed {
+    /// The particle takes part in the run.
+    pub const NO: Self = Self(0);
+    /// The particle has been taken out.
+    pub const YES: Self = Self(1);
 }

@@ -116,7 +116,7 @@ impl Bonds {
         }
         self.weights.resize(self.neighbors.len(), 0.0);
         self.weigh(body, first_bond);
-        self.correct(body);
+        self.correct(rows.clone(), body.kernel.dimension(), body.position, body.volume, body.images);
         let free = self.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
         if free == rows.len() {
             return Err(BondError::NoStiffness { most: list.max_count() });
@@ -148,28 +148,39 @@ impl Bonds {
         });
     }
 
-    fn correct(&mut self, body: &BodyBonds<'_>) {
-        let rows = body.rows.clone();
+    /// Makes the moment matrices of the given rows; a neighbour without volume has no part in them, and a row without
+    /// volume has none.
+    pub(super) fn correct(
+        &mut self,
+        rows: Range<usize>,
+        dimension: usize,
+        position: &[DVec3],
+        volume: &[f64],
+        images: &Images,
+    ) {
         let corrected: Vec<(Option<Sym3>, f64)> = rows
             .clone()
             .into_par_iter()
             .map(|i| {
-                let mut moment = MomentMatrix::new(body.kernel.dimension());
+                let mut moment = MomentMatrix::new(dimension);
                 let mut weight_sum = 0.0;
                 for (j, weight) in self.row(i) {
-                    let volume_weight = body.volume[body.images.source(j)] * f64::from(weight);
-                    moment.add(volume_weight, body.images.pair(body.position, i, j));
+                    let volume_weight = volume[images.source(j)] * f64::from(weight);
+                    moment.add(volume_weight, images.pair(position, i, j));
                     weight_sum += volume_weight;
                 }
-                (moment.inverse(), weight_sum)
+                (moment.inverse().filter(|_| volume[i] > 0.0), weight_sum)
             })
             .collect();
+        self.inverse_moment.resize(self.inverse_moment.len().max(rows.end), Sym3::ZERO);
+        self.weight_sum.resize(self.inverse_moment.len(), 0.0);
+        self.free.retain(|&row| !rows.contains(&(row as usize)));
         for (i, (inverse, weight_sum)) in rows.zip(corrected) {
             if inverse.is_none() {
                 self.free.push(u32::try_from(i).unwrap_or(u32::MAX));
             }
-            self.inverse_moment.push(inverse.unwrap_or_default());
-            self.weight_sum.push(weight_sum);
+            self.inverse_moment[i] = inverse.unwrap_or_default();
+            self.weight_sum[i] = weight_sum;
         }
     }
 

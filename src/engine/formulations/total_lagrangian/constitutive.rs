@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::bond_terms::BondTerm;
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
+use super::removed::RemovedRows;
 use super::rows::Site;
 use super::stable_step::StepEstimate;
 use super::stretches::Stretches;
@@ -14,12 +15,12 @@ use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, PhaseId, PhaseView, PiolaStress, Position, ReferencePosition,
-    ReferenceVolume,
+    ReferenceVolume, World,
 };
 
 /// A body as the deformation system sees it.
 pub(super) struct BodyLaw {
-    id: BodyId,
+    pub(super) id: BodyId,
     law: Arc<dyn SolidLaw>,
     /// The state columns of its law.
     state: StateColumns,
@@ -62,17 +63,22 @@ pub(super) fn body_law(
 /// Steps between two looks at the stretches: they change slowly against the stable step.
 const STRETCH_INTERVAL: u64 = 10;
 
+/// The system.
 pub(super) struct Deformation {
-    phase: PhaseId,
-    plane: bool,
-    laws: Vec<BodyLaw>,
+    pub(super) phase: PhaseId,
+    pub(super) plane: bool,
+    pub(super) laws: Vec<BodyLaw>,
     terms: Vec<BodyBondTerm>,
+    /// What the pass has found in each body.
+    pub(super) found: Vec<DeformationSum>,
     sums: Vec<DeformationSum>,
+    pub(super) removed: RemovedRows,
 }
 
 impl Deformation {
     pub fn new(phase: PhaseId, plane: bool, laws: Vec<BodyLaw>, terms: Vec<BodyBondTerm>) -> Self {
-        Self { phase, plane, laws, terms, sums: Vec::new() }
+        let (found, sums, removed) = (Vec::new(), Vec::new(), RemovedRows::default());
+        Self { phase, plane, laws, terms, found, sums, removed }
     }
 
     /// The state columns of all laws.
@@ -81,20 +87,18 @@ impl Deformation {
         self.laws.iter().for_each(|law| law.law.state(&mut columns));
         columns
     }
-}
 
-impl Run for Deformation {
-    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let view = step.world.phase(self.phase);
-        let mut packed = step.resources.get_mut::<PackedRows>();
-        let PackedRows { bonds, images, sites, pair_stress, stable_step, .. } = &mut *packed;
-        pack(&view, &mut sites[..view.len()])?;
+    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    pub(super) fn pass(&mut self, world: &World, packed: &mut PackedRows, dt: f64) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        let PackedRows { bonds, images, sites, pair_stress, .. } = packed;
+        pack(&view, self.removed.rows(), &mut sites[..view.len()])?;
         images.fill_sites(sites);
         let mut gradient = view.write::<DeformationGradient>()?;
         let mut stress = view.write::<PiolaStress>()?;
-        for (law, stable_step) in self.laws.iter_mut().zip(stable_step) {
-            let body = step.world.body(law.id);
-            let rows = body.rows.clone();
+        self.found.clear();
+        for law in &self.laws {
+            let rows = world.body(law.id).rows.clone();
             let mut terms: [&dyn BondTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
             for (slot, &k) in terms.iter_mut().zip(&law.terms) {
                 *slot = &*self.terms[k].term;
@@ -106,7 +110,7 @@ impl Run for Deformation {
                 terms: &terms[..law.terms.len()],
                 first_row: rows.start,
                 plane: self.plane,
-                dt: step.clock.dt,
+                dt,
             };
             let mut sum = DeformationSum::default();
             view.write_bytes_of(law.state.as_slice(), &mut |bytes| {
@@ -119,33 +123,58 @@ impl Run for Deformation {
                 };
                 sum = pass.run(written, &mut self.sums);
             });
-            law.book(&sum, &self.terms, step.ledger);
-            if sum.inverted > 0 && law.law.needs_positive_volume() {
-                let particle = sum.inverted - 1 - rows.start;
-                return Err(step.unstable("negative volume (det F <= 0)", law.id, particle));
-            }
-            if step.clock.step.is_multiple_of(STRETCH_INTERVAL) {
-                law.refresh(&gradient[rows]);
-            }
-            let by = || law.limited_by(&body.name);
-            step.limits.propose(*stable_step * law.stretch_factor, by);
+            self.found.push(sum);
         }
         images.fill_pair_stress(pair_stress);
         Ok(())
     }
 
+    /// Books what the pass has found; stops where a body has turned inside out.
+    pub(super) fn book(&self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for (law, sum) in self.laws.iter().zip(&self.found) {
+            law.book(sum, &self.terms, step.ledger);
+            if sum.inverted > 0 && law.law.needs_positive_volume() {
+                let particle = sum.inverted - 1 - step.world.body(law.id).rows.start;
+                return Err(step.unstable("negative volume (det F <= 0)", law.id, particle));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Run for Deformation {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let resources = step.resources;
+        let mut packed = resources.get_mut::<PackedRows>();
+        if !self.take_up_removed(step, &mut packed)? {
+            self.pass(step.world, &mut packed, step.clock.dt)?;
+            self.book(step)?;
+        }
+        let gradient = step.world.phase(self.phase).read::<DeformationGradient>()?;
+        for (law, stable_step) in self.laws.iter_mut().zip(&packed.stable_step) {
+            let body = step.world.body(law.id);
+            if step.clock.step.is_multiple_of(STRETCH_INTERVAL) {
+                law.refresh(&gradient[body.rows.clone()]);
+            }
+            step.limits.propose(stable_step * law.stretch_factor, || law.limited_by(&body.name));
+        }
+        Ok(())
+    }
+
     fn save(&self) -> Vec<u8> {
-        self.laws.iter().flat_map(|law| law.stretch_factor.to_le_bytes()).collect()
+        let factors: Vec<f64> = self.laws.iter().map(|law| law.stretch_factor).collect();
+        postcard::to_stdvec(&(factors, self.removed.rows())).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let factors = state.as_chunks::<8>();
-        if factors.0.len() != self.laws.len() || !factors.1.is_empty() {
+        let Ok((factors, removed)) = postcard::from_bytes::<(Vec<f64>, Vec<u32>)>(state) else {
+            return false;
+        };
+        if factors.len() != self.laws.len() {
             return false;
         }
-        for (law, bytes) in self.laws.iter_mut().zip(factors.0) {
-            law.stretch_factor = f64::from_le_bytes(*bytes);
-        }
+        self.laws.iter_mut().zip(factors).for_each(|(law, factor)| law.stretch_factor = factor);
+        self.removed = RemovedRows::restored(removed);
         true
     }
 }
@@ -192,7 +221,8 @@ impl BodyLaw {
     }
 }
 
-fn pack(view: &PhaseView<'_>, sites: &mut [Site]) -> Result<(), StepError> {
+/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.
+fn pack(view: &PhaseView<'_>, removed: &[u32], sites: &mut [Site]) -> Result<(), StepError> {
     let position = view.read::<Position>()?;
     let reference = view.read::<ReferencePosition>()?;
     let volume = view.read::<ReferenceVolume>()?;
@@ -203,5 +233,8 @@ fn pack(view: &PhaseView<'_>, sites: &mut [Site]) -> Result<(), StepError> {
             *site = Site::new(reference[k].0, x[k].0, volume[k].0);
         }
     });
+    for &row in removed {
+        sites[row as usize].reference.0[3] = 0.0;
+    }
     Ok(())
 }

@@ -31,6 +31,13 @@ pub(super) struct DeformationSum {
     pub inverted: usize,
 }
 
+impl DeformationSum {
+    /// All that the bonds of the body hold, J.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.terms.iter().sum::<f64>()
+    }
+}
+
 impl BlockSum for DeformationSum {
     fn add(&mut self, next: &Self) {
         self.strain += next.strain;
@@ -124,6 +131,10 @@ impl DeformationPass<'_> {
             state: rows.state,
         });
         let inverse_moment = &bonds.inverse_moment[first..first + n];
+        // A particle without a deformation gradient resists nothing: its bonds would hold it against rotation.
+        for (modulus, inverse) in modulus.iter_mut().zip(inverse_moment) {
+            *modulus = if *inverse == Sym3::ZERO { 0.0 } else { *modulus };
+        }
         run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
         let mut sum = DeformationSum::default();
         for (sum, term) in sum.terms.iter_mut().zip(self.terms) {

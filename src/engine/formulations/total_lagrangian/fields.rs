@@ -24,7 +24,7 @@ fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), Mis
     let (position, reference) = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
     out.extend(input.rows.clone().map(|i| {
         let (mut sum, mut count) = (0.0, 0_u32);
-        for (j, _) in packed.bonds.row(i) {
+        for (j, _) in packed.bonds.row(i).filter(|(j, _)| packed.sites[*j].is_present()) {
             let bond = packed.images.pair(reference, i, j);
             let misfit = gradient[i].0 * bond - packed.images.pair(position, i, j);
             sum += misfit.length_squared() / bond.length_squared();
@@ -35,9 +35,10 @@ fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), Mis
     Ok(())
 }
 
-/// Number of neighbours in the reference configuration.
+/// Number of neighbours in the reference configuration that have not been removed.
 fn neighbors(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
     let packed = input.resources.get::<PackedRows>();
-    out.extend(input.rows.clone().map(|i| packed.bonds.row(i).count() as f64));
+    let present = |(j, _): &(usize, f32)| packed.sites[*j].is_present();
+    out.extend(input.rows.clone().map(|i| packed.bonds.row(i).filter(present).count() as f64));
     Ok(())
 }

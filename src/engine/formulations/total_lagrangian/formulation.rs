@@ -8,7 +8,7 @@ use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::constitutive::{Deformation, body_law};
 use super::images::{Images, MirrorPlane, Repeat};
-use super::internal_force::InternalForce;
+use super::internal_force;
 use super::pairs::BondPairs;
 use super::repeats::repeats_of;
 use super::rows::{PairStress, Site};
@@ -18,10 +18,10 @@ use crate::neighbors::NeighborSearch;
 use crate::pair::add_pair_systems;
 use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
-use crate::schedule::{Mode, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Stage, Step, System};
 use crate::world::{
     BodyId, BodySet, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
-    ReferencePosition, ReferenceVolume, SupportRadius,
+    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
 /// Total-Lagrangian solid: neighbours, weights and corrections stay those of the reference configuration.
@@ -108,13 +108,16 @@ impl Formulation for TotalLagrangian {
             .reads::<Position>()
             .reads::<ReferencePosition>()
             .reads::<ReferenceVolume>()
+            .reads::<Removed>()
+            .reads::<Velocity>()
+            .reads::<Mass>()
             .writes::<DeformationGradient>()
             .writes::<PiolaStress>();
         sim.add_system(state.iter().fold(system, |system, column| system.touches(column.name, Mode::Writes)));
         let gravity = sim.gravity();
         sim.add_system(
             System::new(Stage::Rates, INTERNAL_FORCE, move |step: &mut Step<'_>| {
-                internal_force(step, phase, gravity, plane)
+                internal_force::run(step, phase, gravity, plane)
             })
             .on_phases([phase])
             .reads::<Mass>()
@@ -197,22 +200,5 @@ fn set_up(
     let sites = vec![Site::default(); view.len() + images.len()];
     let pair_stress = vec![PairStress::default(); view.len() + images.len()];
     setup.resources.insert(PackedRows { bonds, images, sites, pair_stress, kernels, stable_step });
-    Ok(())
-}
-
-fn internal_force(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bool) -> Result<(), StepError> {
-    let view = step.world.phase(phase);
-    let packed = step.resources.get::<PackedRows>();
-    let mass = view.read::<Mass>()?;
-    let mut force = view.write::<Force>()?;
-    let pass = InternalForce {
-        bonds: &packed.bonds,
-        sites: &packed.sites,
-        pair_stress: &packed.pair_stress,
-        mass: bytemuck::cast_slice(&mass),
-        gravity,
-        plane,
-    };
-    pass.run(&mut force);
     Ok(())
 }

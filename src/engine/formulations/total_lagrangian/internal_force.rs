@@ -6,9 +6,11 @@
 use glam::DVec3;
 
 use super::bonds::Bonds;
+use super::formulation::PackedRows;
 use super::rows::{PairStress, Site};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
-use crate::world::Force;
+use crate::schedule::{Step, StepError};
+use crate::world::{Force, Mass, PhaseId};
 
 /// The pass over all bodies of the phase.
 pub(super) struct InternalForce<'a> {
@@ -60,7 +62,28 @@ impl PlaneOrSolid for ForceRows<'_> {
                 }
                 sum = a.scale_add(f64::from(weight) * other.reference.0[3], pull, sum);
             }
-            *force = Force(sum.xyz() * site.reference.0[3] + gravity * mass[i]);
+            let volume = site.reference.0[3];
+            // A removed particle has no volume here: nothing acts on it, not even gravity.
+            let weight = if site.is_present() { gravity * mass[i] } else { DVec3::ZERO };
+            *force = Force(sum.xyz() * volume + weight);
         }
     }
+}
+
+/// The system of the pass.
+pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bool) -> Result<(), StepError> {
+    let view = step.world.phase(phase);
+    let packed = step.resources.get::<PackedRows>();
+    let mass = view.read::<Mass>()?;
+    let mut force = view.write::<Force>()?;
+    let pass = InternalForce {
+        bonds: &packed.bonds,
+        sites: &packed.sites,
+        pair_stress: &packed.pair_stress,
+        mass: bytemuck::cast_slice(&mass),
+        gravity,
+        plane,
+    };
+    pass.run(&mut force);
+    Ok(())
 }

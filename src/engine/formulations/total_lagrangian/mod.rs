@@ -13,6 +13,7 @@ mod formulation;
 mod images;
 mod internal_force;
 mod pairs;
+mod removed;
 mod repeats;
 mod rows;
 mod stable_step;

@@ -42,7 +42,9 @@ impl PairRows for BodyPairs<'_> {
         let site = self.sites[i];
         let volume_i = site.reference.0[3];
         pairs.clear();
-        pairs.extend(self.bonds.row(i).map(|(j, weight)| {
+        // Removed particles have no volume, and no pairs.
+        let present = |(j, _): &(usize, f32)| site.is_present() && self.sites[*j].is_present();
+        pairs.extend(self.bonds.row(i).filter(present).map(|(j, weight)| {
             let other = self.sites[j];
             let mirror = self.images.mirror(j);
             let j = self.images.source(j);

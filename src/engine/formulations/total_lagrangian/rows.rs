@@ -25,6 +25,11 @@ impl Site {
             displacement: Lanes4::new(current - reference, 0.0),
         }
     }
+
+    /// Whether it counts in sums over neighbours: a removed particle has no volume here.
+    pub fn is_present(&self) -> bool {
+        self.reference.0[3] > 0.0
+    }
 }
 
 /// The pair stress of a particle, the columns of A_i, and the bond stiffness k_i in the last lane of the first column.

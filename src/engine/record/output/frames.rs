@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
+use super::present::Present;
 use super::track::failed;
 use crate::record::fields::ChosenField;
 use crate::record::trigger::Trigger;
@@ -92,10 +93,13 @@ impl Frames {
         let mut numbers = Vec::new();
         for (k, body) in step.world.bodies().iter().enumerate() {
             let x = step.world.phase(body.phase).read::<Position>()?;
-            positions.push(x[body.rows.clone()].iter().map(|x| x.0.as_vec3().to_array()).collect::<Vec<_>>());
+            let present = Present::of(step.world, BodyId(k))?;
+            let places: Vec<_> = x[body.rows.clone()].iter().map(|x| x.0.as_vec3().to_array()).collect();
+            positions.push(present.keep(places, 1));
             let of_body = self.recorded.iter().filter(|field| field.is_in(BodyId(k)));
             let read = |field: &ChosenField| {
-                field.read_numbers(step.world, step.resources, BodyId(k), body.rows.clone())
+                let numbers = field.read_numbers(step.world, step.resources, BodyId(k), body.rows.clone());
+                numbers.map(|numbers| present.keep(numbers, 1))
             };
             numbers.push(
                 of_body
@@ -126,13 +130,15 @@ impl Frames {
     fn write(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let Some(list) = &mut self.list else { return Ok(()) };
         for (k, body) in step.world.bodies().iter().enumerate() {
+            let present = Present::of(step.world, BodyId(k))?;
             let points: Vec<[f64; 3]> = {
                 let x = step.world.phase(body.phase).read::<Position>()?;
-                x[body.rows.clone()].iter().map(|x| x.0.to_array()).collect()
+                present.keep(x[body.rows.clone()].iter().map(|x| x.0.to_array()).collect(), 1)
             };
             let mut values = Vec::new();
             for field in self.written.iter().filter(|field| field.is_in(BodyId(k))) {
-                values.push((field, field.read(step.world, step.resources, BodyId(k), body.rows.clone())?));
+                let read = field.read(step.world, step.resources, BodyId(k), body.rows.clone())?;
+                values.push((field, present.keep(read, field.width())));
             }
             let arrays: Vec<PointArray<'_>> = values
                 .iter()

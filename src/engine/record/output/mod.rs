@@ -7,6 +7,7 @@ mod due;
 mod folder;
 mod frames;
 mod plan;
+mod present;
 mod system;
 mod table;
 mod track;

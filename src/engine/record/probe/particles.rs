@@ -3,7 +3,7 @@
 use crate::plugin::Selection;
 use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
-use crate::world::{MissingColumn, World};
+use crate::world::{MissingColumn, Removed, World};
 
 /// A field taken over the particles of a selection, each with the same weight.
 pub struct ParticleGauge {
@@ -14,14 +14,18 @@ pub struct ParticleGauge {
 }
 
 impl ParticleGauge {
-    /// Mean or sum, one number for each component. Sums run in row order, body by body.
+    /// Mean or sum over the particles that have not been removed, one number for each component; a mean over none is not
+    /// a number. Sums run in row order, body by body.
     pub(super) fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let width = self.field.width();
         let mut total = vec![0.0; width];
+        let mut count = 0_u32;
         for (body, rows) in &self.selection.parts {
             let (Some(&first), Some(&last)) = (rows.first(), rows.last()) else { continue };
             let values = self.field.read(world, resources, *body, first as usize..last as usize + 1)?;
-            for row in rows {
+            let removed = world.body_view(*body).0.read::<Removed>()?;
+            for row in rows.iter().filter(|row| removed[**row as usize] == Removed::NO) {
+                count += 1;
                 let at = (row - first) as usize * width;
                 for (sum, value) in total.iter_mut().zip(&values[at..at + width]) {
                     *sum += value;
@@ -29,8 +33,7 @@ impl ParticleGauge {
             }
         }
         if !self.sum {
-            let count = self.selection.len() as f64;
-            total.iter_mut().for_each(|value| *value /= count);
+            total.iter_mut().for_each(|value| *value /= f64::from(count));
         }
         Ok(total)
     }

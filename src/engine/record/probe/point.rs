@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::correction::MomentMatrix;
 use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
-use crate::world::{BodyId, MissingColumn, Position, World};
+use crate::world::{BodyId, MissingColumn, Position, Removed, World};
 
 /// Reach of the average over the spacing of a body: less would leave a single particle at a corner.
 const REACH: f64 = 2.0;
@@ -58,8 +58,12 @@ impl PointGauge {
             let found: Vec<(usize, DVec3)> = {
                 let position = world.phase(body.phase).read::<Position>()?;
                 let position: &[Position] = &position;
+                let removed = world.phase(body.phase).read::<Removed>()?;
+                let removed: &[Removed] = &removed;
                 let offset = |row: usize| (row, position[row].0 - self.at);
-                let within = |(_, offset): &(usize, DVec3)| offset.length_squared() < reach * reach;
+                let within = |(row, offset): &(usize, DVec3)| {
+                    offset.length_squared() < reach * reach && removed[*row] == Removed::NO
+                };
                 body.rows.clone().into_par_iter().with_min_len(4096).map(offset).filter(within).collect()
             };
             for (row, offset) in found {

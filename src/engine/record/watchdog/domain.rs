@@ -1,19 +1,15 @@
 //! Particles that leave the domain of the scene.
 
-use glam::DVec3;
-
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::SimBuilder;
-use crate::scene::{self, Dimension, Outside};
+use crate::removal::DomainBox;
+use crate::scene::Outside;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Position};
 
-/// The box in which particles may be, without the sides that they may pass.
+/// The look at the domain of a scene that wants no particle outside.
 pub(super) struct DomainCheck {
-    min: DVec3,
-    max: DVec3,
-    /// Added to the message where the scene wants particles removed.
-    remark: &'static str,
+    domain: DomainBox,
     sums: Vec<FirstOutside>,
 }
 
@@ -29,46 +25,24 @@ impl BlockSum for FirstOutside {
     }
 }
 
-const CANNOT_REMOVE: &str = " (`outside: Remove` asks for its removal, but particles of this formulation are bound to \
-                             their neighbours for good: enlarge the domain)";
-
 impl DomainCheck {
-    /// The check of a scene that has a domain.
-    pub fn of_scene(sim: &mut SimBuilder<'_>) -> Option<Self> {
-        let domain = sim.scene().domain.as_ref()?;
-        let mut min = domain.min.0;
-        let mut max = domain.max.0;
-        let plane = sim.dimension() == Dimension::Two;
-        for axis in [scene::Axis::X, scene::Axis::Y, scene::Axis::Z] {
-            let k = axis.index();
-            if domain.periodic.contains(&axis) || (plane && axis == scene::Axis::Z) {
-                (min[k], max[k]) = (f64::NEG_INFINITY, f64::INFINITY);
-            }
-        }
-        let removes = domain.outside == Outside::Remove;
-        if removes {
-            let bodies: Vec<String> = sim.bodies().iter().map(|body| format!("`{}`", body.name)).collect();
-            sim.warn(format!(
-                "the domain has `outside: Remove`, but particles of {} cannot be removed: one that leaves the domain \
-                 stops the run",
-                bodies.join(", ")
-            ));
-        }
-        Some(Self { min, max, remark: if removes { CANNOT_REMOVE } else { "" }, sums: Vec::new() })
+    /// The check of a scene that has a domain and does not want particles outside removed.
+    pub fn of_scene(sim: &SimBuilder<'_>) -> Option<Self> {
+        let domain = DomainBox::of_scene(sim).filter(|domain| domain.outside == Outside::Error)?;
+        Some(Self { domain, sums: Vec::new() })
     }
 
     /// Looks at all particles.
     pub fn look(&mut self, step: &Step<'_>) -> Result<(), StepError> {
-        let (min, max) = (self.min, self.max);
+        let domain = self.domain;
         for (k, body) in step.world.bodies().iter().enumerate() {
             let position = step.world.phase(body.phase).read::<Position>()?;
             let rows = &position[body.rows.clone()];
-            let inside = |x: &Position| x.0.cmpge(min).all() && x.0.cmple(max).all();
             let first = for_each_block(rows, &mut self.sums, &|start, rows: &[Position]| {
-                FirstOutside(rows.iter().position(|x| !inside(x)).map_or(0, |row| start + row + 1))
+                FirstOutside(rows.iter().position(|x| !domain.contains(x.0)).map_or(0, |row| start + row + 1))
             });
             if let Some(row) = first.0.checked_sub(1) {
-                let what = format!("position {} outside the domain{}", rows[row].0, self.remark);
+                let what = format!("position {} outside the domain", rows[row].0);
                 return Err(step.unstable(&what, BodyId(k), row));
             }
         }

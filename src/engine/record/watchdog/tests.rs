@@ -82,19 +82,6 @@ fn periodic_sides_and_the_third_axis_of_a_plane_are_open() {
 }
 
 #[test]
-fn removal_that_is_not_possible_is_told_at_the_start_and_when_it_is_due() {
-    let scene = "domain: (min: (-1.0, -0.05), max: (2.0, 1.0), outside: Remove), time: (end: 1.0),";
-    let sim = blocks(scene);
-    assert!(
-        sim.warnings()[0].contains("particles of `left`, `right` cannot be removed"),
-        "{:?}",
-        sim.warnings()
-    );
-    let (error, _) = failure(sim);
-    assert!(error.to_string().contains("enlarge the domain"), "{error}");
-}
-
-#[test]
 fn an_unstable_step_is_stopped_by_the_growth_of_energy() {
     // Twice the safe step is above the critical one: the shortest waves grow, from deformations so small that no
     // particle turns inside out before.

@@ -1,0 +1,106 @@
+//! Removed particles leave the bonds: what is left of a neighbourhood is fitted anew, and what the bonds held is booked.
+
+use super::constitutive::Deformation;
+use super::deformation::DeformationSum;
+use super::formulation::PackedRows;
+use super::internal_force::InternalForce;
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{AccountKind, Step, StepError};
+use crate::world::{
+    Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
+};
+
+/// The removed rows that the passes know of.
+#[derive(Default)]
+pub(super) struct RemovedRows {
+    /// Ascending.
+    rows: Vec<u32>,
+    /// Whether the bonds do not know of them yet: after a restart.
+    restored: bool,
+}
+
+impl RemovedRows {
+    /// Those of a checkpoint.
+    pub fn restored(rows: Vec<u32>) -> Self {
+        Self { restored: !rows.is_empty(), rows }
+    }
+
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+}
+
+impl Deformation {
+    /// Takes up what has been removed since the last step; returns whether the pass has been run with it.
+    ///
+    /// The passes run twice from the same places, with the bonds that are gone and without them: what these held leaves
+    /// the books. The second kick of the step uses the new forces, the motion up to here was made by the old ones:
+    /// what that takes from the motion leaves the books with it.
+    pub(super) fn take_up_removed(
+        &mut self,
+        step: &mut Step<'_>,
+        packed: &mut PackedRows,
+    ) -> Result<bool, StepError> {
+        if std::mem::take(&mut self.removed.restored) {
+            self.cut(step.world, packed)?;
+        }
+        let view = step.world.phase(self.phase);
+        let removed = view.read::<Removed>()?;
+        if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
+            return Ok(false);
+        }
+        self.pass(step.world, packed, step.clock.dt)?;
+        self.book(step)?;
+        let held: Vec<f64> = self.found.iter().map(DeformationSum::stored).collect();
+        let before = self.forces(step, packed)?;
+        self.removed.rows.clear();
+        self.removed.rows.extend((0..removed.len() as u32).filter(|&k| removed[k as usize] != Removed::NO));
+        self.cut(step.world, packed)?;
+        // States of laws have advanced by this step already.
+        self.pass(step.world, packed, 0.0)?;
+        self.book(step)?;
+        let after = self.forces(step, packed)?;
+        let velocity = view.read::<Velocity>()?;
+        let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+        for ((law, held), sum) in self.laws.iter().zip(held).zip(&self.found) {
+            let rows = step.world.body(law.id).rows.clone();
+            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            step.ledger.add(account, law.id, held - sum.stored() + 0.5 * step.clock.dt * power);
+        }
+        Ok(true)
+    }
+
+    /// The internal forces of the last pass.
+    fn forces(&self, step: &Step<'_>, packed: &PackedRows) -> Result<Vec<Force>, MissingColumn> {
+        let view = step.world.phase(self.phase);
+        let mut force = vec![Force::default(); view.len()];
+        let mass = view.read::<Mass>()?;
+        InternalForce {
+            bonds: &packed.bonds,
+            sites: &packed.sites,
+            pair_stress: &packed.pair_stress,
+            mass: bytemuck::cast_slice(&mass),
+            gravity: glam::DVec3::ZERO,
+            plane: self.plane,
+        }
+        .run(&mut force);
+        Ok(force)
+    }
+
+    /// Takes the removed particles out of the moment matrices of their neighbours.
+    fn cut(&self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        let reference = view.read::<ReferencePosition>()?;
+        let volume = view.read::<ReferenceVolume>()?;
+        let mut volume: Vec<f64> = volume.iter().map(|volume| volume.0).collect();
+        self.removed.rows.iter().for_each(|&row| volume[row as usize] = 0.0);
+        let dimension = world.dimension().count();
+        let PackedRows { bonds, images, stable_step, .. } = packed;
+        for (law, stable_step) in self.laws.iter().zip(stable_step) {
+            let rows = world.body(law.id).rows.clone();
+            bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, images);
+            *stable_step = bonds.stable_step(rows, dimension, &law.estimate);
+        }
+        Ok(())
+    }
+}
