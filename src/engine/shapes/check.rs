@@ -8,6 +8,7 @@ use super::block::Block;
 use super::cylinder::Cylinder;
 use super::error::{FillError, FillErrorKind};
 use super::half_space::HalfSpace;
+use super::mesh;
 use super::polygon::{Extrusion, Polygon};
 use super::region::Aabb;
 use super::ring::Ring;
@@ -75,6 +76,11 @@ impl Check<'_> {
                 let (from, to) = (self.finite("from", *from)?, self.finite("to", *to)?);
                 self.range("to", 2, from, to)?;
                 Box::new(Extrusion { polygon, from, to })
+            }
+            Shape::Mesh { file, scale } => {
+                self.exists("Mesh", Dimension::Three, "`Polygon`")?;
+                let scale = self.positive("scale", *scale)?;
+                Box::new(mesh::load(self.folder, file, scale).or_else(|kind| self.error("file", kind))?)
             }
             _ => return Err(FillError::new(self.path, FillErrorKind::NoInside)),
         })

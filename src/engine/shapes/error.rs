@@ -1,6 +1,9 @@
 //! What can be wrong with a shape, a spacing or a particle file.
 
+use glam::DVec3;
 use thiserror::Error;
+
+use super::mesh::MeshFault;
 
 /// Why a shape cannot be filled with particles or used as a selection.
 #[derive(Debug, Error)]
@@ -127,13 +130,32 @@ pub enum FillErrorKind {
         /// Allowed number of particles.
         limit: usize,
     },
-    /// A particle file that cannot be opened.
+    /// A particle file or mesh that cannot be opened.
     #[error("cannot read `{file}`: {source}")]
     File {
         /// The file as looked for.
         file: String,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// A mesh that is no solid.
+    #[error("`{file}`: {fault}")]
+    Mesh {
+        /// The file as looked for.
+        file: String,
+        /// What is wrong with it.
+        fault: MeshFault,
+    },
+    /// A mesh too small or too large for the spacing: most likely in another unit.
+    #[error(
+        "the mesh measures {:.3e} x {:.3e} x {:.3e} m, which is {:.3e} spacings of {spacing} m in the longest direction",
+        .extent.x, .extent.y, .extent.z, .extent.max_element() / .spacing
+    )]
+    MeshSize {
+        /// Sides of the box about the mesh \[m\].
+        extent: DVec3,
+        /// Spacing of the particles \[m\].
+        spacing: f64,
     },
     /// A particle file with wrong content.
     #[error("`{file}`, line {line}: {message}")]
@@ -169,6 +191,10 @@ impl FillErrorKind {
             }
             Self::Thin { thickness, .. } => {
                 format!("use a spacing of at most {} m", rounded_down(thickness / 2.0))
+            }
+            Self::Mesh { fault, .. } => fault.help().into(),
+            Self::MeshSize { .. } => {
+                "the unit of a file is not known to it: `scale: 0.001` reads millimetres; or change the spacing".into()
             }
             Self::TooMany { .. } => "use a larger spacing".into(),
             _ => return None,

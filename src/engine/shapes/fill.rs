@@ -10,6 +10,7 @@ use super::error::{FillError, FillErrorKind};
 use super::lattice::Lattice;
 use super::region::Region;
 use super::shape::Shape;
+use super::surface::Surface;
 use super::transform::turned;
 use super::{concentric, morton_order, points, quadrature, relaxed};
 use crate::scene::Dimension;
@@ -82,6 +83,11 @@ impl Filling<'_> {
                 let growth = by.element_product();
                 self.moved(shape, spacing / by.x, &check, growth, |position| about + by * (position - about))
             }
+            Shape::Mesh { .. } => {
+                let region = check.single(shape)?;
+                self.check_size(region.as_ref(), spacing, &check)?;
+                self.of_region(region.as_ref(), spacing, path)
+            }
             _ => self.of_region(shape.region(self.dimension, self.folder, path)?.as_ref(), spacing, path),
         }
     }
@@ -98,6 +104,16 @@ impl Filling<'_> {
         let sites = self.sites(shape, spacing, &check.field("shape"))?;
         let moved = |site: Site| Site { position: to(site.position), volume: growth * site.volume };
         Ok(sites.into_iter().map(moved).collect())
+    }
+
+    /// A mesh that is too small or too large for the spacing is in another unit, more often than not.
+    fn check_size(&self, mesh: &dyn Surface, spacing: f64, check: &Check) -> Result<(), FillError> {
+        let extent = mesh.bounds().extent();
+        let estimate = mesh.volume().unwrap_or(0.0) / spacing.powi(3);
+        if extent.max_element() < 2.0 * spacing || estimate > self.limit as f64 {
+            return Err(FillError::new(check.path, FillErrorKind::MeshSize { extent, spacing }));
+        }
+        Ok(())
     }
 
     fn of_region(&self, region: &dyn Region, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {

@@ -63,6 +63,11 @@ impl Aabb {
         (0..axes).any(|k| self.max[k] <= other.min[k] || other.max[k] <= self.min[k])
     }
 
+    /// Whether the boxes have a point in common.
+    pub(super) fn touches(&self, other: &Self) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// The eight corners \[m\].
     pub(super) fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|n| {

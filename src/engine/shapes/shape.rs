@@ -77,6 +77,14 @@ pub enum Shape {
         /// Upper end, z coordinate \[m\].
         to: f64,
     },
+    /// The inside of a closed triangle mesh (three dimensions).
+    Mesh {
+        /// STL file (ASCII or binary) or OBJ file. Relative to the scene's folder.
+        file: String,
+        /// Length of one unit of the file; 0.001 for a file in millimetres \[m\].
+        #[serde(default = "one")]
+        scale: f64,
+    },
     /// What is in any of the shapes. The lattice of the first one goes on through all.
     Union(Vec<Shape>),
     /// What is in the first shape but not in the second. The lattice is that of the first one.
@@ -119,6 +127,10 @@ pub enum Shape {
         /// ignored. Relative to the scene's folder.
         file: String,
     },
+}
+
+const fn one() -> f64 {
+    1.0
 }
 
 const fn z_axis() -> Vec3 {

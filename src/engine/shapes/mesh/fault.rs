@@ -1,0 +1,92 @@
+//! What can be wrong with a mesh.
+
+use glam::DVec3;
+use thiserror::Error;
+
+/// Why a file is no mesh, or its mesh no solid. Places are in the coordinates of the scene \[m\].
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum MeshFault {
+    /// The name ends neither in `.stl` nor in `.obj`.
+    #[error("the name ends neither in `.stl` nor in `.obj`")]
+    Extension,
+    /// A text that is no STL, or a binary file of the wrong length.
+    #[error(
+        "not an STL file: it does not begin with `solid`, and it has {size} bytes where {expected} are due"
+    )]
+    NotStl {
+        /// Length of the file in bytes.
+        size: usize,
+        /// What a binary file with its number of triangles would have, in bytes.
+        expected: u64,
+    },
+    /// A line that cannot be read.
+    #[error("line {line}: {message}")]
+    Line {
+        /// Line, counted from 1.
+        line: usize,
+        /// What was found and what would be right.
+        message: String,
+    },
+    /// A coordinate that is infinite or not a number.
+    #[error("a coordinate of triangle {0} (counted from 0) is not a finite number")]
+    NotFinite(usize),
+    /// A file without a triangle that has three different corners.
+    #[error("the file has no triangle")]
+    NoTriangle,
+    /// Edges with a triangle on one side only.
+    #[error("the mesh is open: {edges} edges have a triangle on one side only, the first at {at} m")]
+    Open {
+        /// Number of such edges.
+        edges: usize,
+        /// Middle of the first one \[m\].
+        at: DVec3,
+    },
+    /// Edges with more than two triangles.
+    #[error("at {edges} edges of the mesh more than two triangles meet, the first at {at} m")]
+    Crowded {
+        /// Number of such edges.
+        edges: usize,
+        /// Middle of the first one \[m\].
+        at: DVec3,
+    },
+    /// Neighbouring triangles of which one faces outward and the other inward.
+    #[error("the triangles on both sides of {edges} edges face opposite ways, the first at {at} m")]
+    Orientation {
+        /// Number of such edges.
+        edges: usize,
+        /// Middle of the first one \[m\].
+        at: DVec3,
+    },
+    /// Triangles that go through each other.
+    #[error("the mesh goes through itself: {pairs} pairs of triangles cross, the first at {at} m")]
+    Crossing {
+        /// Number of pairs of triangles that cross.
+        pairs: usize,
+        /// Middle of the first triangle that is crossed \[m\].
+        at: DVec3,
+    },
+    /// A closed mesh that holds nothing.
+    #[error("the mesh holds no volume")]
+    NoVolume,
+}
+
+impl MeshFault {
+    /// What would be right.
+    pub(in crate::shapes) fn help(&self) -> &'static str {
+        match self {
+            Self::Extension => "export the part as STL (ASCII or binary) or as OBJ",
+            Self::NotStl { .. } => "export the part again; a transfer as text destroys binary files",
+            Self::Line { .. } | Self::NotFinite(_) | Self::NoTriangle => "export the part again",
+            Self::Open { .. } => {
+                "close the holes where the mesh was made: a solid has two triangles at each edge"
+            }
+            Self::Crowded { .. } => {
+                "parts that share an edge or a face must be joined, or be bodies of their own"
+            }
+            Self::Orientation { .. } => "let the normals be made consistent where the mesh was made",
+            Self::Crossing { .. } => "unite the parts where the mesh was made",
+            Self::NoVolume => "a solid has an inside",
+        }
+    }
+}

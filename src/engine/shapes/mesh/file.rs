@@ -1,0 +1,45 @@
+//! From a file to a checked solid.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::fault::MeshFault;
+use super::solid::MeshSolid;
+use super::{obj, stl};
+use crate::shapes::error::FillErrorKind;
+
+/// Reads a mesh and multiplies its coordinates by `scale` \[m per unit of the file\].
+///
+/// # Errors
+/// The file cannot be read, or its mesh is no solid.
+pub(in crate::shapes) fn load(folder: &Path, file: &str, scale: f64) -> Result<MeshSolid, FillErrorKind> {
+    let full = folder.join(file);
+    let shown = full.display().to_string();
+    let bytes = match std::fs::read(&full) {
+        Ok(bytes) => bytes,
+        Err(source) => return Err(FillErrorKind::File { file: shown, source }),
+    };
+    let extension = full.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let triangles = match extension.as_deref() {
+        Some("stl") => stl::read(&bytes),
+        Some("obj") => obj::read(&String::from_utf8_lossy(&bytes)),
+        _ => Err(MeshFault::Extension),
+    };
+    let scaled = |corners: [DVec3; 3]| corners.map(|corner| scale * corner);
+    let solid = triangles
+        .and_then(|triangles| MeshSolid::new(&triangles.into_iter().map(scaled).collect::<Vec<_>>()));
+    solid.map_err(|fault| FillErrorKind::Mesh { file: shown, fault })
+}
+
+/// Three numbers of a line; further ones are passed over.
+pub(super) fn point<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<DVec3, MeshFault> {
+    let wrong = |message: String| MeshFault::Line { line, message };
+    let mut point = [0.0; 3];
+    let mut found = 0;
+    for (value, word) in point.iter_mut().zip(words) {
+        *value = word.parse().map_err(|_| wrong(format!("expected a number, found `{word}`")))?;
+        found += 1;
+    }
+    if found == 3 { Ok(point.into()) } else { Err(wrong(format!("expected 3 coordinates, found {found}"))) }
+}
