@@ -55,6 +55,8 @@ type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 pub(super) trait ErasedTerm: Send + Sync {
     /// Columns it reads.
     fn access(&self) -> Vec<Access>;
+    /// Whether it gives density rates.
+    fn changes_density(&self) -> bool;
     /// Borrows the columns, adds the term to the chain and goes on with it.
     fn bind(
         &self,
@@ -69,6 +71,10 @@ impl<T: PairTerm> ErasedTerm for T {
         let mut access = T::ReadI::access();
         access.extend(T::ReadJ::access());
         access
+    }
+
+    fn changes_density(&self) -> bool {
+        T::CHANGES_DENSITY
     }
 
     fn bind(

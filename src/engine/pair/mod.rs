@@ -9,6 +9,8 @@ mod read;
 mod term;
 mod work;
 
+pub(crate) use pass::BodyTerms;
 pub use pass::{PairRows, PairSource, add_pair_systems};
 pub use read::ReadSet;
 pub use term::{BodyPairTerm, Pair, PairTerm, Rates};
+pub(crate) use work::add_work_systems;

@@ -12,7 +12,7 @@ use super::work;
 use crate::parallel::{BlockSum, Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, PhaseId};
+use crate::world::{BodyId, Column, DensityRate, Force, PhaseId};
 
 /// Largest number of pair terms on one body.
 pub(super) const MAX_TERMS: usize = 8;
@@ -44,21 +44,23 @@ pub trait PairSource: Send + 'static {
 }
 
 /// Takes the pair terms of the bodies of a phase out of the builder, and adds the pass that runs them after the
-/// system `after`, and the booking of their work. Without terms nothing is added.
+/// system `after`, and the booking of their work. Without terms nothing is added. Returns the account of the first term
+/// that changes the density.
 pub fn add_pair_systems(
     sim: &mut SimBuilder<'_>,
     phase: PhaseId,
     after: &'static str,
     source: impl PairSource,
-) -> Result<(), SetupError> {
+) -> Result<Option<String>, SetupError> {
     let (own, others): (Vec<BodyPairTerm>, Vec<BodyPairTerm>) = sim
         .take_extensions::<BodyPairTerm>()
         .into_iter()
         .partition(|term| term.bodies.iter().any(|id| sim.body(id).phase == phase));
     others.into_iter().for_each(|term| sim.extend(term));
     if own.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
+    let of_density = own.iter().find(|term| term.term.changes_density()).map(|term| term.account.clone());
     let ids: Vec<BodyId> =
         sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id).collect();
     let mut bodies = Vec::new();
@@ -80,17 +82,20 @@ pub fn add_pair_systems(
     let work = PairPass { phase, source, terms, bodies: Arc::clone(&bodies), sums: Vec::new() };
     let mut pass =
         System::new(Stage::Rates, "pair_terms", work).on_phases([phase]).adds::<Force>().after(after);
+    if sim.columns(phase).get(DensityRate::NAME).is_some() {
+        pass = pass.writes::<DensityRate>();
+    }
     for access in read {
         pass = pass.touches(access.column, access.mode);
     }
     sim.add_system(pass);
-    work::add_systems(sim, phase, accounts, bodies);
-    Ok(())
+    work::add_work_systems(sim, phase, accounts, bodies);
+    Ok(of_density)
 }
 
 /// The terms of one body, and the force of each on every particle of it: row by row, one entry a term. The forces are
 /// made anew in every step, so no checkpoint holds them.
-pub(super) struct BodyTerms {
+pub(crate) struct BodyTerms {
     pub id: BodyId,
     pub terms: Vec<usize>,
     pub forces: Vec<DVec3>,
@@ -124,6 +129,8 @@ struct ForceRows<'a> {
     total: &'a mut [Force],
     by_term: &'a mut [DVec3],
     terms: usize,
+    /// Density rates; empty where the phase has none.
+    density: &'a mut [DensityRate],
 }
 
 impl Split for ForceRows<'_> {
@@ -135,7 +142,11 @@ impl Split for ForceRows<'_> {
         let terms = self.terms;
         let (total, total_rest) = self.total.split_at_mut(at);
         let (by_term, by_term_rest) = self.by_term.split_at_mut(at * terms);
-        (Self { total, by_term, terms }, Self { total: total_rest, by_term: by_term_rest, terms })
+        let (density, density_rest) = self.density.split_at_mut(at.min(self.density.len()));
+        (
+            Self { total, by_term, terms, density },
+            Self { total: total_rest, by_term: by_term_rest, terms, density: density_rest },
+        )
     }
 }
 
@@ -143,6 +154,7 @@ impl<S: PairSource> Run for PairPass<S> {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let mut force = view.write::<Force>()?;
+        let mut density = if view.has::<DensityRate>() { Some(view.write::<DensityRate>()?) } else { None };
         let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
         for BodyTerms { id, terms: indices, forces } in bodies.deref_mut() {
             let body = step.world.body(*id);
@@ -153,8 +165,12 @@ impl<S: PairSource> Run for PairPass<S> {
             let sums = &mut self.sums;
             self.source.with_rows(step, *id, &mut |pairs| {
                 bind_all(&terms, &view, None, &mut |chain| {
-                    let written =
-                        ForceRows { total: &mut force[rows.clone()], by_term: forces, terms: terms.len() };
+                    let written = ForceRows {
+                        total: &mut force[rows.clone()],
+                        by_term: forces,
+                        terms: terms.len(),
+                        density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
+                    };
                     fastest = for_each_block(written, sums, &|first, block| {
                         run_block(chain, pairs, rows.start + first, block)
                     });
@@ -183,6 +199,9 @@ fn run_block(chain: &Chain<'_>, pairs: &dyn PairRows, first: usize, block: Force
             let rates = &mut rates[..block.terms];
             chain.row(first + k, row, rates);
             let mut sum = Fastest::default();
+            if let Some(density) = block.density.get_mut(k) {
+                density.0 = rates.iter().map(|rates| rates.density).sum();
+            }
             for (rates, force) in rates.iter().zip(&mut block.by_term[k * block.terms..]) {
                 *force = rates.force;
                 total.0 += rates.force;

@@ -48,6 +48,8 @@ impl Pair {
 pub struct Rates {
     /// Force on i, N. The force on j must be its exact opposite when the roles are swapped.
     pub force: DVec3,
+    /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with [`PairTerm::CHANGES_DENSITY`].
+    pub density: f64,
     /// Rate at which the term damps the velocity of i against fixed neighbours, 1/s: limits the time step.
     pub damping: f64,
     /// Stiffness per mass that the term gives i against fixed neighbours, 1/s2: limits the time step.
@@ -60,6 +62,8 @@ pub trait PairTerm: Send + Sync + 'static {
     type ReadI: ReadSet;
     /// Columns it needs of j.
     type ReadJ: ReadSet;
+    /// Whether the term gives density rates.
+    const CHANGES_DENSITY: bool = false;
 
     /// Adds the contribution of j to the rates of i.
     fn pair(&self, pair: &Pair, i: &Self::ReadI, j: &Self::ReadJ, rates: &mut Rates);

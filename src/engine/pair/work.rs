@@ -12,8 +12,8 @@ use super::pass::{BodyTerms, MAX_TERMS};
 use crate::integrate::{DRIFT, KICK};
 use crate::parallel::{BlockSum, Split, for_each_block};
 use crate::plugin::SimBuilder;
-use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, Mobility, PhaseId, Velocity};
+use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::world::{BodyId, Column, Force, Mobility, PhaseId, Velocity};
 
 /// Power f.v, W, and f.a, W/s, of every term of a body.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,7 +35,7 @@ impl BlockSum for Power {
 type Powers = Arc<Mutex<Vec<(BodyId, Vec<usize>, Power)>>>;
 
 /// Adds the booking of the two kicks.
-pub(super) fn add_systems(
+pub(crate) fn add_work_systems(
     sim: &mut SimBuilder<'_>,
     phase: PhaseId,
     accounts: Vec<String>,
@@ -48,7 +48,8 @@ pub(super) fn add_systems(
     sim.add_system(
         System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)
             .on_phases([phase])
-            .reads::<Velocity>()
+            // Conditions set velocities along axes that no force moves: the order does not matter, `Adds` says so.
+            .touches(Velocity::NAME, Mode::Adds)
             .reads::<Force>()
             .reads::<Mobility>()
             .after(KICK),

@@ -22,6 +22,18 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// `a b + c`, lane by lane.
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
 
+    /// `a / b`, lane by lane.
+    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// Square root, lane by lane.
+    fn sqrt(self, a: Lanes4) -> Lanes4;
+
+    /// `a`, or zero in lanes where it is not above zero.
+    fn or_zero(self, a: Lanes4) -> Lanes4;
+
+    /// Rows and columns exchanged: four records of four numbers become four lanes of each number.
+    fn transpose(self, rows: [Lanes4; 4]) -> [Lanes4; 4];
+
     /// `s a`.
     #[inline(always)]
     fn scale(self, s: f64, a: Lanes4) -> Lanes4 {
@@ -70,6 +82,36 @@ impl Arithmetic for Portable {
             self.mul_add(a.0[3], b.0[3], c.0[3]),
         ])
     }
+
+    #[inline(always)]
+    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0] / b.0[0], a.0[1] / b.0[1], a.0[2] / b.0[2], a.0[3] / b.0[3]])
+    }
+
+    #[inline(always)]
+    fn sqrt(self, a: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0].sqrt(), a.0[1].sqrt(), a.0[2].sqrt(), a.0[3].sqrt()])
+    }
+
+    #[inline(always)]
+    fn or_zero(self, a: Lanes4) -> Lanes4 {
+        Lanes4([above_zero(a.0[0]), above_zero(a.0[1]), above_zero(a.0[2]), above_zero(a.0[3])])
+    }
+
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d]: [Lanes4; 4]) -> [Lanes4; 4] {
+        [
+            Lanes4([a.0[0], b.0[0], c.0[0], d.0[0]]),
+            Lanes4([a.0[1], b.0[1], c.0[1], d.0[1]]),
+            Lanes4([a.0[2], b.0[2], c.0[2], d.0[2]]),
+            Lanes4([a.0[3], b.0[3], c.0[3], d.0[3]]),
+        ]
+    }
+}
+
+#[inline(always)]
+fn above_zero(x: f64) -> f64 {
+    if x > 0.0 { x } else { 0.0 }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -105,6 +147,37 @@ mod v3 {
         #[inline(always)]
         fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
+        }
+
+        #[inline(always)]
+        fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast::<f64x4, Lanes4>(self.div_f64x4(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn sqrt(self, a: Lanes4) -> Lanes4 {
+            cast(self.avx._mm256_sqrt_pd(cast(a)))
+        }
+
+        #[inline(always)]
+        fn or_zero(self, a: Lanes4) -> Lanes4 {
+            // Where an operand is not a number the instruction gives the second one, zero.
+            cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::default())))
+        }
+
+        #[inline(always)]
+        fn transpose(self, [a, b, c, d]: [Lanes4; 4]) -> [Lanes4; 4] {
+            let avx = self.avx;
+            let (low_ab, high_ab) =
+                (avx._mm256_unpacklo_pd(cast(a), cast(b)), avx._mm256_unpackhi_pd(cast(a), cast(b)));
+            let (low_cd, high_cd) =
+                (avx._mm256_unpacklo_pd(cast(c), cast(d)), avx._mm256_unpackhi_pd(cast(c), cast(d)));
+            [
+                cast(avx._mm256_permute2f128_pd::<0x20>(low_ab, low_cd)),
+                cast(avx._mm256_permute2f128_pd::<0x20>(high_ab, high_cd)),
+                cast(avx._mm256_permute2f128_pd::<0x31>(low_ab, low_cd)),
+                cast(avx._mm256_permute2f128_pd::<0x31>(high_ab, high_cd)),
+            ]
         }
     }
 }

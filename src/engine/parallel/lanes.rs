@@ -18,6 +18,18 @@ impl Lanes4 {
         Self([v.x, v.y, v.z, last])
     }
 
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn splat(value: f64) -> Self {
+        Self([value; 4])
+    }
+
+    /// Sum of the lanes, in a fixed order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]) + (self.0[2] + self.0[3])
+    }
+
     /// The first three lanes.
     #[inline(always)]
     pub fn xyz(self) -> DVec3 {

@@ -52,7 +52,8 @@ fn build_in(
         let problem = Problem::at_path("contacts[0]", "contact between bodies is not there yet");
         return Err(vec![problem.help("a later version will have it; leave `contacts` out until then")]);
     }
-    let (bodies, phases, parsed) = place_bodies(scene, source, registry)?;
+    let (mut bodies, phases, parsed) = place_bodies(scene, source, registry)?;
+    crate::formulations::fluid::estimate_sound_speeds(&mut bodies, scene)?;
     let overlaps = overlap::problems(&bodies);
     if !overlaps.is_empty() {
         return Err(overlaps);
@@ -60,6 +61,7 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     assemble(scene, parsed, &mut sim)?;
+    crate::formulations::couple(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);
     crate::integrate::add_systems(&mut sim);
     crate::record::watchdog::add_system(&mut sim);

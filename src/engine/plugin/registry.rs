@@ -56,12 +56,10 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: [(Kind, &str); 13] = [
+const LATER: [(Kind, &str); 11] = [
     (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
-    (Kind::Formulation, "Fluid"),
     (Kind::Formulation, "Rigid"),
-    (Kind::Formulation, "Wall"),
     (Kind::Material, "J2"),
     (Kind::Material, "JohnsonCook"),
     (Kind::Plugin, "hessian_stabilization"),

@@ -1,4 +1,4 @@
-//! The columns that every solid phase shares, and the state of materials, of which a phase has what its materials need.
+//! The columns that the formulations of the engine share, and the state of materials, of which a phase has what its materials need.
 
 use glam::{DMat3, DVec3};
 
@@ -30,6 +30,12 @@ column! {
     pub struct SupportRadius(f64) = "support_radius", "H", "m";
     /// Deformation gradient, F = dx/dX.
     pub struct DeformationGradient(DMat3) = "deformation_gradient", "F", "1";
+    /// Density of a fluid.
+    pub struct Density(f64) = "density", "rho", "kg/m^3";
+    /// Rate of change of the density of a fluid by pair terms, beside that of the flow.
+    pub struct DensityRate(f64) = "density_rate", "drho/dt", "kg/(m^3 s)";
+    /// Pressure of a fluid, or of the fluid beside a wall.
+    pub struct Pressure(f64) = "pressure", "p", "Pa";
     /// First Piola-Kirchhoff stress, P = J sigma F^-T.
     pub struct PiolaStress(DMat3) = "piola_stress", "P", "Pa";
     /// Accumulated equivalent plastic strain, the integral of sqrt(2/3 D_p : D_p).

@@ -124,7 +124,8 @@ impl Formulation for TotalLagrangian {
             .touches("pair_stress", Mode::Reads)
             .writes::<Force>(),
         );
-        add_pair_systems(sim, phase, INTERNAL_FORCE, BondPairs { phase })
+        add_pair_systems(sim, phase, INTERNAL_FORCE, BondPairs { phase })?;
+        Ok(())
     }
 }
 

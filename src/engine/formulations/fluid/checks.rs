@@ -1,0 +1,100 @@
+//! What must hold between fluids and walls before anything runs.
+
+use glam::DVec3;
+
+use super::cloud::FlowCloud;
+use crate::linalg::{Eigen, Sym3};
+use crate::neighbors::{Cloud, NeighborList, Periodic};
+use crate::plugin::{BodyPlan, SetupError, SimBuilder};
+use crate::scene::Problem;
+
+/// Part of the particles of a wall that may sit where it is thinner than the support: sharp edges have some.
+const THIN_SHARE: f64 = 0.05;
+
+fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupError {
+    let path = format!("bodies[{}].{field}", body.id.0);
+    SetupError::Problems(vec![Problem::at_path(path, message).help(help)])
+}
+
+/// An error where walls hold no fluid and no contact names them.
+pub(super) fn walls_have_fluid(walls: &[super::wall::WallBody], sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+    for wall in walls {
+        let body = sim.body(wall.id);
+        let touches = |contact: &crate::scene::Contact| {
+            contact.between.0 == body.name || contact.between.1 == body.name
+        };
+        if !sim.scene().contacts.iter().any(touches) {
+            let message = format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
+            let help = "add a body with `formulation: Fluid`, or a contact of the wall with another body";
+            return Err(fault(body, "formulation", message, help));
+        }
+    }
+    Ok(())
+}
+
+/// An error where a wall is so coarse or so thin that the fluid would see through it.
+pub(super) fn wall_is_thick(
+    body: &BodyPlan,
+    spacing: f64,
+    support: f64,
+    periodic: &Periodic,
+) -> Result<(), SetupError> {
+    if body.spacing > spacing * (1.0 + 1e-9) {
+        let message = format!(
+            "the particles of wall `{}` are {} m apart, farther than those of the fluid, {spacing} m",
+            body.name, body.spacing
+        );
+        return Err(fault(body, "spacing", message, "give the wall the spacing of the fluid, or a smaller one"));
+    }
+    let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+    let list = NeighborList::reference(Cloud::uniform(&positions, support), periodic)
+        .map_err(|error| SetupError::internal(&error))?;
+    let thickness = |i: usize| {
+        let row = || list.row(i).iter().map(|&j| periodic.minimal_image(positions[j as usize] - positions[i]));
+        let spread = row().fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
+        let plane = positions.iter().all(|x| x.z == positions[0].z);
+        // In a plane the third axis has no spread: it is not a side of the wall.
+        let spread = if plane { Sym3 { zz: 2.0 * (spread.xx + spread.yy) + 1.0, ..spread } } else { spread };
+        let across = Eigen::new(&spread).vectors.col(0);
+        let (low, high) = row().map(|x| x.dot(across)).fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
+        high - low + body.spacing
+    };
+    let thin: Vec<(f64, DVec3)> = (0..positions.len())
+        .map(|i| (thickness(i), positions[i]))
+        .filter(|(thickness, _)| *thickness < support - 0.25 * body.spacing)
+        .collect();
+    if thin.len() as f64 <= THIN_SHARE * positions.len() as f64 {
+        return Ok(());
+    }
+    let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });
+    let layers = (support / body.spacing - 1e-9).ceil();
+    let message = format!(
+        "wall `{}` is {:.0} layers of particles thick at {at}: a fluid of support {support} m sees through it",
+        body.name,
+        least / body.spacing
+    );
+    let help = format!("make it at least {layers} layers thick, {} m", layers * body.spacing);
+    Err(fault(body, "shape", message, &help))
+}
+
+/// An error where a fluid starts faster than its sound.
+pub(super) fn flow_is_slow(cloud: &FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
+    for group in &cloud.groups {
+        let Some(state) = group.fluid() else { break };
+        let view = world.phase(group.phase);
+        let velocity = view.read::<crate::world::Velocity>().map_err(|error| SetupError::internal(&error))?;
+        let fastest = velocity[group.rows.clone()].iter().map(|v| v.0.length()).fold(0.0, f64::max);
+        if fastest >= state.sound_speed {
+            let body = world.body(group.body);
+            let message = format!(
+                "the fluid `{}` starts with {fastest} m/s, and its speed of sound is {} m/s",
+                body.name, state.sound_speed
+            );
+            let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
+            return Err(SetupError::Problems(vec![
+                problem.help("give ten times the largest speed of the flow as `sound_speed`"),
+            ]));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,164 @@
+//! All particles that a fluid meets, as one cloud: the fluids first, then what bounds them.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::kernel::FluidKernel;
+use super::pairs::FlowPairs;
+use super::record::{Periods, Record};
+use crate::materials::EquationOfState;
+use crate::parallel::for_each_block;
+use crate::world::{
+    BodyId, Density, Mass, MissingColumn, PhaseId, Position, Pressure, ReferenceVolume, Removed, Velocity,
+    World,
+};
+
+/// The equation of state of a body, with its constants.
+#[derive(Clone, Copy, Debug)]
+pub struct FluidState {
+    /// Density at zero pressure rho_0, kg/m3.
+    pub density: f64,
+    /// Speed of sound c_0, m/s.
+    pub sound_speed: f64,
+    /// Dynamic viscosity mu, Pa s.
+    pub viscosity: f64,
+    /// Pressure as a function of density.
+    pub eos: EquationOfState,
+}
+
+/// What the particles of a group are to the flow.
+#[derive(Clone, Copy, Debug)]
+pub enum Role {
+    /// They flow.
+    Fluid(FluidState),
+    /// They bound the flow.
+    Boundary(Surface),
+}
+
+/// What the surface of a boundary does to the fluid.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Whether the fluid sticks to it.
+    pub no_slip: bool,
+    /// Whether its pressure may be negative.
+    pub suction: bool,
+    /// Velocity of the surface beside that of the particles, m/s.
+    pub velocity: DVec3,
+}
+
+/// The particles of one body.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Body.
+    pub body: BodyId,
+    /// Its phase.
+    pub phase: PhaseId,
+    /// Its rows in the phase.
+    pub rows: Range<usize>,
+    /// Its rows in the cloud.
+    pub cloud: Range<usize>,
+    /// What it is to the flow.
+    pub role: Role,
+}
+
+impl Group {
+    /// The state of a fluid.
+    pub fn fluid(&self) -> Option<&FluidState> {
+        match &self.role {
+            Role::Fluid(state) => Some(state),
+            Role::Boundary(_) => None,
+        }
+    }
+}
+
+/// The cloud: what the systems of a flow share. It is derived from the columns.
+pub struct FlowCloud {
+    /// One group for every body: fluids first, each in the order of the scene.
+    pub groups: Vec<Group>,
+    /// Number of fluid particles.
+    pub fluid: usize,
+    /// Kernel.
+    pub kernel: FluidKernel,
+    pub(super) plane: bool,
+    pub(super) periods: Periods,
+    pub(super) positions: Vec<DVec3>,
+    pub(super) records: Vec<Record>,
+    pub(super) pairs: FlowPairs,
+}
+
+impl FlowCloud {
+    /// Takes positions out of the columns.
+    pub(super) fn read_positions(&mut self, world: &World) -> Result<(), MissingColumn> {
+        for group in &self.groups {
+            let position = world.phase(group.phase).read::<Position>()?;
+            let rows = (&mut self.positions[group.cloud.clone()], &position[group.rows.clone()]);
+            for_each_block(rows, &mut Vec::new(), &|_, (to, from): (&mut [DVec3], &[Position])| {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.0);
+            });
+        }
+        Ok(())
+    }
+
+    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without.
+    pub(super) fn pack(&mut self, world: &World) -> Result<(), MissingColumn> {
+        use crate::parallel::Lanes4;
+        for group in &self.groups {
+            let view = world.phase(group.phase);
+            let velocity = view.read::<Velocity>()?;
+            let (x, v) = (&self.positions[group.cloud.clone()], &velocity[group.rows.clone()]);
+            let records = &mut self.records[group.cloud.clone()];
+            if group.fluid().is_some() {
+                let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
+                let (pressure, removed) = (view.read::<Pressure>()?, view.read::<Removed>()?);
+                let rows = group.rows.clone();
+                let slices = (
+                    records,
+                    x,
+                    v,
+                    &mass[rows.clone()],
+                    &density[rows.clone()],
+                    &pressure[rows.clone()],
+                    &removed[rows],
+                );
+                type Rows<'a> = (
+                    &'a mut [Record],
+                    &'a [DVec3],
+                    &'a [Velocity],
+                    &'a [Mass],
+                    &'a [Density],
+                    &'a [Pressure],
+                    &'a [Removed],
+                );
+                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, m, rho, p, removed): Rows<'_>| {
+                    for (k, out) in out.iter_mut().enumerate() {
+                        let volume = if removed[k] == Removed::NO { m[k].0 / rho[k].0 } else { 0.0 };
+                        out.place = Lanes4::new(x[k], volume);
+                        out.motion = Lanes4::new(v[k].0, p[k].0);
+                    }
+                });
+            } else {
+                let volume = view.read::<ReferenceVolume>()?;
+                let slices = (records, x, v, &volume[group.rows.clone()]);
+                type Rows<'a> = (&'a mut [Record], &'a [DVec3], &'a [Velocity], &'a [ReferenceVolume]);
+                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, volume): Rows<'_>| {
+                    for (k, out) in out.iter_mut().enumerate() {
+                        out.place = Lanes4::new(x[k], volume[k].0);
+                        out.motion = Lanes4::new(v[k].0, 0.0);
+                    }
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of directed pairs in the lists.
+    pub fn pairs(&self) -> usize {
+        self.pairs.fluid.pairs() + self.pairs.boundary.pairs()
+    }
+
+    /// How often the lists have been built.
+    pub fn builds(&self) -> u64 {
+        self.pairs.builds
+    }
+}

@@ -1,0 +1,111 @@
+//! The density of fluids at the end of the step, by continuity.
+
+use super::cloud::{FlowCloud, FluidState};
+use super::compression::Compression;
+use crate::parallel::{BlockSum, for_each_block};
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::world::{Density, DensityRate, Mass, Removed};
+
+/// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
+pub(super) struct Continuity {
+    /// Account of the energy that pair terms take out by changing the density; none where no term does.
+    pub account: Option<String>,
+    pub compression: Vec<f64>,
+    pub sums: Vec<Change>,
+}
+
+/// What a block learns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Change {
+    /// Energy of compression that pair terms take out, J.
+    dissipated: f64,
+    /// Energy of compression that leaves with removed particles, J.
+    removed: f64,
+    /// First row, counted from one, whose density is not above zero.
+    broken: usize,
+}
+
+impl BlockSum for Change {
+    fn add(&mut self, next: &Self) {
+        self.dissipated += next.dissipated;
+        self.removed += next.removed;
+        if self.broken == 0 {
+            self.broken = next.broken;
+        }
+    }
+}
+
+impl Run for Continuity {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let dt = step.clock.dt;
+        if dt == 0.0 {
+            return Ok(());
+        }
+        let cloud = step.resources.get::<FlowCloud>();
+        self.compression.resize(cloud.fluid, 0.0);
+        Compression { cloud: &cloud, dt }.run(&mut self.compression);
+        let by_terms = self.account.is_some();
+        for group in &cloud.groups {
+            let Some(state) = group.fluid() else { break };
+            let view = step.world.phase(group.phase);
+            let mut density = view.write::<Density>()?;
+            let (rate, mass) = (view.read::<DensityRate>()?, view.read::<Mass>()?);
+            let removed = view.read::<Removed>()?;
+            let rows = group.rows.clone();
+            let slices = (
+                &mut density[rows.clone()],
+                &self.compression[group.cloud.clone()],
+                &rate[rows.clone()],
+                &mass[rows.clone()],
+                &removed[rows],
+            );
+            let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
+                advance(state, dt, by_terms, first, rows)
+            });
+            if change.broken > 0 {
+                return Err(step.unstable("density is not above zero", group.body, change.broken - 1));
+            }
+            if change.removed != 0.0 {
+                let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.removed);
+            }
+            if let Some(name) = &self.account {
+                let account = step.ledger.account(name, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.dissipated);
+            }
+        }
+        Ok(())
+    }
+}
+
+type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'a [Removed]);
+
+fn advance(
+    state: &FluidState,
+    dt: f64,
+    by_terms: bool,
+    first: usize,
+    (density, compression, rate, mass, removed): Rows<'_>,
+) -> Change {
+    let mut change = Change::default();
+    let energy = |rho| state.eos.energy(rho, state.density, state.sound_speed);
+    for (k, rho) in density.iter_mut().enumerate() {
+        if removed[k] != Removed::NO {
+            change.removed += mass[k].0 * energy(rho.0);
+            rho.0 = state.density;
+            continue;
+        }
+        let half = -0.5 * dt * compression[k];
+        let flow = rho.0 * (1.0 + half) / (1.0 - half);
+        rho.0 = flow;
+        if by_terms {
+            rho.0 += dt * rate[k].0;
+            change.dissipated += mass[k].0 * (energy(flow) - energy(rho.0));
+        }
+        if change.broken == 0 && !(rho.0 > 0.0 && rho.0.is_finite()) {
+            change.broken = first + k + 1;
+        }
+    }
+    change
+}

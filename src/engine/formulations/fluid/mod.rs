@@ -1,0 +1,35 @@
+//! Weakly compressible fluids, and the walls that bound them.
+//!
+//! A step is two passes over pairs: the rate of compression at the middle of the step gives density and pressure at its
+//! end, then pressure and viscosity give the force. Between the two, walls take their pressure from the fluid beside
+//! them (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075). Fluids and boundaries are packed into one cloud with
+//! one search for neighbours; every pair force has its exact opposite on the other particle.
+
+mod assemble;
+mod checks;
+mod cloud;
+mod compression;
+mod density;
+mod fluid;
+mod force;
+mod kernel;
+mod neighbors;
+mod pair_force;
+mod pair_rows;
+mod pairs;
+mod record;
+mod sound_speed;
+mod start;
+mod state;
+mod wall;
+mod wall_pressure;
+mod wall_state;
+
+pub use assemble::add_systems;
+pub use cloud::{FlowCloud, FluidState, Group, Role, Surface};
+pub use fluid::Fluid;
+pub use force::FLUID_FORCE;
+pub use kernel::FluidKernel;
+pub use record::Record;
+pub use sound_speed::estimate as estimate_sound_speeds;
+pub use wall::{Slip, Wall};

@@ -1,0 +1,66 @@
+//! The neighbour lists of a flow: of every fluid particle among all particles, of every boundary particle among the
+//! fluid.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+
+/// Lists that hold every pair within the support as long as no particle has moved more than half the skin.
+#[derive(Debug)]
+pub(super) struct FlowPairs {
+    support: f64,
+    skin: f64,
+    periodic: Periodic,
+    search: NeighborSearch,
+    /// Neighbours of each fluid particle, itself included, as rows of the cloud.
+    pub fluid: NeighborList,
+    /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
+    pub boundary: NeighborList,
+    /// Positions that the lists were built from, m; empty where they have to be built.
+    pub built: Vec<DVec3>,
+    /// Number of builds.
+    pub builds: u64,
+}
+
+impl FlowPairs {
+    pub fn new(support: f64, skin: f64, periodic: Periodic) -> Self {
+        Self {
+            support,
+            skin,
+            periodic,
+            search: NeighborSearch::default(),
+            fluid: NeighborList::default(),
+            boundary: NeighborList::default(),
+            built: Vec::new(),
+            builds: 0,
+        }
+    }
+
+    pub fn periodic(&self) -> &Periodic {
+        &self.periodic
+    }
+
+    /// Whether a particle is farther than half the skin from where it was when the lists were built, or they never were.
+    pub fn is_stale(&self, positions: &[DVec3]) -> bool {
+        let limit = 0.25 * self.skin * self.skin;
+        let periodic = &self.periodic;
+        self.built.len() != positions.len()
+            || self.built.par_iter().with_min_len(4096).zip(positions).any(|(then, now)| {
+                let moved = periodic.minimal_image(*now - *then).length_squared();
+                moved > limit || moved.is_nan()
+            })
+    }
+
+    /// Builds the lists; the first `fluid` positions are those of the fluid.
+    pub fn build(&mut self, positions: &[DVec3], fluid: usize) -> Result<(), NeighborError> {
+        self.built.clear();
+        let cloud = |positions| Cloud::uniform(positions, self.support);
+        let (all, wet, dry) = (cloud(positions), cloud(&positions[..fluid]), cloud(&positions[fluid..]));
+        self.search.between(wet, all, self.skin, &self.periodic, &mut self.fluid)?;
+        self.search.between(dry, wet, self.skin, &self.periodic, &mut self.boundary)?;
+        self.built.extend_from_slice(positions);
+        self.builds += 1;
+        Ok(())
+    }
+}

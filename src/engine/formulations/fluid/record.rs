@@ -1,0 +1,132 @@
+//! What the passes over pairs read per particle: one cache line, packed from the columns in every step.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use crate::parallel::{Arithmetic, Lanes4};
+
+/// A particle as its neighbours see it.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub struct Record {
+    /// Position x, m, and volume V, m3.
+    pub place: Lanes4,
+    /// Velocity v, m/s, and pressure p, Pa.
+    pub motion: Lanes4,
+}
+
+impl Record {
+    /// Position, m.
+    #[inline(always)]
+    pub fn position(&self) -> DVec3 {
+        self.place.xyz()
+    }
+
+    /// Volume, m3.
+    #[inline(always)]
+    pub fn volume(&self) -> f64 {
+        self.place.0[3]
+    }
+
+    /// Velocity, m/s.
+    #[inline(always)]
+    pub fn velocity(&self) -> DVec3 {
+        self.motion.xyz()
+    }
+
+    /// Pressure, Pa.
+    #[inline(always)]
+    pub fn pressure(&self) -> f64 {
+        self.motion.0[3]
+    }
+}
+
+/// Periods of the domain, zero along axes that do not repeat.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Periods {
+    pub length: [f64; 3],
+    pub inverse: [f64; 3],
+}
+
+impl Periods {
+    pub fn any(&self) -> bool {
+        self.length != [0.0; 3]
+    }
+}
+
+/// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer.
+const SHIFT: f64 = 6755399441055744.0;
+
+/// Four neighbours of a particle: differences to it.
+#[derive(Clone, Copy)]
+pub(super) struct Four<const D: usize> {
+    /// x_ij per axis.
+    pub x: [Lanes4; D],
+    /// v_ij per axis.
+    pub v: [Lanes4; D],
+    /// V_j.
+    pub volume: Lanes4,
+    /// p_j.
+    pub pressure: Lanes4,
+}
+
+/// Neighbours j of a row, four at a time; the last ones are filled up with i itself, whose differences are zero.
+#[inline(always)]
+pub(super) fn padded(chunk: &[u32], i: usize) -> [usize; 4] {
+    if let [j, k, l, m] = *chunk {
+        return [j as usize, k as usize, l as usize, m as usize];
+    }
+    let mut j = [i; 4];
+    for (to, &from) in j.iter_mut().zip(chunk) {
+        *to = from as usize;
+    }
+    j
+}
+
+impl<const D: usize> Four<D> {
+    /// Reads four neighbours.
+    #[inline(always)]
+    pub fn gather<A: Arithmetic, const P: bool>(
+        a: A,
+        records: &[Record],
+        own: &Record,
+        [j, k, l, m]: [usize; 4],
+        periods: &Periods,
+    ) -> Self {
+        let r = [&records[j], &records[k], &records[l], &records[m]];
+        let place = a.transpose([r[0].place, r[1].place, r[2].place, r[3].place]);
+        let motion = a.transpose([r[0].motion, r[1].motion, r[2].motion, r[3].motion]);
+        let mut x = [Lanes4::default(); D];
+        let mut v = [Lanes4::default(); D];
+        for axis in 0..D {
+            x[axis] = a.minus(place[axis], Lanes4::splat(own.place.0[axis]));
+            v[axis] = a.minus(motion[axis], Lanes4::splat(own.motion.0[axis]));
+            if P {
+                let shift = Lanes4::splat(SHIFT);
+                let turns = a.minus(a.scale_add(periods.inverse[axis], x[axis], shift), shift);
+                x[axis] = a.scale_add(-periods.length[axis], turns, x[axis]);
+            }
+        }
+        Self { x, v, volume: place[3], pressure: motion[3] }
+    }
+}
+
+/// Scalar products of four pairs of vectors.
+#[inline(always)]
+pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lanes4; D]) -> Lanes4 {
+    let mut sum = a.times(b[0], c[0]);
+    for k in 1..D {
+        sum = a.times_add(b[k], c[k], sum);
+    }
+    sum
+}
+
+/// The vector of the sums of the lanes of each axis.
+#[inline(always)]
+pub(super) fn sums<const D: usize>(v: &[Lanes4; D]) -> DVec3 {
+    let mut out = DVec3::ZERO;
+    for axis in 0..D {
+        out[axis] = v[axis].sum();
+    }
+    out
+}

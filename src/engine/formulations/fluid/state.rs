@@ -1,0 +1,109 @@
+//! Pressure of fluids by their equation of state, and the energy of their compression.
+
+use glam::DVec3;
+
+use super::cloud::{FlowCloud, FluidState};
+use super::record::Record;
+use crate::parallel::{BlockSum, for_each_block};
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::world::{Density, Mass, Pressure, Removed};
+
+/// Speed of the flow over that of sound above which density changes are no longer small.
+const FAST: f64 = 0.1;
+/// Stable step in units of h / (c_0 + v). A tank at rest is stable up to 1.6, and grows at once at 1.8.
+const COURANT: f64 = 0.6;
+/// Stable step in units of rho h^2 / mu.
+const VISCOUS: f64 = 0.125;
+
+/// Sets pressure and volume from the density.
+pub(super) struct EquationOfState {
+    /// Bodies whose speed the user has been warned of.
+    pub warned: Vec<bool>,
+    pub sums: Vec<StateSum>,
+}
+
+/// What a block learns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StateSum {
+    /// Energy of compression, J.
+    energy: f64,
+    /// Largest squared speed, m2/s2.
+    speed_squared: f64,
+}
+
+impl BlockSum for StateSum {
+    fn add(&mut self, next: &Self) {
+        self.energy += next.energy;
+        self.speed_squared = self.speed_squared.max(next.speed_squared);
+    }
+}
+
+type Rows<'a> = (&'a mut [Pressure], &'a mut [Record], &'a [Density], &'a [Mass], &'a [Removed]);
+
+impl Run for EquationOfState {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let FlowCloud { groups, records, kernel, .. } = &mut *cloud;
+        let h = kernel.smoothing_length();
+        let account = step.ledger.account("compression", AccountKind::Stored);
+        self.warned.resize(groups.len(), false);
+        for (group, warned) in groups.iter().zip(&mut self.warned) {
+            let Some(state) = group.fluid() else { break };
+            let view = step.world.phase(group.phase);
+            let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
+            let removed = view.read::<Removed>()?;
+            let mut pressure = view.write::<Pressure>()?;
+            let rows = group.rows.clone();
+            let slices: Rows<'_> = (
+                &mut pressure[rows.clone()],
+                &mut records[group.cloud.clone()],
+                &density[rows.clone()],
+                &mass[rows.clone()],
+                &removed[rows],
+            );
+            let sum = for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| apply(state, rows));
+            step.ledger.set(account, group.body, sum.energy);
+            let (speed, sound) = (sum.speed_squared.sqrt(), state.sound_speed);
+            let name = &step.world.body(group.body).name;
+            if speed > FAST * sound && !*warned {
+                *warned = true;
+                step.warnings.push(format!(
+                    "the flow of `{name}` has reached {speed:.3} m/s, more than a tenth of its speed of sound of {sound} m/s: \
+                     its density changes are no longer small; a larger `sound_speed` costs a smaller step"
+                ));
+            }
+            step.limits.propose(COURANT * h / (sound + speed), || format!("sound speed of `{name}`"));
+            if state.viscosity > 0.0 {
+                let limit = VISCOUS * h * h * state.density / state.viscosity;
+                step.limits.propose(limit, || format!("viscosity of `{name}`"));
+            }
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.warned.iter().map(|&warned| u8::from(warned)).collect()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        self.warned = state.iter().map(|&warned| warned != 0).collect();
+        true
+    }
+}
+
+fn apply(state: &FluidState, (pressure, records, density, mass, removed): Rows<'_>) -> StateSum {
+    let FluidState { density: rho_0, sound_speed, eos, .. } = *state;
+    let mut sum = StateSum::default();
+    for (k, record) in records.iter_mut().enumerate() {
+        let rho = density[k].0;
+        let p = eos.pressure(rho, rho_0, sound_speed);
+        pressure[k] = Pressure(p);
+        // A removed particle has no volume: no sum over neighbours sees it.
+        record.place.0[3] = if removed[k] == Removed::NO { mass[k].0 / rho } else { 0.0 };
+        record.motion.0[3] = p;
+        sum.energy += mass[k].0 * eos.energy(rho, rho_0, sound_speed);
+        let v: DVec3 = record.velocity();
+        sum.speed_squared = sum.speed_squared.max(v.length_squared());
+    }
+    sum
+}

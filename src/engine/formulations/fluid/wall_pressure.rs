@@ -1,0 +1,110 @@
+//! Pass over the particles of boundaries: pressure and mean velocity of the fluid beside them.
+//!
+//! `p_w = (sum_f p_f W - (g - a_w) . sum_f rho_f x_wf W) / sum_f W` (Adami, Hu, Adams 2012, eq. 27, with x_wf = x_f - x_w and
+//! W for the kernel times the volume V_f, so that removed particles have no part in it).
+
+use glam::DVec3;
+
+use super::cloud::FlowCloud;
+use super::record::{Four, dot, padded, sums};
+use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+
+/// Least sum of V_f W for which there is fluid beside a wall.
+const LEAST_SHARE: f64 = 1e-10;
+
+/// The fluid beside a particle of a boundary.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Beside {
+    /// Mean pressure, Pa.
+    pub pressure: f64,
+    /// Mean of rho_f x_wf, kg/m2.
+    pub moment: DVec3,
+    /// Mean velocity, less that of the particle, m/s.
+    pub velocity: DVec3,
+}
+
+/// The pass over all particles that are no fluid.
+pub(super) struct WallPressure<'a> {
+    pub cloud: &'a FlowCloud,
+}
+
+impl WallPressure<'_> {
+    /// Writes what is beside every particle of a boundary.
+    pub fn run(&self, out: &mut [Beside]) {
+        for_each_block(out, &mut Vec::new(), &|first, out: &mut [Beside]| {
+            run_hot_in(self.cloud.plane, Rows { cloud: self.cloud, first, out });
+        });
+    }
+}
+
+struct Rows<'a> {
+    cloud: &'a FlowCloud,
+    first: usize,
+    out: &'a mut [Beside],
+}
+
+impl PlaneOrSolid for Rows<'_> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+        if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
+    }
+}
+
+/// One in the lanes that hold a neighbour, zero in those that fill up.
+const MASKS: [Lanes4; 5] = [
+    Lanes4([0.0, 0.0, 0.0, 0.0]),
+    Lanes4([1.0, 0.0, 0.0, 0.0]),
+    Lanes4([1.0, 1.0, 0.0, 0.0]),
+    Lanes4([1.0, 1.0, 1.0, 0.0]),
+    Lanes4([1.0, 1.0, 1.0, 1.0]),
+];
+
+impl Rows<'_> {
+    #[inline(always)]
+    fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
+        let cloud = self.cloud;
+        for (k, out) in self.out.iter_mut().enumerate() {
+            let i = cloud.fluid + self.first + k;
+            let own = &cloud.records[i];
+            let mut rest = cloud.pairs.boundary.row(self.first + k);
+            let (mut total, mut pressure) = (Lanes4::default(), Lanes4::default());
+            let (mut moment, mut velocity) = ([Lanes4::default(); D], [Lanes4::default(); D]);
+            for group in &cloud.groups {
+                let Some(state) = group.fluid() else { break };
+                let end = group.cloud.end as u32;
+                let (row, tail) = rest.split_at(rest.partition_point(|&j| j < end));
+                rest = tail;
+                let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
+                for chunk in row.chunks(4) {
+                    let four = Four::<D>::gather::<A, P>(
+                        a,
+                        &cloud.records,
+                        own,
+                        padded(chunk, i),
+                        &cloud.periods,
+                    );
+                    let distance = a.sqrt(dot(a, &four.x, &four.x));
+                    let volume = a.times(four.volume, MASKS[chunk.len()]);
+                    let value = a.times(cloud.kernel.values(a, distance), volume);
+                    // rho = rho_0 + p / c_0^2 to first order in the compression.
+                    let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
+                    total = a.plus(total, value);
+                    pressure = a.times_add(value, four.pressure, pressure);
+                    let weighed = a.times(value, density);
+                    for axis in 0..D {
+                        moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
+                        velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
+                    }
+                }
+            }
+            let total = total.sum();
+            *out = Beside::default();
+            if total > LEAST_SHARE {
+                let mean = 1.0 / total;
+                out.pressure = pressure.sum() * mean;
+                out.moment = sums(&moment) * mean;
+                out.velocity = sums(&velocity) * mean;
+            }
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! The system that gives walls the pressure of the fluid beside them, and the velocity that a sticking fluid sees.
+
+use glam::DVec3;
+
+use super::cloud::{FlowCloud, Role, Surface};
+use super::record::Record;
+use super::wall::PreviousVelocity;
+use super::wall_pressure::{Beside, WallPressure};
+use crate::parallel::{Lanes4, for_each_block};
+use crate::schedule::{Run, Step, StepError};
+use crate::world::{Pressure, Velocity};
+
+/// Sets pressure and velocity of walls in the packed rows, and their pressure column.
+pub(super) struct WallState {
+    /// Acceleration of gravity, m/s2.
+    pub gravity: DVec3,
+    pub beside: Vec<Beside>,
+}
+
+type Rows<'a> = (
+    &'a mut [Record],
+    &'a mut [Pressure],
+    &'a mut [PreviousVelocity],
+    &'a [Velocity],
+    &'a [Beside],
+);
+
+impl Run for WallState {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        self.beside.resize(cloud.positions.len() - cloud.fluid, Beside::default());
+        WallPressure { cloud: &cloud }.run(&mut self.beside);
+        let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
+        for group in groups {
+            let Role::Boundary(surface) = &group.role else { continue };
+            let view = step.world.phase(group.phase);
+            let mut pressure = view.write::<Pressure>()?;
+            let mut previous = view.write::<PreviousVelocity>()?;
+            let velocity = view.read::<Velocity>()?;
+            let rows = group.rows.clone();
+            let slices: Rows<'_> = (
+                &mut records[group.cloud.clone()],
+                &mut pressure[rows.clone()],
+                &mut previous[rows.clone()],
+                &velocity[rows],
+                &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid],
+            );
+            let (gravity, dt) = (self.gravity, step.clock.dt);
+            for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
+        }
+        Ok(())
+    }
+}
+
+fn apply(
+    surface: &Surface,
+    gravity: DVec3,
+    dt: f64,
+    (records, pressure, previous, velocity, beside): Rows<'_>,
+) {
+    for (k, record) in records.iter_mut().enumerate() {
+        let v = velocity[k].0;
+        let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
+        previous[k] = PreviousVelocity(v);
+        let fluid = &beside[k];
+        let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
+        if !surface.suction {
+            p = p.max(0.0);
+        }
+        pressure[k] = Pressure(p);
+        // Halfway between this velocity and that of the fluid lies the velocity of the surface.
+        let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
+        record.motion = Lanes4::new(seen, p);
+    }
+}
