@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{all_plugins, removal, simulation};
+use common::{all_plugins, flow, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -14,6 +14,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (all_plugins(2), 700, 12),
         (all_plugins(3), 200, 13),
         (removal(), 300, 14),
+        (flow(2), 500, 15),
+        (flow(3), 200, 16),
     ];
     for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);

@@ -54,6 +54,35 @@ pub fn removal() -> Source {
     Source::new("removal.ron", text)
 }
 
+/// A breaking dam between walls, one of which moves, with drops that leave the domain.
+pub fn flow(dimension: usize) -> Source {
+    let (name, water, outer, inner, spacing) = if dimension == 2 {
+        ("Two", "(0, 0), max: (0.4, 0.4)", "(-0.1, -0.1), max: (0.7, 0.5)", "(0, 0), max: (0.6, 1)", 0.02)
+    } else {
+        (
+            "Three",
+            "(0, 0, 0), max: (0.4, 0.5, 0.3)",
+            "(-0.15, -0.15, -0.15), max: (0.65, 0.4, 0.45)",
+            "(0, 0, 0), max: (0.5, 1, 0.3)",
+            0.05,
+        )
+    };
+    let text = format!(
+        r#"(dimension: {name}, gravity: (0.0, -9.81), domain: (min: (-0.2, -0.2, -0.2), max: (0.72, 0.55, 0.6), outside: Remove),
+            materials: {{"water": Fluid(density: 1000.0, viscosity: 0.5, eos: Tait(gamma: 7.0))}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: {water}), spacing: {spacing:?}, formulation: Fluid,
+                 velocity: (1.0, 1.0)),
+                (name: "tank", material: "wall", shape: Difference(Box(min: {outer}), Box(min: {inner})),
+                 spacing: {spacing:?}, formulation: Wall(slip: No)),
+            ],
+            conditions: [Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None))],
+            plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
+            time: (end: 10.0))"#
+    );
+    Source::new("flow.ron", text)
+}
+
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));

@@ -17,14 +17,18 @@ fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupErro
 }
 
 /// An error where walls hold no fluid and no contact names them.
-pub(super) fn walls_have_fluid(walls: &[super::wall::WallBody], sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+pub(super) fn walls_have_fluid(
+    walls: &[super::wall::WallBody],
+    sim: &SimBuilder<'_>,
+) -> Result<(), SetupError> {
     for wall in walls {
         let body = sim.body(wall.id);
         let touches = |contact: &crate::scene::Contact| {
             contact.between.0 == body.name || contact.between.1 == body.name
         };
         if !sim.scene().contacts.iter().any(touches) {
-            let message = format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
+            let message =
+                format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
             let help = "add a body with `formulation: Fluid`, or a contact of the wall with another body";
             return Err(fault(body, "formulation", message, help));
         }
@@ -44,19 +48,26 @@ pub(super) fn wall_is_thick(
             "the particles of wall `{}` are {} m apart, farther than those of the fluid, {spacing} m",
             body.name, body.spacing
         );
-        return Err(fault(body, "spacing", message, "give the wall the spacing of the fluid, or a smaller one"));
+        return Err(fault(
+            body,
+            "spacing",
+            message,
+            "give the wall the spacing of the fluid, or a smaller one",
+        ));
     }
     let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
     let list = NeighborList::reference(Cloud::uniform(&positions, support), periodic)
         .map_err(|error| SetupError::internal(&error))?;
     let thickness = |i: usize| {
-        let row = || list.row(i).iter().map(|&j| periodic.minimal_image(positions[j as usize] - positions[i]));
+        let row =
+            || list.row(i).iter().map(|&j| periodic.minimal_image(positions[j as usize] - positions[i]));
         let spread = row().fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
         let plane = positions.iter().all(|x| x.z == positions[0].z);
         // In a plane the third axis has no spread: it is not a side of the wall.
         let spread = if plane { Sym3 { zz: 2.0 * (spread.xx + spread.yy) + 1.0, ..spread } } else { spread };
         let across = Eigen::new(&spread).vectors.col(0);
-        let (low, high) = row().map(|x| x.dot(across)).fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
+        let (low, high) =
+            row().map(|x| x.dot(across)).fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
         high - low + body.spacing
     };
     let thin: Vec<(f64, DVec3)> = (0..positions.len())

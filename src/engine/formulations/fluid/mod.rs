@@ -21,6 +21,8 @@ mod record;
 mod sound_speed;
 mod start;
 mod state;
+#[cfg(test)]
+mod tests;
 mod wall;
 mod wall_pressure;
 mod wall_state;

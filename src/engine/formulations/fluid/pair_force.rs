@@ -85,7 +85,11 @@ fn pair_viscosity(a: &Role, b: &Role) -> f64 {
             if sum > 0.0 { 4.0 * a.viscosity * b.viscosity / sum } else { 0.0 }
         }
         (Role::Fluid(fluid), Role::Boundary(surface)) | (Role::Boundary(surface), Role::Fluid(fluid)) => {
-            if surface.no_slip { 2.0 * fluid.viscosity } else { 0.0 }
+            if surface.no_slip {
+                2.0 * fluid.viscosity
+            } else {
+                0.0
+            }
         }
         (Role::Boundary(_), Role::Boundary(_)) => 0.0,
     }
@@ -100,8 +104,11 @@ impl Rows<'_> {
         for (k, total) in total.iter_mut().enumerate() {
             let i = group.cloud.start + self.first + k;
             let own = &cloud.records[i];
-            let mut rest =
-                if own_is_fluid { cloud.pairs.fluid.row(i) } else { cloud.pairs.boundary.row(i - cloud.fluid) };
+            let mut rest = if own_is_fluid {
+                cloud.pairs.fluid.row(i)
+            } else {
+                cloud.pairs.boundary.row(i - cloud.fluid)
+            };
             let (mut pressure, mut viscous, mut wall) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
             for other in &cloud.groups {
                 let Some(&last) = rest.last() else { break };

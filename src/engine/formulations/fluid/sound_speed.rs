@@ -34,7 +34,8 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
             );
             let at = format!("materials.{}", body.material_name);
             problems.push(
-                Problem::at_path(at, message).help("give ten times the largest speed that the flow will reach"),
+                Problem::at_path(at, message)
+                    .help("give ten times the largest speed that the flow will reach"),
             );
         }
     }

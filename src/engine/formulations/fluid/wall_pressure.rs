@@ -76,13 +76,8 @@ impl Rows<'_> {
                 rest = tail;
                 let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
                 for chunk in row.chunks(4) {
-                    let four = Four::<D>::gather::<A, P>(
-                        a,
-                        &cloud.records,
-                        own,
-                        padded(chunk, i),
-                        &cloud.periods,
-                    );
+                    let four =
+                        Four::<D>::gather::<A, P>(a, &cloud.records, own, padded(chunk, i), &cloud.periods);
                     let distance = a.sqrt(dot(a, &four.x, &four.x));
                     let volume = a.times(four.volume, MASKS[chunk.len()]);
                     let value = a.times(cloud.kernel.values(a, distance), volume);

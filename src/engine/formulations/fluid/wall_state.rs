@@ -17,13 +17,8 @@ pub(super) struct WallState {
     pub beside: Vec<Beside>,
 }
 
-type Rows<'a> = (
-    &'a mut [Record],
-    &'a mut [Pressure],
-    &'a mut [PreviousVelocity],
-    &'a [Velocity],
-    &'a [Beside],
-);
+type Rows<'a> =
+    (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [Velocity], &'a [Beside]);
 
 impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
