@@ -1,7 +1,9 @@
 //! The program as its users call it.
 
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -228,6 +230,9 @@ fn every_template_is_listed_written_once_and_checks() {
     for entry in std::fs::read_dir(scene("")).expect("the scenes") {
         let path = entry.expect("a scene").path();
         let Some(name) = path.file_stem().and_then(|stem| stem.to_str()) else { continue };
+        if std::fs::read_to_string(&path).expect("a scene").contains("file: \"") {
+            continue;
+        }
         assert!(list.contains(name), "{name} is not a template of\n{list}");
         assert_success(&meshless(&folder, &["new", name]));
         let file = format!("{name}.ron");
@@ -314,4 +319,36 @@ fn a_benchmark_measures_a_work_and_names_the_works_there_are() {
     let unknown = meshless(&folder, &["bench", "solid"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(err(&unknown).contains("there is no work `solid`") && err(&unknown).contains("solid-31"));
+}
+
+#[test]
+fn a_recording_is_shown_in_a_browser_with_nothing_else_installed() {
+    let folder = folder();
+    assert_success(&meshless(&folder, &["run", &cantilever(), "--steps", "2", "--quiet"]));
+    let mut view = Command::new(env!("CARGO_BIN_EXE_meshless"))
+        .args(["view", "out/cantilever", "--web", "--no-browser"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut lines = BufReader::new(view.stdout.take().expect("its output")).lines();
+    let url =
+        lines.by_ref().map_while(Result::ok).find_map(|line| Some(line[line.find("http://")?..].to_owned()));
+    let recording = url.as_deref().and_then(|url| url.split_once("?url=http://")?.1.split_once('/'));
+    let answer = recording.and_then(|(address, path)| {
+        let mut stream = TcpStream::connect(address).ok()?;
+        write!(stream, "GET /{path} HTTP/1.0\r\nHost: {address}\r\n\r\n").ok()?;
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).ok()?;
+        Some(answer)
+    });
+    view.kill().expect("it is running");
+    view.wait().expect("it ends");
+    let answer = answer.unwrap_or_else(|| panic!("no answer at {url:?}"));
+    let file = std::fs::read(folder.path().join("out/cantilever/cantilever.rrd")).expect("a recording");
+    assert!(
+        answer.starts_with(b"HTTP/1.0 200") && answer.ends_with(&file),
+        "{}",
+        String::from_utf8_lossy(&answer[..answer.len().min(400)])
+    );
 }

@@ -31,8 +31,8 @@ macro_rules! templates {
     };
 }
 
-/// The scenes of the project are the templates.
-const TEMPLATES: [Template; 9] = templates![
+/// The scenes of the project are the templates, but for those that need a file beside them.
+const TEMPLATES: [Template; 10] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
@@ -42,6 +42,7 @@ const TEMPLATES: [Template; 9] = templates![
     "cook_membrane",
     "bending_column",
     "twisting_column",
+    "dam_break",
 ];
 
 impl Template {

@@ -16,8 +16,10 @@ mod paths;
 mod plugin;
 mod recorder;
 mod series;
+mod web_viewer;
 
 pub use colormap::Colormap;
 pub use error::RerunError;
 pub use plugin::{RerunRecorder, register};
 pub use recorder::RerunFile;
+pub use web_viewer::{WebViewer, WebViewerError};

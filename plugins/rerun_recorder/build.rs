@@ -1,0 +1,23 @@
+//! Takes the files of rerun's web viewer out of the crate that holds them, for `src/web_viewer.rs` to build in.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::{env, fs};
+
+use re_web_viewer_server::WebViewerData;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed=build.rs");
+    let folder = PathBuf::from(env::var_os("OUT_DIR").ok_or("cargo gives no folder")?);
+    let viewer = WebViewerData::load(None)?;
+    for (name, content) in [
+        ("index.html", viewer.index_html()),
+        ("favicon.ico", viewer.favicon()),
+        ("sw.js", viewer.sw_js()),
+        ("re_viewer.js", viewer.viewer_js()),
+        ("re_viewer_bg.wasm", viewer.viewer_wasm()),
+    ] {
+        fs::write(folder.join(name), content)?;
+    }
+    Ok(())
+}
