@@ -26,6 +26,10 @@ pub fn standard_plugins() -> Registry {
         .with(hourglass_control::register)
         .with(local_damping::register)
         .with(artificial_viscosity::register)
+        .with(density_diffusion::register)
+        .with(particle_shifting::register)
+        .with(tensile_control::register)
+        .with(xsph::register)
         .with(rerun_recorder::register)
 }
 

@@ -32,7 +32,7 @@ macro_rules! templates {
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: [Template; 10] = templates![
+const TEMPLATES: [Template; 13] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
@@ -43,6 +43,9 @@ const TEMPLATES: [Template; 10] = templates![
     "bending_column",
     "twisting_column",
     "dam_break",
+    "dam_break_3d",
+    "sloshing",
+    "taylor_green",
 ];
 
 impl Template {

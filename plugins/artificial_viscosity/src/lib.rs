@@ -2,7 +2,8 @@
 //!
 //! For pairs that approach, `mu = h v_ij.x_ij / (|x_ij|^2 + 0.01 h^2) < 0` and
 //! `f_i = V_i V_j rho_0 (alpha c mu - beta mu^2) |W'_ij| x_ij / |x_ij|`: a repulsion, linear and quadratic in the speed of
-//! approach. h is half the support radius, c the speed of longitudinal waves.
+//! approach. h is half the support radius, c the speed of longitudinal waves, or of sound in a fluid. In fluids the linear part
+//! acts on pairs that part as well (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
@@ -46,8 +47,14 @@ impl Plugin for ArtificialViscosity {
         for id in sim.scope().clone().iter() {
             let material = &sim.body(id).material;
             let Some(sound_speed) = material.sound_speed() else { continue };
-            let term =
-                Approach { alpha: self.alpha, beta: self.beta, density: material.density, sound_speed };
+            let parting = sim.body(id).formulation == "Fluid";
+            let term = Friction {
+                alpha: self.alpha,
+                beta: self.beta,
+                density: material.density,
+                sound_speed,
+                parting,
+            };
             sim.add_pair_term(BodySet::new([id]), Self::NAME, term);
         }
         Ok(())
@@ -55,14 +62,16 @@ impl Plugin for ArtificialViscosity {
 }
 
 /// The pair force within one body.
-struct Approach {
+struct Friction {
+    /// Whether pairs that part feel it too.
+    parting: bool,
     alpha: f64,
     beta: f64,
     density: f64,
     sound_speed: f64,
 }
 
-impl PairTerm for Approach {
+impl PairTerm for Friction {
     type ReadI = (Velocity,);
     type ReadJ = (Velocity,);
 
@@ -70,17 +79,18 @@ impl PairTerm for Approach {
     fn pair(&self, pair: &Pair, (v_i,): &Self::ReadI, (v_j,): &Self::ReadJ, rates: &mut Rates) {
         let h = pair.smoothing_length();
         let approach = (v_j.0 - v_i.0).dot(pair.x_ij);
-        if approach >= 0.0 || pair.distance == 0.0 {
+        if (approach >= 0.0 && !self.parting) || pair.distance == 0.0 {
             return;
         }
         let mu = h * approach / (pair.distance.powi(2) + 0.01 * h * h);
         let slope = pair.weight * pair.reference_distance;
         let strength = self.density * pair.volume_j * slope;
-        let pressure = strength * (self.alpha * self.sound_speed * mu - self.beta * mu * mu);
+        let push = mu.min(0.0);
+        let pressure = strength * (self.alpha * self.sound_speed * mu - self.beta * push * push);
         rates.force += pair.x_ij * (pair.volume_i * pressure / pair.distance);
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
         let per_speed = h * pair.distance / (pair.distance.powi(2) + 0.01 * h * h);
-        let slope_of_mu = self.alpha * self.sound_speed - 2.0 * self.beta * mu;
+        let slope_of_mu = self.alpha * self.sound_speed - 2.0 * self.beta * push;
         rates.damping += pair.volume_j * slope * slope_of_mu * per_speed;
     }
 }

@@ -56,7 +56,7 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: [(Kind, &str); 11] = [
+const LATER: [(Kind, &str); 7] = [
     (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
     (Kind::Formulation, "Rigid"),
@@ -64,10 +64,6 @@ const LATER: [(Kind, &str); 11] = [
     (Kind::Material, "JohnsonCook"),
     (Kind::Plugin, "hessian_stabilization"),
     (Kind::Plugin, "artificial_stress"),
-    (Kind::Plugin, "density_diffusion"),
-    (Kind::Plugin, "particle_shifting"),
-    (Kind::Plugin, "tensile_control"),
-    (Kind::Plugin, "xsph"),
 ];
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;

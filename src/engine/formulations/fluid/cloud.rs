@@ -72,6 +72,23 @@ impl Group {
     }
 }
 
+/// A neighbour of a fluid particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// Row of a fluid particle in its phase; beyond the number of fluid particles, something that bounds the fluid.
+    pub row: usize,
+    /// x_ij = x_j - x_i, m.
+    pub x_ij: DVec3,
+    /// Its length, m.
+    pub distance: f64,
+    /// Pair weight w_ij = |W'(r)| / r, so that grad_i W = w_ij x_ij.
+    pub weight: f64,
+    /// Kernel value W_ij.
+    pub kernel: f64,
+    /// Volume V_j, m3; zero for a removed particle.
+    pub volume: f64,
+}
+
 /// The cloud: what the systems of a flow share. It is derived from the columns.
 pub struct FlowCloud {
     /// One group for every body: fluids first, each in the order of the scene.
@@ -150,6 +167,30 @@ impl FlowCloud {
             }
         }
         Ok(())
+    }
+
+    /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
+    /// `i` is its row in the phase of fluids.
+    #[inline]
+    pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
+        let own = self.records[i].position();
+        let limit = self.kernel.support * self.kernel.support;
+        for &j in self.pairs.fluid.row(i) {
+            let row = j as usize;
+            let other = &self.records[row];
+            let x_ij = self.pairs.periodic().minimal_image(other.position() - own);
+            let square = x_ij.length_squared();
+            if square < limit && row != i {
+                let (distance, volume) = (square.sqrt(), other.volume());
+                let (weight, kernel) = (self.kernel.weight(distance), self.kernel.value(distance));
+                f(&Near { row, x_ij, distance, weight, kernel, volume });
+            }
+        }
+    }
+
+    /// Volume of a fluid particle, m3; `i` is its row in the phase of fluids.
+    pub fn volume(&self, i: usize) -> f64 {
+        self.records[i].volume()
     }
 
     /// Number of directed pairs in the lists.

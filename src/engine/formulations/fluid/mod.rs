@@ -10,6 +10,7 @@ mod checks;
 mod cloud;
 mod compression;
 mod density;
+mod displace;
 mod force;
 mod formulation;
 mod kernel;
@@ -28,7 +29,8 @@ mod wall_pressure;
 mod wall_state;
 
 pub use assemble::add_systems;
-pub use cloud::{FlowCloud, FluidState, Group, Role, Surface};
+pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
+pub use displace::displace;
 pub use force::FLUID_FORCE;
 pub use formulation::Fluid;
 pub use kernel::FluidKernel;

@@ -1,0 +1,111 @@
+//! Diffusion of density (delta-SPH): takes the noise of the grid out of density and pressure, and leaves smooth fields alone.
+//!
+//! `drho_i/dt = 2 delta h c_0 sum_j V_j w_ij [(rho_j - rho_i) - (g_i + g_j).x_ij / 2]` over the neighbours of the same body; g is the renormalised
+//! gradient of the density with `model: Antuono`, zero with `model: Molteni`.
+
+mod gradient;
+
+use meshless_engine::materials::ParameterError;
+use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::world::{BodySet, Density};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+pub use gradient::DensityGradient;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<DensityDiffusion>();
+}
+
+/// Diffuses the density of fluids, so that the noise of their pressure decays.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DensityDiffusion {
+    /// What is diffused.
+    pub model: Model,
+    /// Coefficient delta.
+    pub delta: f64,
+}
+
+/// What is diffused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Model {
+    /// What differs from a linear field: water at rest under gravity is left alone.
+    #[default]
+    Antuono,
+    /// The density itself: cheaper, for flows without gravity.
+    Molteni,
+}
+
+impl Default for DensityDiffusion {
+    fn default() -> Self {
+        Self { model: Model::Antuono, delta: 0.1 }
+    }
+}
+
+impl Plugin for DensityDiffusion {
+    const NAME: &'static str = "density_diffusion";
+    const REFERENCE: &'static str = "density diffusion: M. Antuono, A. Colagrossi, S. Marrone, D. Molteni, Comput. Phys. Commun. 181 (2010) 532-549; \
+         D. Molteni, A. Colagrossi, Comput. Phys. Commun. 180 (2009) 861-872";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        ParameterError::require_not_negative("delta", self.delta)?;
+        let fluids = sim.scope_of("Fluid");
+        if self.delta == 0.0 || fluids.is_empty() {
+            return Ok(());
+        }
+        if self.model == Model::Antuono {
+            gradient::add(fluids.clone(), sim);
+        }
+        for id in fluids.iter() {
+            let Some(sound_speed) = sim.body(id).material.sound_speed() else { continue };
+            let strength = 2.0 * self.delta * sound_speed;
+            match self.model {
+                Model::Antuono => sim.add_pair_term(BodySet::new([id]), Self::NAME, Antuono { strength }),
+                Model::Molteni => sim.add_pair_term(BodySet::new([id]), Self::NAME, Molteni { strength }),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Share of the diffusion rate that limits the step: an explicit step is stable up to one over the rate.
+const LIMIT: f64 = 0.5;
+
+/// Diffusion of the density; strength is 2 delta c_0.
+struct Molteni {
+    strength: f64,
+}
+
+impl PairTerm for Molteni {
+    type ReadI = (Density,);
+    type ReadJ = (Density,);
+    const CHANGES_DENSITY: bool = true;
+
+    #[inline]
+    fn pair(&self, pair: &Pair, (rho_i,): &Self::ReadI, (rho_j,): &Self::ReadJ, rates: &mut Rates) {
+        let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
+        rates.density += rate * (rho_j.0 - rho_i.0);
+        rates.damping += LIMIT * rate;
+    }
+}
+
+/// Diffusion of what differs from a linear field.
+struct Antuono {
+    strength: f64,
+}
+
+impl PairTerm for Antuono {
+    type ReadI = (Density, DensityGradient);
+    type ReadJ = (Density, DensityGradient);
+    const CHANGES_DENSITY: bool = true;
+
+    #[inline]
+    fn pair(&self, pair: &Pair, (rho_i, g_i): &Self::ReadI, (rho_j, g_j): &Self::ReadJ, rates: &mut Rates) {
+        let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
+        rates.density += rate * (rho_j.0 - rho_i.0 - 0.5 * (g_i.0 + g_j.0).dot(pair.x_ij));
+        rates.damping += LIMIT * rate;
+    }
+}

@@ -1,0 +1,96 @@
+//! XSPH: fluid particles move with a velocity between their own and the mean around them.
+//!
+//! `dx_i/dt = v_i + epsilon sum_j V_j W_ij v_ij` over the neighbours of the same body. Velocities and forces stay what they are.
+
+use meshless_engine::formulations::fluid::{FlowCloud, displace};
+use meshless_engine::glam::DVec3;
+use meshless_engine::materials::ParameterError;
+use meshless_engine::parallel::for_each_block;
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
+use meshless_engine::world::{BodySet, Mass, Position, Velocity};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<Xsph>();
+}
+
+/// Moves fluid particles with the mean velocity around them, so that they keep their order and do not pass through each
+/// other.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Xsph {
+    /// Share epsilon of the mean velocity, 0 to 1.
+    pub epsilon: f64,
+}
+
+impl Default for Xsph {
+    fn default() -> Self {
+        Self { epsilon: 0.5 }
+    }
+}
+
+impl Plugin for Xsph {
+    const NAME: &'static str = "xsph";
+    const REFERENCE: &'static str = "XSPH: J. J. Monaghan, J. Comput. Phys. 82 (1989) 1-15";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        if !(0.0..=1.0).contains(&self.epsilon) {
+            let message = format!("`epsilon` is {}, not from 0 to 1", self.epsilon);
+            return Err(ParameterError::new("epsilon", message, "0.5 is usual").into());
+        }
+        let bodies = sim.scope_of("Fluid");
+        if self.epsilon == 0.0 || bodies.is_empty() {
+            return Ok(());
+        }
+        let phases = sim.phases_of(&bodies);
+        let gravity = sim.gravity();
+        let work = Smoothing { epsilon: self.epsilon, gravity, bodies, moves: Vec::new() };
+        sim.add_system(
+            System::new(Stage::PostStep, Self::NAME, work)
+                .on_phases(phases)
+                .reads::<Velocity>()
+                .reads::<Mass>()
+                .adds::<Position>(),
+        );
+        Ok(())
+    }
+}
+
+struct Smoothing {
+    epsilon: f64,
+    gravity: DVec3,
+    bodies: BodySet,
+    moves: Vec<DVec3>,
+}
+
+impl Run for Smoothing {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let resources = step.resources;
+        let cloud = resources.get::<FlowCloud>();
+        let cloud: &FlowCloud = &cloud;
+        let factor = self.epsilon * step.clock.dt;
+        for id in self.bodies.iter() {
+            let (view, rows) = step.world.body_view(id);
+            self.moves.resize(rows.len(), DVec3::ZERO);
+            let velocity = view.read::<Velocity>()?;
+            let velocity: &[Velocity] = &velocity;
+            for_each_block(&mut self.moves[..], &mut Vec::new(), &|first, moves: &mut [DVec3]| {
+                for (k, out) in moves.iter_mut().enumerate() {
+                    let i = rows.start + first + k;
+                    let mut sum = DVec3::ZERO;
+                    cloud.for_each_neighbor(i, |near| {
+                        if rows.contains(&near.row) {
+                            sum += (velocity[near.row].0 - velocity[i].0) * (near.volume * near.kernel);
+                        }
+                    });
+                    *out = sum * factor;
+                }
+            });
+            displace(step, id, &self.moves, self.gravity, Xsph::NAME)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,39 @@
+//! Displacements that are no motion: shifting and smoothing of fluid particles.
+
+use glam::DVec3;
+
+use crate::parallel::for_each_block;
+use crate::schedule::{AccountKind, Step, StepError};
+use crate::world::{BodyId, Mass, Position, Removed};
+
+/// Moves the particles of a body; velocities and densities stay. What the weight gains or loses in height is supplied by
+/// gravity, as in any motion, and taken out by the account of that name.
+///
+/// # Errors
+/// A column is missing.
+pub fn displace(
+    step: &mut Step<'_>,
+    body: BodyId,
+    moves: &[DVec3],
+    gravity: DVec3,
+    account: &str,
+) -> Result<(), StepError> {
+    let (view, rows) = step.world.body_view(body);
+    let mut position = view.write::<Position>()?;
+    let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
+    let slices = (&mut position[rows.clone()], moves, &mass[rows.clone()], &removed[rows]);
+    type Rows<'a> = (&'a mut [Position], &'a [DVec3], &'a [Mass], &'a [Removed]);
+    let work = for_each_block(slices, &mut Vec::new(), &|_, (x, moves, m, removed): Rows<'_>| {
+        let mut work = 0.0;
+        for k in (0..x.len()).filter(|&k| removed[k] == Removed::NO) {
+            x[k].0 += moves[k];
+            work += m[k].0 * gravity.dot(moves[k]);
+        }
+        work
+    });
+    let supplied = step.ledger.account("gravity", AccountKind::Supplied);
+    step.ledger.add(supplied, body, work);
+    let taken = step.ledger.account(account, AccountKind::Dissipated);
+    step.ledger.add(taken, body, work);
+    Ok(())
+}
