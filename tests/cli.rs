@@ -352,3 +352,38 @@ fn a_recording_is_shown_in_a_browser_with_nothing_else_installed() {
         String::from_utf8_lossy(&answer[..answer.len().min(400)])
     );
 }
+
+#[test]
+fn an_output_folder_that_cannot_be_written_is_told_before_any_work() {
+    let folder = folder();
+    std::fs::write(folder.path().join("file"), "text").expect("a file is written");
+    let output = meshless(&folder, &["run", &cantilever(), "--out", "file/below"]);
+    assert_eq!(output.status.code(), Some(2));
+    let expected = format!(
+        "error: cannot make the output folder `file/below`: `file` is a file\n--> {}\n \
+         = help: choose a folder in which you may write\n",
+        cantilever()
+    );
+    assert_eq!(err(&output), expected);
+    assert_eq!(out(&output), "");
+}
+
+#[test]
+fn a_complete_run_can_be_prolonged_unless_its_scene_wants_no_checkpoint() {
+    let folder = folder();
+    let short = |out: &str, more: &[&str]| {
+        let scene = cantilever();
+        let mut arguments = vec!["run", scene.as_str(), "--out", out, "--quiet", "--set", "time.end=1e-5"];
+        arguments.extend(more);
+        assert_success(&meshless(&folder, &arguments));
+    };
+    short("one", &[]);
+    let further = meshless(&folder, &["resume", "one", "--until", "2e-5"]);
+    assert_success(&further);
+    assert!(out(&further).contains("complete at 2.000000e-5 s"), "{}", out(&further));
+    assert!(out(&further).contains("meshless resume one --until TIME"), "{}", out(&further));
+    short("two", &["--set", "record.checkpoint_at_end=false"]);
+    let none = meshless(&folder, &["resume", "two", "--until", "2e-5"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert!(err(&none).contains("checkpoint_at_end: false"), "{}", err(&none));
+}

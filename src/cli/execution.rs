@@ -138,8 +138,11 @@ impl Execution {
         if names.iter().any(|name| name.ends_with(".rrd")) {
             text += &format!("\nto look at the recording: meshless view {folder}");
         }
-        if !self.sim.is_finished() && names.iter().any(|name| name == folder::CHECKPOINT) {
-            text += &format!("\nto go on: meshless resume {folder}");
+        if names.iter().any(|name| name == folder::CHECKPOINT) {
+            text += &match self.sim.clock().time >= self.sim.end() {
+                false => format!("\nto go on: meshless resume {folder}"),
+                true => format!("\nto go further: meshless resume {folder} --until TIME"),
+            };
         }
         Ok(text)
     }

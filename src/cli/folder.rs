@@ -22,8 +22,8 @@ pub fn checkpoint(path: &Path) -> Result<PathBuf, Failure> {
         return Ok(file);
     }
     Err(Failure::Usage(format!(
-        "there is no checkpoint `{}`; a run leaves one when it is stopped before its end, or where the scene says \
-         `record: (checkpoint_every: ...)`",
+        "there is no checkpoint `{}`; a run leaves one when it ends or is stopped, unless it has failed or the \
+         scene says `record: (checkpoint_at_end: false)`",
         file.display()
     )))
 }

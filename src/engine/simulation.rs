@@ -30,6 +30,7 @@ pub struct Simulation {
     references: Vec<String>,
     started: bool,
     output: Option<OutputHandle>,
+    checkpoint_at_end: bool,
     source: Source,
     title: String,
     failure: Option<String>,
@@ -95,6 +96,7 @@ impl Simulation {
             references,
             started: false,
             output,
+            checkpoint_at_end: scene.record.checkpoint_at_end,
             source,
             title: scene.title.clone(),
             failure: None,
@@ -168,7 +170,7 @@ impl Simulation {
         // With dt = 0 the last kick only sets prescribed velocities and takes the energies.
         self.run_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
         self.ledger.open();
-        self.next_limit = self.limits.take();
+        self.take_limit();
         self.check_fixed_step();
         self.run_stages(|stage| stage == Stage::Record)?;
         Ok(())
@@ -190,7 +192,7 @@ impl Simulation {
         self.clock.time = if self.ends_here() { self.end } else { self.clock.end() };
         self.clock.step += 1;
         self.ledger.close_step();
-        self.next_limit = self.limits.take();
+        self.take_limit();
         self.run_stages(|stage| stage == Stage::Record)?;
         self.checkpoint_if_due()
     }
@@ -220,6 +222,14 @@ impl Simulation {
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
+    }
+
+    /// Takes the limit of the next step; in place, so that a step does not allocate.
+    fn take_limit(&mut self) {
+        match (self.limits.take(), &mut self.next_limit) {
+            (Some(limit), Some(next)) => next.clone_from(limit),
+            (limit, next) => *next = limit.cloned(),
+        }
     }
 
     fn ends_here(&self) -> bool {

@@ -1,4 +1,5 @@
 //! What several tests share.
+#![allow(dead_code, reason = "every test uses a part")]
 
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;

@@ -1,6 +1,6 @@
 //! The decay itself: v' = -rate v along the axes that are free, with the lost energy booked.
 
-use meshless_engine::parallel::{BlockSum, for_each_block};
+use meshless_engine::parallel::{BlockSum, sum_over_blocks};
 use meshless_engine::schedule::{AccountKind, Clock, Run, Step, StepError};
 use meshless_engine::world::{BodyId, BodySet, Mass, Mobility, Velocity};
 
@@ -41,7 +41,7 @@ pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepErro
     let mut velocity = view.write::<Velocity>()?;
     let slices = (&mut velocity[rows.clone()], &mass[rows.clone()], &mobility[rows]);
     type Rows<'a> = (&'a mut [Velocity], &'a [Mass], &'a [Mobility]);
-    let loss = for_each_block(slices, &mut Vec::new(), &|_, (velocity, mass, mobility): Rows<'_>| {
+    let loss = sum_over_blocks(slices, &|_, (velocity, mass, mobility): Rows<'_>| {
         let mut twice = 0.0;
         for ((v, m), mobility) in velocity.iter_mut().zip(mass).zip(mobility) {
             let before = v.0.length_squared();

@@ -1,7 +1,7 @@
 //! The frequency of the motion of the last step, from the forces that the motion has changed.
 
 use glam::DVec3;
-use meshless_engine::parallel::{BlockSum, for_each_block};
+use meshless_engine::parallel::{BlockSum, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Force, Mass, Mobility, Velocity};
 
@@ -49,7 +49,7 @@ pub fn look(step: &Step<'_>, id: BodyId) -> Result<Motion, StepError> {
         &mobility[rows],
     );
     type Rows<'a> = (&'a mut [PreviousForce], &'a [Force], &'a [Velocity], &'a [Mass], &'a [Mobility]);
-    Ok(for_each_block(slices, &mut Vec::new(), &|_, (previous, f, v, m, mobility): Rows<'_>| {
+    Ok(sum_over_blocks(slices, &|_, (previous, f, v, m, mobility): Rows<'_>| {
         let mut motion = Motion::default();
         for k in 0..f.len() {
             let free = DVec3::select(mobility[k].0.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);

@@ -5,8 +5,8 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, oscillating_plate, patch, rubber_pull,
-    turek_hron, twisting_column,
+    bending_column, cantilever, cantilever_large, cook_membrane, invariants, kernels, laws, neighbor_lists,
+    oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
 };
 
 /// A case with a known answer.
@@ -25,6 +25,14 @@ pub struct Case {
 
 /// All cases.
 pub const CASES: &[Case] = &[
+    kernels::CASE,
+    invariants::AFFINE,
+    invariants::GRADIENT,
+    invariants::PAIR_TERM,
+    neighbor_lists::CASE,
+    invariants::THROWN,
+    laws::STRETCH,
+    laws::CONSISTENCY,
     patch::CASE,
     cantilever::CASE,
     cantilever_large::CASE,

@@ -5,6 +5,9 @@ use glam::DVec3;
 use crate::plugin::{BodyPlan, SetupError};
 use crate::scene::{Face, Select};
 
+/// Volume of the particles over that of the bounding box, less one, up to which a body is a box.
+const FILLED: f64 = 1e-6;
+
 /// Axis and sign of the outward normal of a face.
 pub(super) fn outward(face: Face) -> (usize, f64) {
     match face {
@@ -17,10 +20,14 @@ pub(super) fn outward(face: Face) -> (usize, f64) {
     }
 }
 
-/// Area that the selected rows of a body stand for, m2 (m in two dimensions): their volume over the thickness of the
-/// layer. The thickness of a flat face is twice the mean distance of its particles from the face, which is the distance of
-/// the layers for any lattice; without a face it is the spacing.
+/// Area that the selected rows of a body stand for, m2 (m in two dimensions): that of the face, where it is a whole face of a
+/// body that fills its bounding box; else their volume over the thickness of the layer. The thickness of a flat face is
+/// twice the mean distance of its particles from the face, which is the distance of the layers for any lattice; without a
+/// face it is the spacing.
 pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64 {
+    if let Some(area) = whole_face(select, body) {
+        return area;
+    }
     let sites = || rows.iter().map(|&row| &body.sites[row as usize - body.rows.start]);
     let volume: f64 = sites().map(|site| site.volume).sum();
     let thickness = match select.face.map(outward) {
@@ -32,6 +39,15 @@ pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64
         None => body.spacing,
     };
     if thickness > 0.0 { volume / thickness } else { volume / body.spacing }
+}
+
+/// The area of the face of a box, if the selection means all of it.
+fn whole_face(select: &Select, body: &BodyPlan) -> Option<f64> {
+    let (axis, _) = outward(select.face.filter(|_| select.within.is_none() && select.nearest.is_none())?);
+    let sides = body.bounds.extent();
+    let of_box: f64 = sides.to_array().into_iter().filter(|side| *side > 0.0).product();
+    let filled: f64 = body.sites.iter().map(|site| site.volume).sum();
+    ((filled / of_box - 1.0).abs() < FILLED).then(|| of_box / sides[axis])
 }
 
 /// The outward normal of the face that a load needs.

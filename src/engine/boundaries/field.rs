@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::part::Part;
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
 use crate::schedule::StepError;
@@ -85,7 +85,7 @@ impl Field {
         out.clear();
         out.resize(points.len(), DVec3::ZERO);
         let rows = (&mut out[..], points);
-        let bad = for_each_block(rows, &mut Vec::new(), &|first, (out, points): (&mut [DVec3], &[DVec3])| {
+        let bad = sum_over_blocks(rows, &|first, (out, points): (&mut [DVec3], &[DVec3])| {
             let mut bad = FirstBad::default();
             for (k, (value, &point)) in out.iter_mut().zip(points).enumerate() {
                 *value = self.at(point, t);

@@ -197,8 +197,7 @@ fn a_traction_has_the_area_of_the_face_on_any_lattice() {
         let momentum: f64 =
             column::<Velocity>(&sim).iter().zip(column::<Mass>(&sim)).map(|(v, m)| m.0 * v.0.y).sum();
         let area = momentum / (3.0e3 * 1.0e-4);
-        let tolerance = if lattice.starts_with("Relaxed") { 0.08 } else { 1e-9 };
-        assert!((area - 1.0).abs() < tolerance, "{lattice}: {area}");
+        assert!((area - 1.0).abs() < 1e-9, "{lattice}: {area}");
     }
 }
 

@@ -21,9 +21,10 @@ pub struct Traction {
     pub on: Select,
     /// Traction per axis \[Pa\], a function of the reference position and time; `None` is zero.
     pub value: PerAxis<Expression>,
-    /// Loaded area \[m2; m in two dimensions\]. Default: the volume of the selected particles over the thickness of their
-    /// layer, which is twice their mean distance from the face, or the spacing where the selection names no face. That
-    /// is the true area of a flat face on a lattice; on an irregular packing it is some percent off, so state it there.
+    /// Loaded area \[m2; m in two dimensions\]. Default: of a whole face of a box its area. Else the volume of the selected
+    /// particles over the thickness of their layer, which is twice their mean distance from the face, or the spacing where
+    /// the selection names no face: the true area of a flat face on a lattice, some percent off on an irregular packing, so
+    /// state it there.
     #[serde(default)]
     pub area: Option<f64>,
 }

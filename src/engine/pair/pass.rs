@@ -159,12 +159,15 @@ impl<S: PairSource> Run for PairPass<S> {
         for BodyTerms { id, terms: indices, forces } in bodies.deref_mut() {
             let body = step.world.body(*id);
             let rows = body.rows.clone();
-            let terms: Vec<&dyn ErasedTerm> = indices.iter().map(|&k| &*self.terms[k]).collect();
+            let Some(&first) = indices.first() else { continue };
+            let mut slots = [&*self.terms[first]; MAX_TERMS];
+            slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k]);
+            let terms = &slots[..indices.len()];
             forces.resize(rows.len() * terms.len(), DVec3::ZERO);
             let mut fastest = Fastest::default();
             let sums = &mut self.sums;
             self.source.with_rows(step, *id, &mut |pairs| {
-                bind_all(&terms, &view, None, &mut |chain| {
+                bind_all(terms, &view, None, &mut |chain| {
                     let written = ForceRows {
                         total: &mut force[rows.clone()],
                         by_term: forces,

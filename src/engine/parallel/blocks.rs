@@ -84,6 +84,34 @@ pub fn for_each_block<S: Split, R: BlockSum>(
     total
 }
 
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what the blocks
+/// return: [`for_each_block`] for loops that keep no scratch memory. The sum is taken pairwise along a tree that depends
+/// on the number of rows alone.
+pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S) -> R + Sync)) -> R {
+    match block_count(rows.rows()) {
+        0 => R::default(),
+        count => divide_and_sum(0, count, rows, body),
+    }
+}
+
+fn divide_and_sum<S: Split, R: BlockSum>(
+    first_row: usize,
+    count: usize,
+    rows: S,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    if count == 1 {
+        return body(first_row, rows);
+    }
+    let half = count / 2;
+    let (left, right) = rows.split(half * BLOCK);
+    let left = || divide_and_sum(first_row, half, left, body);
+    let right = || divide_and_sum(first_row + half * BLOCK, count - half, right, body);
+    let (mut sum, next) = if count > BLOCKS_PER_TASK { rayon::join(left, right) } else { (left(), right()) };
+    sum.add(&next);
+    sum
+}
+
 /// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the hand-over.
 const BLOCKS_PER_TASK: usize = 16;
 
@@ -142,6 +170,12 @@ mod tests {
         for threads in [1, 2, 7] {
             assert_eq!(sum_of(&values, threads).to_bits(), blocked.to_bits());
         }
+        let tree = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| sum_over_blocks(&values[..], &|_, rows: &[f64]| rows.iter().sum::<f64>()))
+        };
+        assert!((tree(1) - blocked).abs() < 1e-9 * blocked.abs());
+        assert!([2, 7].iter().all(|&threads| tree(threads).to_bits() == tree(1).to_bits()));
     }
 
     #[test]
@@ -154,6 +188,11 @@ mod tests {
                 }
             });
             assert!(rows.iter().enumerate().all(|(k, &row)| row == k + 1));
+            let count = sum_over_blocks(&rows[..], &|first, block: &[usize]| {
+                assert!(block.iter().enumerate().all(|(k, &row)| row == first + k + 1));
+                block.len() as f64
+            });
+            assert_eq!(count, len as f64);
         }
     }
 }

@@ -7,7 +7,7 @@ mod lanes;
 mod path;
 
 pub use arithmetic::Arithmetic;
-pub use blocks::{BLOCK, BlockSum, Split, block_count, for_each_block};
+pub use blocks::{BLOCK, BlockSum, Split, block_count, for_each_block, sum_over_blocks};
 pub use dimension::{PlaneOrSolid, run_hot_in};
 pub use lanes::Lanes4;
 pub use path::{HotLoop, instruction_path, run_hot};

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What is recorded, and how often.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
     /// Time between two frames \[s\]; without it a hundredth of the duration.
@@ -13,10 +13,24 @@ pub struct Record {
     /// Fields that are recorded beside the positions, such as `"pressure"`, `"von_mises"` or `"velocity.x"`.
     #[serde(default)]
     pub fields: Vec<String>,
-    /// Time between two checkpoints \[s\]; without it only an interrupted run leaves one.
+    /// Time between two checkpoints \[s\]; without it the run leaves one at its end, or where it is interrupted.
     #[serde(default)]
     pub checkpoint_every: Option<f64>,
+    /// Whether a run that is complete leaves a checkpoint, from which `meshless resume --until` goes further. An
+    /// interrupted run leaves one in any case.
+    #[serde(default = "yes")]
+    pub checkpoint_at_end: bool,
     /// Whether each frame is also written as a ParaView file.
     #[serde(default)]
     pub vtk: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self { every: None, fields: Vec::new(), checkpoint_every: None, checkpoint_at_end: true, vtk: false }
+    }
 }

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use super::system::{Access, Mode};
-use crate::parallel::{BlockSum, Split, for_each_block};
+use crate::parallel::{BlockSum, Split, sum_over_blocks};
 use crate::world::{Column, MissingColumn, PhaseView};
 
 /// One column of a row: `&C` or `&mut C`.
@@ -134,7 +134,7 @@ macro_rules! each_row {
                     }
                     sum
                 };
-                Ok(for_each_block(slices, &mut Vec::new(), &body))
+                Ok(sum_over_blocks(slices, &body))
             }
         }
     };

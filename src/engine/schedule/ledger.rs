@@ -23,6 +23,8 @@ pub struct Account {
     /// Kind.
     pub kind: AccountKind,
     per_body: Vec<f64>,
+    /// What each system has stated, by its number.
+    stated: Vec<(u32, Vec<f64>)>,
 }
 
 /// Index of an account.
@@ -36,6 +38,8 @@ pub struct Ledger {
     bodies: usize,
     stored_at_start: f64,
     largest: f64,
+    /// Number of the system that runs.
+    system: u32,
 }
 
 impl Ledger {
@@ -49,7 +53,12 @@ impl Ledger {
         if let Some(k) = self.accounts.iter().position(|account| account.name == name) {
             return AccountId(k);
         }
-        self.accounts.push(Account { name: name.to_owned(), kind, per_body: vec![0.0; self.bodies] });
+        self.accounts.push(Account {
+            name: name.to_owned(),
+            kind,
+            per_body: vec![0.0; self.bodies],
+            stated: Vec::new(),
+        });
         AccountId(self.accounts.len() - 1)
     }
 
@@ -58,9 +67,21 @@ impl Ledger {
         &self.accounts
     }
 
-    /// States the energy now held, J.
+    /// From here on energies are stated by that system.
+    pub(super) fn enter(&mut self, system: usize) {
+        self.system = system as u32;
+    }
+
+    /// States the energy now held, J. It replaces what the same system has stated before; what several systems state
+    /// of one account and body is added up.
     pub fn set(&mut self, account: AccountId, body: BodyId, energy: f64) {
-        self.accounts[account.0].per_body[body.0] = energy;
+        let Account { per_body, stated, .. } = &mut self.accounts[account.0];
+        let own = stated.iter().position(|(system, _)| *system == self.system).unwrap_or_else(|| {
+            stated.push((self.system, vec![0.0; per_body.len()]));
+            stated.len() - 1
+        });
+        stated[own].1[body.0] = energy;
+        per_body[body.0] = stated.iter().map(|(_, energies)| energies[body.0]).sum();
     }
 
     /// Adds work done or energy dissipated in this step, J.
@@ -156,5 +177,24 @@ mod tests {
         ledger.add(gravity, BodyId(0), 0.7);
         assert!((ledger.relative_error() + 0.1).abs() < 1e-12);
         assert_eq!(ledger.account("kinetic", AccountKind::Stored), kinetic);
+    }
+
+    #[test]
+    fn what_two_systems_hold_in_one_account_is_added_up() {
+        let mut ledger = Ledger::new(2);
+        let springs = ledger.account("springs", AccountKind::Stored);
+        for (first, second) in [(1.0, 2.0), (5.0, 3.0)] {
+            ledger.enter(4);
+            ledger.set(springs, BodyId(1), first);
+            ledger.enter(7);
+            ledger.set(springs, BodyId(1), second);
+            assert_eq!(ledger.total(springs), first + second);
+        }
+        ledger.enter(4);
+        ledger.set(springs, BodyId(1), 0.0);
+        assert_eq!(ledger.accounts()[0].of(BodyId(1)), 3.0);
+        // What is added corrects what has been stated, until it is stated anew.
+        ledger.add(springs, BodyId(1), 0.5);
+        assert_eq!(ledger.total(springs), 3.5);
     }
 }

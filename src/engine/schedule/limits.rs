@@ -3,12 +3,24 @@
 use serde::{Deserialize, Serialize};
 
 /// A limit of the time step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Largest stable step, s.
     pub dt: f64,
     /// What limits it, such as `wave speed of plate`.
     pub by: String,
+}
+
+impl Clone for Limit {
+    fn clone(&self) -> Self {
+        Self { dt: self.dt, by: self.by.clone() }
+    }
+
+    /// Keeps the memory of the text: every step takes one.
+    fn clone_from(&mut self, source: &Self) {
+        self.dt = source.dt;
+        self.by.clone_from(&source.by);
+    }
 }
 
 /// Least number of steps for which a limit is kept.
@@ -30,30 +42,32 @@ pub struct TimeStepLimits {
 }
 
 impl TimeStepLimits {
-    /// Proposes a limit, dt in s; `by` is asked for its text only if the limit is the smallest so far.
+    /// Proposes a limit, dt in s; `by` is asked for its text only where the limit is the smallest so far and smaller
+    /// than those not long ago, so that most steps need no text.
     pub fn propose(&mut self, dt: f64, by: impl FnOnce() -> String) {
-        if self.proposed.as_ref().is_none_or(|limit| dt < limit.dt) {
-            self.proposed = Some(Limit { dt, by: by() });
+        if self.proposed.as_ref().is_some_and(|limit| limit.dt <= dt) {
+            return;
         }
+        let kept = self.recent.as_ref().is_some_and(|recent| recent.dt <= dt) && self.age < MEMORY;
+        let by = if kept { String::new() } else { by() };
+        self.proposed = Some(Limit { dt, by });
     }
 
     /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this step. What
     /// has been proposed is taken.
-    pub fn take(&mut self) -> Option<Limit> {
+    pub fn take(&mut self) -> Option<&Limit> {
         let proposed = self.proposed.take()?;
         if self.age == MEMORY {
             self.older = self.recent.take();
             self.age = 0;
         }
         self.age += 1;
-        let recent = match self.recent.take() {
-            Some(limit) if limit.dt <= proposed.dt => limit,
-            _ => proposed,
-        };
-        self.recent = Some(recent.clone());
-        match &self.older {
-            Some(limit) if limit.dt < recent.dt => Some(limit.clone()),
-            _ => Some(recent),
+        if self.recent.as_ref().is_none_or(|limit| limit.dt > proposed.dt) {
+            self.recent = Some(proposed);
+        }
+        match (&self.older, &self.recent) {
+            (Some(older), Some(recent)) if older.dt < recent.dt => Some(older),
+            (_, recent) => recent.as_ref(),
         }
     }
 }

@@ -74,8 +74,9 @@ impl Schedule {
 
     /// Runs the systems of the stages that `wanted` accepts.
     pub fn run(&mut self, step: &mut Step<'_>, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
-        for (system, time) in self.systems.iter_mut().zip(&mut self.times) {
+        for (k, (system, time)) in self.systems.iter_mut().zip(&mut self.times).enumerate() {
             if wanted(system.stage) {
+                step.ledger.enter(k);
                 let start = Instant::now();
                 system.work.run(step)?;
                 *time += start.elapsed();

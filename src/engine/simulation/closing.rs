@@ -42,7 +42,8 @@ impl Simulation {
         }
     }
 
-    /// Ends the run, wherever it is: writes a checkpoint unless it is complete or has failed, closes all files and
+    /// Ends the run, wherever it is: writes a checkpoint unless it has failed (or is complete and the
+    /// scene wants none then), closes all files and
     /// writes the summary. A second call writes nothing new.
     ///
     /// # Errors
@@ -51,7 +52,7 @@ impl Simulation {
         self.warn_of_balance();
         let begun = self.output.as_ref().filter(|output| output.lock().has_begun()).cloned();
         let Some(output) = begun else { return Ok(self.summary()) };
-        if self.failure.is_none() && self.clock.time < self.end {
+        if self.failure.is_none() && (self.clock.time < self.end || self.checkpoint_at_end) {
             self.checkpoint()?;
         }
         output.lock().finish(&self.warnings)?;

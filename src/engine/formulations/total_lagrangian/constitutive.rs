@@ -200,7 +200,10 @@ impl BodyLaw {
             let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
             ledger.add(plastic, self.id, sum.plastic_work);
         }
-        for (&k, energy) in self.terms.iter().zip(sum.terms) {
+        for &k in &self.terms {
+            // Terms of one account hold its energy together.
+            let own = |(other, _): &(&usize, f64)| terms[**other].account == terms[k].account;
+            let energy = self.terms.iter().zip(sum.terms).filter(own).map(|(_, energy)| energy).sum();
             let account = ledger.account(&terms[k].account, AccountKind::Stored);
             ledger.set(account, self.id, energy);
         }

@@ -13,10 +13,11 @@ use super::pairs::BondPairs;
 use super::repeats::repeats_of;
 use super::rows::{PairStress, Site};
 use super::stable_step::StepEstimate;
+use super::support::choose_support;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
 use crate::pair::add_pair_systems;
-use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyPlan, Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
 use crate::world::{
@@ -32,11 +33,17 @@ pub struct TotalLagrangian {
     pub kernel: KernelName,
     /// Support radius over spacing.
     pub support: f64,
+    /// In place of `support`, for irregular particles: the number of neighbours for which the support radius of each
+    /// particle is chosen, half-way between the distances of the last of them and of the next.
+    pub neighbors: Option<u32>,
 }
+
+/// Support radius over spacing, where the scene gives none.
+const USUAL_SUPPORT: f64 = 2.41;
 
 impl Default for TotalLagrangian {
     fn default() -> Self {
-        Self { kernel: KernelName::Spiky, support: 2.41 }
+        Self { kernel: KernelName::Spiky, support: USUAL_SUPPORT, neighbors: None }
     }
 }
 
@@ -86,7 +93,7 @@ impl Formulation for TotalLagrangian {
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         for (id, parameters) in &bodies {
-            parameters.check(sim.body(*id).spacing)?;
+            parameters.check(sim.body(*id))?;
         }
         let phase = sim.body(bodies[0].0).phase;
         super::fields::add(sim);
@@ -96,6 +103,12 @@ impl Formulation for TotalLagrangian {
             repeats_of(body, parameters.support * body.spacing, &planes, sim)
         };
         let repeats = bodies.iter().map(repeats_of).collect::<Result<Vec<_>, _>>()?;
+        for ((_, parameters), repeats) in bodies.iter().zip(&repeats) {
+            if parameters.neighbors.is_some() && !repeats.is_empty() {
+                let message = "neighbours cannot be counted across a symmetry plane or a periodic side";
+                return Err(SetupError::parameter("neighbors", message, "give a `support` instead"));
+            }
+        }
         let terms: Vec<BodyBondTerm> = sim.take_extensions();
         let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms)).collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
@@ -130,7 +143,11 @@ impl Formulation for TotalLagrangian {
 }
 
 impl TotalLagrangian {
-    fn check(&self, spacing: f64) -> Result<(), SetupError> {
+    fn check(&self, body: &BodyPlan) -> Result<(), SetupError> {
+        if let Some(neighbors) = self.neighbors {
+            return self.check_neighbors(neighbors, body);
+        }
+        let spacing = body.spacing;
         let fewest = 1.5;
         if self.support.is_finite() && self.support >= fewest && self.support <= 10.0 {
             return Ok(());
@@ -142,8 +159,27 @@ impl TotalLagrangian {
                 self.support,
                 self.support * spacing
             ),
-            format!("give a support of {fewest} to 10 spacings; 2.41 is usual"),
+            format!("give a support of {fewest} to 10 spacings; {USUAL_SUPPORT} is usual"),
         ))
+    }
+
+    fn check_neighbors(&self, neighbors: u32, body: &BodyPlan) -> Result<(), SetupError> {
+        let fault = |message: String, help: &str| Err(SetupError::parameter("neighbors", message, help));
+        if self.support != USUAL_SUPPORT {
+            return fault(
+                "`support` and `neighbors` both say how far a particle sees".to_owned(),
+                "give one of them",
+            );
+        }
+        if !(4..=400).contains(&neighbors) {
+            let message = format!("{neighbors} neighbours do not work");
+            return fault(message, "12 in two and 30 in three dimensions are usual");
+        }
+        if body.sites.len() < neighbors as usize + 2 {
+            let message = format!("body `{}` has only {} particles", body.name, body.sites.len());
+            return fault(message, "use more particles, or fewer neighbours");
+        }
+        Ok(())
     }
 }
 
@@ -163,7 +199,16 @@ fn set_up(
     gradient.fill(DeformationGradient(glam::DMat3::IDENTITY));
     for (id, parameters) in bodies {
         let body = setup.world.body(*id);
-        support[body.rows.clone()].fill(SupportRadius(parameters.support * body.spacing));
+        let usual = parameters.support * body.spacing;
+        let support = &mut support[body.rows.clone()];
+        match parameters.neighbors {
+            None => support.fill(SupportRadius(usual)),
+            Some(neighbors) => {
+                let position = bytemuck::cast_slice(&reference[body.rows.clone()]);
+                choose_support(position, usual, neighbors as usize, bytemuck::cast_slice_mut(support))
+                    .map_err(|error| SetupError::internal(&error))?;
+            }
+        }
     }
     let position: &[DVec3] = bytemuck::cast_slice(&reference);
     let volume: &[f64] = bytemuck::cast_slice(&volume);

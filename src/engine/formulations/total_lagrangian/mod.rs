@@ -20,6 +20,7 @@ mod stable_step;
 #[cfg(test)]
 mod state_tests;
 mod stretches;
+mod support;
 
 pub use bond_terms::{BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};

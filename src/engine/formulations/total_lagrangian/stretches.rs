@@ -1,7 +1,7 @@
 //! The extreme stretches of a body, on which its stable step depends.
 
 use crate::linalg::smallest_and_largest_stretch;
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::world::DeformationGradient;
 
 /// Smallest and largest principal stretch; one where nothing is stretched.
@@ -20,7 +20,7 @@ impl Default for Stretches {
 impl Stretches {
     /// The extreme stretches of the particles of a body.
     pub fn of(gradient: &[DeformationGradient]) -> Self {
-        for_each_block(gradient, &mut Vec::new(), &|_, rows: &[DeformationGradient]| {
+        sum_over_blocks(gradient, &|_, rows: &[DeformationGradient]| {
             rows.iter().fold(Self::default(), |all, row| all.with(smallest_and_largest_stretch(row.0)))
         })
     }

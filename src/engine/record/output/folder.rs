@@ -72,6 +72,14 @@ impl OutputFolder {
             let problem = Problem::new(format!("{what} `{}`: {error}", self.path.display()));
             Box::new(problem.help("choose a folder in which you may write"))
         };
+        if let Some(file) = self.path.ancestors().find(|path| path.is_file()) {
+            let message = format!(
+                "cannot make the output folder `{}`: `{}` is a file",
+                self.path.display(),
+                file.display()
+            );
+            return Err(Box::new(Problem::new(message).help("choose a folder in which you may write")));
+        }
         fs::create_dir_all(&self.path).map_err(|error| failed("cannot make the output folder", error))?;
         // A temporary file that is gone at once: the only sure way to know.
         tempfile::tempfile_in(&self.path)

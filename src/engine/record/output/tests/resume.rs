@@ -126,10 +126,18 @@ fn checkpoints_come_when_they_are_due() {
 }
 
 #[test]
-fn a_complete_run_without_interval_leaves_no_checkpoint() {
-    let folder = tempfile::tempdir().unwrap();
-    run(built(&cantilever(|t| t.replace("checkpoint_every: 0.005, ", "")), folder.path()));
-    assert!(!folder.path().join("checkpoint.mlc").exists());
+fn a_complete_run_leaves_a_checkpoint_of_its_end_unless_the_scene_wants_none() {
+    for (setting, there) in
+        [("", true), ("checkpoint_at_end: true, ", true), ("checkpoint_at_end: false, ", false)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        run(built(&cantilever(|t| t.replace("checkpoint_every: 0.005, ", setting)), folder.path()));
+        let file = folder.path().join("checkpoint.mlc");
+        assert_eq!(file.exists(), there, "{setting}");
+        if there {
+            assert_eq!(Checkpoint::read(&file).unwrap().clock().time, 0.02);
+        }
+    }
 }
 
 #[test]

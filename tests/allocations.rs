@@ -1,0 +1,66 @@
+//! A step allocates no memory once everything has its size.
+#![expect(unsafe_code, reason = "an allocator that counts cannot be written without")]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use common::{all_plugins, simulation};
+
+/// The allocator of the system, with a count of what is asked of it.
+struct Counting;
+
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: every call goes to the allocator of the system as it is.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the promises of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the memory comes from `alloc` above, with this layout.
+        unsafe { System.dealloc(memory, layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as for `dealloc`; the caller promises the size.
+        unsafe { System.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of each of `steps` steps after a warm-up, on a number of threads.
+fn counts(dimension: usize, threads: usize, steps: usize) -> Vec<u64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let mut sim = simulation(&all_plugins(dimension));
+        sim.run(|sim| sim.clock().step < 50).expect("a run");
+        let mut counts = Vec::with_capacity(steps);
+        for _ in 0..steps {
+            let before = COUNT.load(Ordering::Relaxed);
+            sim.step().expect("a step");
+            counts.push(COUNT.load(Ordering::Relaxed) - before);
+        }
+        counts
+    })
+}
+
+#[test]
+fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
+    for dimension in [2, 3] {
+        let counts = counts(dimension, 1, 100);
+        // A limit of the time step that falls below all before it has a text, which is made once.
+        let texts = counts.iter().filter(|&&count| count == 1).count();
+        assert!(texts <= 3 && counts.iter().all(|&count| count <= 1), "{dimension} dimensions: {counts:?}");
+    }
+    // The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies.
+    let counts = counts(3, 2, 100);
+    assert!(counts.iter().sum::<u64>() < 20, "two threads: {counts:?}");
+}
