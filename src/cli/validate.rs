@@ -10,9 +10,9 @@ mod case;
 mod check;
 mod cook_membrane;
 mod disorder;
-mod invariants;
-mod kernels;
-mod laws;
+mod homogeneous;
+mod jaumann_shear;
+mod johnson_cook;
 mod measure;
 mod neighbor_lists;
 mod oscillating_plate;
@@ -20,8 +20,12 @@ mod patch;
 mod random;
 mod report;
 mod rubber_pull;
+mod taylor;
+mod taylor_bars;
+mod taylor_plane;
 mod turek_hron;
 mod twisting_column;
+mod uniaxial_strain;
 
 use meshless_engine::plugin::Registry;
 

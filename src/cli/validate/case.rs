@@ -5,8 +5,9 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, invariants, kernels, laws, neighbor_lists,
-    oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
+    bending_column, cantilever, cantilever_large, cook_membrane, jaumann_shear, johnson_cook,
+    oscillating_plate, patch, rubber_pull, taylor_bars, taylor_plane, turek_hron, twisting_column,
+    uniaxial_strain,
 };
 
 /// A case with a known answer.
@@ -25,21 +26,20 @@ pub struct Case {
 
 /// All cases.
 pub const CASES: &[Case] = &[
-    kernels::CASE,
-    invariants::AFFINE,
-    invariants::GRADIENT,
-    invariants::PAIR_TERM,
-    neighbor_lists::CASE,
-    invariants::THROWN,
-    laws::STRETCH,
-    laws::CONSISTENCY,
+    uniaxial_strain::CASE,
+    johnson_cook::CASE,
+    jaumann_shear::CASE,
     patch::CASE,
     cantilever::CASE,
     cantilever_large::CASE,
     rubber_pull::CASE,
+    taylor_plane::CASE,
     oscillating_plate::CASE,
     turek_hron::CASE,
     cook_membrane::CASE,
     bending_column::CASE,
     twisting_column::CASE,
+    taylor_bars::COPPER,
+    taylor_bars::STEEL,
+    taylor_bars::ALUMINIUM,
 ];
