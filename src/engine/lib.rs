@@ -15,6 +15,7 @@ pub use schemars;
 pub use serde;
 
 pub mod boundaries;
+pub mod contact;
 pub mod correction;
 pub mod formulations;
 pub mod integrate;

@@ -1,0 +1,16 @@
+//! Rigid bodies: particles that move as one, with the exact surface of their shape.
+
+mod body;
+mod constraint;
+mod formulation;
+mod inertia;
+mod nodes;
+mod rotation;
+mod systems;
+
+pub use body::{RigidBodies, RigidBody, RigidState};
+pub use constraint::{Drive, DrivenBody, DrivenRotation};
+pub use formulation::{Rigid, Rotation};
+pub use nodes::Nodes;
+pub use rotation::Inertia;
+pub use systems::{RIGID_DRIFT, RIGID_KICK, RIGID_WEIGHT};
