@@ -28,6 +28,7 @@ pub mod parallel;
 pub mod plugin;
 pub mod record;
 pub mod removal;
+pub mod rigid;
 pub mod scene;
 pub mod schedule;
 pub mod shapes;

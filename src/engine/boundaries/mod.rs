@@ -14,6 +14,7 @@ mod load;
 mod part;
 mod prescribed;
 mod pressure;
+mod rigid_part;
 mod symmetry;
 #[cfg(test)]
 mod tests;

@@ -3,13 +3,17 @@
 mod hertz;
 mod law;
 mod memory;
+mod node_view;
 mod particles;
 mod penalty;
 mod plan;
 mod response;
 mod restitution;
 mod search;
+mod sides;
+mod start;
 mod stiffness;
+mod surface;
 mod system;
 mod tally;
 #[cfg(test)]

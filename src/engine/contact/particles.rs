@@ -11,7 +11,7 @@ use super::tally::Tally;
 use crate::plugin::BodyPlan;
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
-use crate::world::{BodyId, Force, Mobility, Position, ReferencePosition, Velocity};
+use crate::world::{BodyId, Force, Mobility, Position, ReferencePosition, Removed, Velocity};
 
 /// Particles of one body closer than this in the reference configuration do not touch, over the distance at which they
 /// would: bonds hold them apart.
@@ -97,8 +97,10 @@ impl ParticleContact {
         let (x, y) = (first.read::<Position>()?, second.read::<Position>()?);
         let (v, u) = (first.read::<Velocity>()?, second.read::<Velocity>()?);
         let (mobility, other) = (first.read::<Mobility>()?, second.read::<Mobility>()?);
+        let gone = [first.read::<Removed>()?, second.read::<Removed>()?];
         let (a, b) = (first_rows.start, second_rows.start);
         let slip = |key: PairKey| v[a + key.0 as usize].0 - u[b + key.1 as usize].0;
+        let other_side = usize::from(self.first != self.second);
         let mut tally = Tally::default();
         let mut losses = Losses::default();
         self.forces.clear();
@@ -107,7 +109,7 @@ impl ParticleContact {
             let x_ij = y[b + j].0 - x[a + i].0;
             let reach = self.radius[0][i] + self.radius[1][j];
             let squared = x_ij.length_squared();
-            if squared >= reach * reach || squared == 0.0 {
+            if squared >= reach * reach || squared == 0.0 || gone[0][a + i].is_set() || gone[1][b + j].is_set() {
                 continue;
             }
             while let Some((old, memory)) = self.memories.ended_before(Some(key)) {
@@ -131,7 +133,7 @@ impl ParticleContact {
             losses.add(&before, &response.memory, meeting.velocity, dt);
             tally.stored += response.spring.energy + response.memory.energy();
             self.stiffness[0].add(i, response.spring.stiffness * along(m_i, meeting.normal));
-            self.stiffness[1].add(j, response.spring.stiffness * along(m_j, meeting.normal));
+            self.stiffness[other_side].add(j, response.spring.stiffness * along(m_j, meeting.normal));
             self.memories.keep(key, response.memory);
             self.forces.push((key, response.force));
         }
@@ -157,8 +159,9 @@ impl ParticleContact {
     }
 
     fn propose(&mut self, step: &mut Step<'_>, speed: f64) {
+        let other_side = usize::from(self.first != self.second);
         let stiffest = self.forces.iter().map(|((i, j), _)| {
-            self.stiffness[0].of(*i as usize) + self.stiffness[1].of(*j as usize)
+            self.stiffness[0].of(*i as usize) + self.stiffness[other_side].of(*j as usize)
         });
         let stiffest = stiffest.fold(0.0, f64::max);
         self.stiffness.iter_mut().for_each(NodeStiffness::clear);

@@ -51,3 +51,16 @@ pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64,
         step.limits.propose(SWEPT_FACTOR * reach / speed, || format!("speed of approach of {}", names()));
     }
 }
+
+/// Step of the contacts of rigid bodies, over one over their frequency: some thirty steps an impact, for its energy.
+const IMPACT_FACTOR: f64 = 0.1;
+
+/// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
+pub(super) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {
+    if squared > 0.0 {
+        let world = step.world;
+        let by =
+            || format!("contact of rigid `{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
+        step.limits.propose(IMPACT_FACTOR / squared.sqrt(), by);
+    }
+}

@@ -1,12 +1,14 @@
 //! The system of all contacts of a scene.
 
-use super::memory::{Memory, PairKey};
+use super::memory::{Memories, Memory, PairKey};
 use super::particles::ParticleContact;
+use super::start;
+use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::SimBuilder;
-use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, BodySet, Force, Mobility, Position, ReferencePosition, Velocity};
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::world::{BodyId, BodySet, Force, Mobility, Position, ReferencePosition, Removed, Velocity};
 
 /// Label of the system that makes the forces of contact.
 pub const CONTACT: &str = "contact";
@@ -14,6 +16,7 @@ pub const CONTACT: &str = "contact";
 /// Two bodies that touch.
 pub(super) enum Touching {
     Particles(ParticleContact),
+    Surface(SurfaceContact),
 }
 
 impl Touching {
@@ -21,30 +24,35 @@ impl Touching {
     pub fn bodies(&self) -> [BodyId; 2] {
         match self {
             Self::Particles(contact) => [contact.first, contact.second],
+            Self::Surface(contact) => [contact.sides.first, contact.sides.second],
         }
     }
 
     fn run(&mut self, step: &mut Step<'_>, speeds: [f64; 2]) -> Result<Tally, StepError> {
         match self {
             Self::Particles(contact) => contact.run(step, speeds),
+            Self::Surface(contact) => contact.run(step, speeds),
         }
     }
 
-    fn entries(&self) -> &[(PairKey, Memory)] {
+    fn memories(&self) -> &Memories {
         match self {
-            Self::Particles(contact) => contact.memories.entries(),
+            Self::Particles(contact) => &contact.memories,
+            Self::Surface(contact) => &contact.memories,
         }
     }
 
-    fn set(&mut self, entries: Vec<(PairKey, Memory)>) {
+    fn memories_mut(&mut self) -> &mut Memories {
         match self {
-            Self::Particles(contact) => contact.memories.set(entries),
+            Self::Particles(contact) => &mut contact.memories,
+            Self::Surface(contact) => &mut contact.memories,
         }
     }
 }
 
-/// Adds the system of the pairs.
-pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, bodies: &BodySet) {
+/// Adds the system of the pairs; `numbers` are those of their contacts in the scene.
+pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Vec<usize>, bodies: &BodySet) {
+    start::refuse_bodies_within_others(sim, &touching, numbers);
     let phases = sim.phases_of(bodies);
     let contacts = Contacts {
         bodies: bodies.iter().map(|body| (body, 0.0)).collect(),
@@ -58,7 +66,9 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, bodies: &Bo
             .reads::<ReferencePosition>()
             .reads::<Velocity>()
             .reads::<Mobility>()
-            .adds::<Force>(),
+            .reads::<Removed>()
+            .adds::<Force>()
+            .touches("rigid_bodies", Mode::Adds),
     );
 }
 
@@ -107,7 +117,7 @@ impl Run for Contacts {
     }
 
     fn save(&self) -> Vec<u8> {
-        let entries: Vec<_> = self.touching.iter().map(Touching::entries).collect();
+        let entries: Vec<_> = self.touching.iter().map(|pair| pair.memories().entries()).collect();
         postcard::to_stdvec(&entries).unwrap_or_default()
     }
 
@@ -116,7 +126,7 @@ impl Run for Contacts {
         if entries.len() != self.touching.len() {
             return false;
         }
-        self.touching.iter_mut().zip(entries).for_each(|(pair, entries)| pair.set(entries));
+        self.touching.iter_mut().zip(entries).for_each(|(pair, entries)| pair.memories_mut().set(entries));
         true
     }
 }

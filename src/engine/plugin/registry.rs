@@ -63,7 +63,6 @@ impl Entry {
 const LATER: &[(Kind, &str)] = &[
     (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
-    (Kind::Formulation, "Rigid"),
     (Kind::Plugin, "hessian_stabilization"),
     (Kind::Plugin, "artificial_stress"),
 ];

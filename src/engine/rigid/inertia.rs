@@ -54,7 +54,7 @@ impl MassProperties {
 }
 
 /// Centre and radius of a shape that is a sphere or disc, m.
-pub(super) fn sphere_of(shape: &Shape) -> Option<(DVec3, f64)> {
+pub(crate) fn sphere_of(shape: &Shape) -> Option<(DVec3, f64)> {
     match shape {
         Shape::Sphere { center, radius } => Some((center.0, *radius)),
         Shape::Translate { shape, by } => sphere_of(shape).map(|(center, radius)| (center + by.0, radius)),

@@ -11,6 +11,7 @@ mod systems;
 pub use body::{RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation};
 pub use formulation::{Rigid, Rotation};
+pub(crate) use inertia::sphere_of;
 pub use nodes::Nodes;
 pub use rotation::Inertia;
 pub use systems::{RIGID_DRIFT, RIGID_KICK, RIGID_WEIGHT};

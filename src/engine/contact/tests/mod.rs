@@ -2,6 +2,7 @@
 
 mod laws;
 mod particles;
+mod rigid;
 
 use glam::DVec3;
 
