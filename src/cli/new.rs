@@ -36,6 +36,8 @@ const TEMPLATES: [Template; 13] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
+    "punch",
+    "colliding_rings",
     "patch_breathing",
     "thrown_ring",
     "turek_hron_csm3",

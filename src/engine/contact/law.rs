@@ -22,7 +22,11 @@ impl ContactPair {
             return Ok(self.modulus);
         }
         let message = format!("neither body has a modulus that `{field}` could follow from");
-        Err(ParameterError::new(field, message, format!("give `{field}`, or one of the bodies an elastic material")))
+        Err(ParameterError::new(
+            field,
+            message,
+            format!("give `{field}`, or one of the bodies an elastic material"),
+        ))
     }
 }
 

@@ -32,7 +32,7 @@ impl NodeView<'_> {
     /// Whether a node takes part: a removed particle does not.
     pub fn is_there(&self, i: usize) -> bool {
         match self {
-            Self::Particles { removed, .. } => !removed[i].is_set(),
+            Self::Particles { removed, .. } => removed[i] == Removed::NO,
             Self::Rigid(_) => true,
         }
     }

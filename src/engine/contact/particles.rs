@@ -75,7 +75,10 @@ impl ParticleContact {
             let other = Crowd { position: &y[second_rows], radius: &self.radius[1] };
             self.search.between(crowd, other)
         };
-        found.map_err(|error| StepError::System { system: super::CONTACT.to_owned(), message: error.to_string() })
+        found.map_err(|error| StepError::System {
+            system: super::CONTACT.to_owned(),
+            message: error.to_string(),
+        })
     }
 
     /// Adds the forces of all pairs that touch; `speeds` are the largest of each body, m/s.
@@ -109,7 +112,10 @@ impl ParticleContact {
             let x_ij = y[b + j].0 - x[a + i].0;
             let reach = self.radius[0][i] + self.radius[1][j];
             let squared = x_ij.length_squared();
-            if squared >= reach * reach || squared == 0.0 || gone[0][a + i].is_set() || gone[1][b + j].is_set() {
+            if squared >= reach * reach || squared == 0.0 {
+                continue;
+            }
+            if gone[0][a + i] == Removed::YES || gone[1][b + j] == Removed::YES {
                 continue;
             }
             while let Some((old, memory)) = self.memories.ended_before(Some(key)) {

@@ -33,7 +33,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
         }
         if contact.between.0 == contact.between.1 && is_rigid(find(sim, &contact.between.0)) {
             let message = format!("rigid body `{}` cannot touch itself", contact.between.0);
-            problems.push(Problem::at_path(format!("contacts[{k}].between"), message).help("leave this contact out"));
+            problems.push(
+                Problem::at_path(format!("contacts[{k}].between"), message).help("leave this contact out"),
+            );
             continue;
         }
         match pairs_of(contact, sim, make) {
@@ -56,14 +58,19 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
 
 fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Problem> {
     let (a, b) = &contact.between;
-    let same = |other: &Contact| other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone());
+    let same =
+        |other: &Contact| other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone());
     others.iter().any(same).then(|| {
         let message = format!("the contact between `{a}` and `{b}` is given twice");
         Problem::at_path(format!("contacts[{k}].between"), message).help("give each pair of bodies once")
     })
 }
 
-fn pairs_of(contact: &Contact, sim: &SimBuilder<'_>, make: MakeLaw<'_>) -> Result<Vec<Touching>, Vec<Problem>> {
+fn pairs_of(
+    contact: &Contact,
+    sim: &SimBuilder<'_>,
+    make: MakeLaw<'_>,
+) -> Result<Vec<Touching>, Vec<Problem>> {
     let (first, second) = (find(sim, &contact.between.0), find(sim, &contact.between.1));
     let softness = |body: &BodyPlan| elastic_of(body).map_or(0.0, |e| (1.0 - e.poisson.powi(2)) / e.young);
     let pair =
@@ -81,7 +88,10 @@ fn pairs_of(contact: &Contact, sim: &SimBuilder<'_>, make: MakeLaw<'_>) -> Resul
     };
     let particles = |body| Nodes::Particles(radii(body, sim.dimension()));
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
-        Ok(Touching::Surface(SurfaceContact::new(interaction()?, Sides { first: of.id, nodes, second: on.id })))
+        Ok(Touching::Surface(SurfaceContact::new(
+            interaction()?,
+            Sides { first: of.id, nodes, second: on.id },
+        )))
     };
     let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();
     Ok(match (is_rigid(first), is_rigid(second)) {

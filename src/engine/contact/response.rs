@@ -59,7 +59,8 @@ impl Interaction {
         let approach = -velocity.dot(*normal);
         let pull = self.dashpot(spring.stiffness, across, approach, spring.force, dt);
         let pressure = (spring.force + pull).max(0.0);
-        let (tangential, drag) = self.tangential(meeting, spring.stiffness, pressure, &inverse_mass, dt, before);
+        let (tangential, drag) =
+            self.tangential(meeting, spring.stiffness, pressure, &inverse_mass, dt, before);
         let stiffness = self.tangential * spring.stiffness;
         let dashpot = (pressure - spring.force) * *normal + drag;
         Response {
@@ -107,7 +108,8 @@ impl Interaction {
             return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
         }
         let along = slip.normalize_or(spring.normalize_or_zero());
-        let drag = -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), -spring.dot(along), dt) * along;
+        let drag =
+            -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), -spring.dot(along), dt) * along;
         let room = limit - held;
         (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
     }

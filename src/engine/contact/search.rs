@@ -121,7 +121,11 @@ impl Search {
     }
 
     /// Finds the pairs of a body with itself that `apart` accepts, the smaller number first.
-    pub fn within(&mut self, crowd: Crowd<'_>, apart: impl Fn(u32, u32) -> bool) -> Result<(), NeighborError> {
+    pub fn within(
+        &mut self,
+        crowd: Crowd<'_>,
+        apart: impl Fn(u32, u32) -> bool,
+    ) -> Result<(), NeighborError> {
         self.pairs.clear();
         self.travelled = 0.0;
         self.budget = self.skin;

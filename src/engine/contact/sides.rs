@@ -43,7 +43,8 @@ impl Sides {
             Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
             Nodes::Particles(radius) => {
                 let (view, rows) = world.body_view(self.first);
-                let (x, v, m) = (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Mobility>()?);
+                let (x, v, m) =
+                    (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Mobility>()?);
                 let gone = view.read::<Removed>()?;
                 let view = NodeView::Particles {
                     position: &x[rows.clone()],

@@ -6,7 +6,11 @@ use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::rigid::RigidBodies;
 
 /// Adds the check that no body starts inside a rigid one; `numbers` are those of the contacts in the scene.
-pub(super) fn refuse_bodies_within_others(sim: &mut SimBuilder<'_>, touching: &[Touching], numbers: Vec<usize>) {
+pub(super) fn refuse_bodies_within_others(
+    sim: &mut SimBuilder<'_>,
+    touching: &[Touching],
+    numbers: Vec<usize>,
+) {
     let mut checks = Vec::new();
     for (pair, number) in touching.iter().zip(numbers) {
         if let Touching::Surface(contact) = pair {

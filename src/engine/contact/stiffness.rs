@@ -45,7 +45,8 @@ pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64,
     let world = step.world;
     let names = || format!("`{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
     if squared > 0.0 {
-        step.limits.propose(FREQUENCY_FACTOR / squared.sqrt(), || format!("stiffness of contact of {}", names()));
+        step.limits
+            .propose(FREQUENCY_FACTOR / squared.sqrt(), || format!("stiffness of contact of {}", names()));
     }
     if speed > 0.0 {
         step.limits.propose(SWEPT_FACTOR * reach / speed, || format!("speed of approach of {}", names()));

@@ -7,9 +7,9 @@ use super::law::Touch;
 use super::memory::Memories;
 use super::node_view::NodeView;
 use super::response::{Interaction, Losses, Meeting};
+use super::sides::{Nodes, Sides};
 use super::stiffness::{self, NodeStiffness};
 use super::tally::Tally;
-use super::sides::{Nodes, Sides};
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
@@ -66,7 +66,8 @@ impl SurfaceContact {
         if !(self.travelled <= self.budget) {
             self.travelled = 0.0;
             let mut candidates = std::mem::take(&mut self.candidates);
-            self.budget = self.sides.with(step.world, &bodies, |nodes, tool| near(nodes, tool, &mut candidates))?;
+            self.budget =
+                self.sides.with(step.world, &bodies, |nodes, tool| near(nodes, tool, &mut candidates))?;
             self.candidates = candidates;
         }
         let mut memories = std::mem::take(&mut self.memories);

@@ -105,7 +105,8 @@ impl Run for Contacts {
         for (body, speed) in &mut self.bodies {
             *speed = largest_speed(step, *body)?;
         }
-        let speed_of = |body: BodyId| self.bodies.iter().find(|(id, _)| *id == body).map_or(0.0, |entry| entry.1);
+        let speed_of =
+            |body: BodyId| self.bodies.iter().find(|(id, _)| *id == body).map_or(0.0, |entry| entry.1);
         self.tallies.clear();
         for pair in &mut self.touching {
             let [first, second] = pair.bodies();

@@ -28,13 +28,17 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) {
     }
     let phases = sim.phases_of(&bodies);
     sim.add_system(
-        System::new(Stage::InitialIntegrate, DRIFT, KickDrift { bodies: bodies.clone(), gravity, sums: Vec::new() })
-            .on_phases(phases.clone())
-            .reads::<Force>()
-            .reads::<Mobility>()
-            .reads::<Mass>()
-            .touches(<Velocity as crate::world::Column>::NAME, Mode::Writes)
-            .writes::<Position>(),
+        System::new(
+            Stage::InitialIntegrate,
+            DRIFT,
+            KickDrift { bodies: bodies.clone(), gravity, sums: Vec::new() },
+        )
+        .on_phases(phases.clone())
+        .reads::<Force>()
+        .reads::<Mobility>()
+        .reads::<Mass>()
+        .touches(<Velocity as crate::world::Column>::NAME, Mode::Writes)
+        .writes::<Position>(),
     );
     sim.add_system(
         System::new(Stage::FinalIntegrate, KICK, Kick { bodies, sums: Vec::new() })

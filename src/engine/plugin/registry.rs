@@ -203,7 +203,10 @@ impl Registry {
 
     /// The source of what is behind a name; empty if it has none.
     pub(super) fn reference(&self, kind: Kind, name: &str) -> &'static str {
-        self.entries.iter().find(|((k, n), _)| *k == kind && *n == name).map_or("", |(_, entry)| entry.reference)
+        self.entries
+            .iter()
+            .find(|((k, n), _)| *k == kind && *n == name)
+            .map_or("", |(_, entry)| entry.reference)
     }
 
     pub(super) fn build_plugin(

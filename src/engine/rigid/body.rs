@@ -61,7 +61,19 @@ impl RigidBody {
         let RigidParts { id, mass, inertia, points, reach, surface, nodes, constraint } = parts;
         let contact = (DVec3::ZERO, DVec3::ZERO);
         let reference_center = state.center;
-        Self { id, mass, inertia, points, reference_center, reach, surface, nodes, constraint, state, contact }
+        Self {
+            id,
+            mass,
+            inertia,
+            points,
+            reference_center,
+            reach,
+            surface,
+            nodes,
+            constraint,
+            state,
+            contact,
+        }
     }
 
     /// Where a point of the reference configuration is now.

@@ -10,8 +10,13 @@ use crate::world::BodyId;
 pub trait Drive: Send {
     /// Velocity, m/s, at mid-step or at the end of the step; only the axes of the drive count. `center` is where the
     /// centre is, `reference` where it was at the start.
-    fn velocity(&self, end_of_step: bool, clock: &Clock, center: DVec3, reference: DVec3)
-    -> Result<DVec3, StepError>;
+    fn velocity(
+        &self,
+        end_of_step: bool,
+        clock: &Clock,
+        center: DVec3,
+        reference: DVec3,
+    ) -> Result<DVec3, StepError>;
 }
 
 /// The prescribed motion of a rigid body along some axes; conditions add it with

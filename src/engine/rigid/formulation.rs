@@ -85,7 +85,8 @@ impl Rigid {
             if let (Some(one), Some(other)) = (by.next(), by.next()) {
                 let body = &sim.body(id).name;
                 let name = ["x", "y", "z"][axis];
-                let message = format!("`{one}` and `{other}` both prescribe the {name} motion of rigid body `{body}`");
+                let message =
+                    format!("`{one}` and `{other}` both prescribe the {name} motion of rigid body `{body}`");
                 return Err(SetupError::parameter(at(""), message, "leave the axis to one of them"));
             }
         }
@@ -101,14 +102,21 @@ impl Rigid {
             (Some(driven), None) => Turning::Driven(driven),
             (None, Some(Rotation::Free)) => Turning::Free,
             (None, Some(Rotation::Held)) => Turning::Held,
-            (None, Some(Rotation::About(axis))) => Turning::About(checked_axis(axis.0, sim.dimension(), &at(""))?),
+            (None, Some(Rotation::About(axis))) => {
+                Turning::About(checked_axis(axis.0, sim.dimension(), &at(""))?)
+            }
             (None, None) if drives.is_empty() => Turning::Free,
             (None, None) => Turning::Held,
         };
         Ok(Constraint { drives, turning })
     }
 
-    fn body(&self, id: BodyId, constraint: Constraint, sim: &SimBuilder<'_>) -> Result<RigidBody, SetupError> {
+    fn body(
+        &self,
+        id: BodyId,
+        constraint: Constraint,
+        sim: &SimBuilder<'_>,
+    ) -> Result<RigidBody, SetupError> {
         let plan = sim.body(id);
         let shape = &sim.scene().bodies[id.0].shape;
         let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
@@ -123,7 +131,8 @@ impl Rigid {
         }
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
-        let reach = nodes.points.iter().map(|x| x.distance(of_shape.center)).fold(0.0, f64::max) + nodes.radius;
+        let reach =
+            nodes.points.iter().map(|x| x.distance(of_shape.center)).fold(0.0, f64::max) + nodes.radius;
         let points = of_shape.points * factor;
         let parts = RigidParts {
             id,
@@ -157,10 +166,18 @@ impl Rigid {
 pub(crate) fn checked_axis(axis: DVec3, dimension: Dimension, field: &str) -> Result<DVec3, SetupError> {
     let length = axis.length();
     if !(length > 0.0 && length.is_finite()) {
-        return Err(SetupError::parameter(field, format!("the axis {axis} has no direction"), "such as `(0, 0, 1)`"));
+        return Err(SetupError::parameter(
+            field,
+            format!("the axis {axis} has no direction"),
+            "such as `(0, 0, 1)`",
+        ));
     }
     if dimension == Dimension::Two && (axis.x != 0.0 || axis.y != 0.0) {
-        return Err(SetupError::parameter(field, "a two-dimensional body turns about z alone", "give `(0, 0, 1)`"));
+        return Err(SetupError::parameter(
+            field,
+            "a two-dimensional body turns about z alone",
+            "give `(0, 0, 1)`",
+        ));
     }
     Ok(axis / length)
 }
@@ -170,7 +187,8 @@ fn start(bodies: &RigidBodies, spins: &[DVec3], setup: &mut Setup<'_>) -> Result
     let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
     for (body, spin) in bodies.lock().iter_mut().zip(spins) {
         let (view, rows) = setup.world.body_view(body.id);
-        let (x, velocity) = (view.read::<Position>().map_err(missing)?, view.read::<Velocity>().map_err(missing)?);
+        let (x, velocity) =
+            (view.read::<Position>().map_err(missing)?, view.read::<Velocity>().map_err(missing)?);
         let mut mass = view.write::<Mass>().map_err(missing)?;
         let total: f64 = rows.clone().map(|row| mass[row].0).sum();
         let mut momentum = DVec3::ZERO;

@@ -71,7 +71,8 @@ fn edges(shape: &Shape, spacing: f64, dimension: Dimension) -> Vec<DVec3> {
 
 fn edges_of_box(min: DVec3, max: DVec3, spacing: f64, dimension: Dimension) -> Vec<DVec3> {
     let axes = dimension.count();
-    let corner = |n: usize| DVec3::from_array(std::array::from_fn(|k| if n >> k & 1 == 0 { min[k] } else { max[k] }));
+    let corner =
+        |n: usize| DVec3::from_array(std::array::from_fn(|k| if n >> k & 1 == 0 { min[k] } else { max[k] }));
     let mut points: Vec<DVec3> = (0..1 << axes).map(corner).collect();
     for axis in (0..axes).filter(|_| dimension == Dimension::Three) {
         let parts = ((max[axis] - min[axis]) / spacing).round().max(1.0) as usize;

@@ -9,7 +9,11 @@ fn thrown(dimension: &str, contact: &str) -> Simulation {
     let (low, high, z) = if dimension == "Two" {
         ("min: (0, 0), max: (0.1, 0.04)", "min: (0.023, 0.041), max: (0.083, 0.081)", "")
     } else {
-        ("min: (0, 0, 0), max: (0.1, 0.04, 0.04)", "min: (0.023, 0.041, 0.01), max: (0.083, 0.081, 0.05)", ", 0.1")
+        (
+            "min: (0, 0, 0), max: (0.1, 0.04, 0.04)",
+            "min: (0.023, 0.041, 0.01), max: (0.083, 0.081, 0.05)",
+            ", 0.1",
+        )
     };
     simulation(&format!(
         r#"(dimension: {dimension},
@@ -97,8 +101,10 @@ fn a_body_touches_itself() {
         let x = view.read::<Position>().unwrap();
         let reference = view.read::<ReferencePosition>().unwrap();
         let face = |y: f64| {
-            let mut face: Vec<usize> =
-                rows.clone().filter(|&row| (reference[row].0.y - y).abs() < 1e-6 && reference[row].0.x > 0.05).collect();
+            let mut face: Vec<usize> = rows
+                .clone()
+                .filter(|&row| (reference[row].0.y - y).abs() < 1e-6 && reference[row].0.x > 0.05)
+                .collect();
             face.sort_by(|&a, &b| reference[a].0.x.total_cmp(&reference[b].0.x));
             face
         };
