@@ -27,12 +27,12 @@ struct Template {
 
 macro_rules! templates {
     ($($name:literal),+ $(,)?) => {
-        [$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
+        &[$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
     };
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: [Template; 13] = templates![
+const TEMPLATES: &[Template] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",

@@ -88,15 +88,20 @@ fn pairs_of(
     };
     let particles = |body| Nodes::Particles(radii(body, sim.dimension()));
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
-        Ok(Touching::Surface(SurfaceContact::new(
+        Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
             Sides { first: of.id, nodes, second: on.id },
-        )))
+        ))))
     };
     let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();
     Ok(match (is_rigid(first), is_rigid(second)) {
         (false, false) => {
-            vec![Touching::Particles(ParticleContact::new(interaction()?, first, second, sim.dimension()))]
+            vec![Touching::Particles(Box::new(ParticleContact::new(
+                interaction()?,
+                first,
+                second,
+                sim.dimension(),
+            )))]
         }
         (false, true) => vec![on_surface(particles(first), first, second)?],
         (true, false) => vec![on_surface(particles(second), second, first)?],

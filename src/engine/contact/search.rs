@@ -83,7 +83,7 @@ impl Search {
     pub fn moved(&mut self, distance: f64) -> bool {
         self.travelled += distance;
         // A distance that is not a number must not keep an old list.
-        !(self.travelled <= self.budget)
+        self.travelled.is_nan() || self.travelled > self.budget
     }
 
     /// The pairs that may touch, ascending.

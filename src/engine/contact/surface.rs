@@ -63,7 +63,7 @@ impl SurfaceContact {
         let speed = speeds[0] + speeds[1];
         self.travelled += speed * step.clock.dt;
         // A distance that is not a number must not keep old candidates.
-        if !(self.travelled <= self.budget) {
+        if self.travelled.is_nan() || self.travelled > self.budget {
             self.travelled = 0.0;
             let mut candidates = std::mem::take(&mut self.candidates);
             self.budget =

@@ -15,8 +15,8 @@ pub const CONTACT: &str = "contact";
 
 /// Two bodies that touch.
 pub(super) enum Touching {
-    Particles(ParticleContact),
-    Surface(SurfaceContact),
+    Particles(Box<ParticleContact>),
+    Surface(Box<SurfaceContact>),
 }
 
 impl Touching {
@@ -85,7 +85,7 @@ struct Largest(f64);
 impl BlockSum for Largest {
     fn add(&mut self, next: &Self) {
         // Not the larger one of the two by `max`, which would drop what is not a number.
-        if !(next.0 <= self.0) {
+        if next.0.is_nan() || next.0 > self.0 {
             self.0 = next.0;
         }
     }

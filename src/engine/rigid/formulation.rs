@@ -122,7 +122,8 @@ impl Rigid {
         let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
         let of_shape = MassProperties::new(plan, shape, sim.dimension());
         let mass = self.mass.unwrap_or(of_shape.mass);
-        if !(mass > 0.0 && mass.is_finite()) && !constraint.is_complete() {
+        let has_mass = mass > 0.0 && mass.is_finite();
+        if !has_mass && !constraint.is_complete() {
             return Err(SetupError::parameter(
                 format!("bodies[{}].formulation", id.0),
                 format!("rigid body `{}` moves freely and has a mass of {mass} kg", plan.name),
