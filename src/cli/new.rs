@@ -27,12 +27,12 @@ struct Template {
 
 macro_rules! templates {
     ($($name:literal),+ $(,)?) => {
-        &[$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
+        [$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
     };
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: &[Template] = templates![
+const TEMPLATES: &[Template] = &templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
@@ -77,7 +77,7 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
 
 fn list() -> String {
     let mut table = Table::new(&["template", "what it shows"], 0);
-    for template in &TEMPLATES {
+    for template in TEMPLATES {
         table.row([template.name.to_owned(), template.about().to_owned()]);
     }
     table.render() + "\n`meshless new TEMPLATE [FILE]` writes one"

@@ -3,6 +3,7 @@
 //! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way `--set` sets
 //! them, and one file here, which says what is measured and what it is compared with.
 
+mod bar_impact;
 mod bending_column;
 mod cantilever;
 mod cantilever_large;
@@ -10,15 +11,20 @@ mod case;
 mod check;
 mod cook_membrane;
 mod disorder;
+mod hertz;
 mod homogeneous;
+mod incline;
 mod jaumann_shear;
 mod johnson_cook;
 mod measure;
 mod neighbor_lists;
 mod oscillating_plate;
 mod patch;
-mod random;
+mod punch;
+mod rebound;
 mod report;
+mod restitution;
+mod rigid;
 mod rubber_pull;
 mod taylor;
 mod taylor_bars;

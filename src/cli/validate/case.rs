@@ -5,9 +5,9 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, jaumann_shear, johnson_cook,
-    oscillating_plate, patch, rubber_pull, taylor_bars, taylor_plane, turek_hron, twisting_column,
-    uniaxial_strain,
+    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, hertz, incline, jaumann_shear,
+    johnson_cook, oscillating_plate, patch, punch, rebound, restitution, rubber_pull, taylor_bars,
+    taylor_plane, turek_hron, twisting_column, uniaxial_strain,
 };
 
 /// A case with a known answer.
@@ -42,4 +42,10 @@ pub const CASES: &[Case] = &[
     taylor_bars::COPPER,
     taylor_bars::STEEL,
     taylor_bars::ALUMINIUM,
+    punch::CASE,
+    bar_impact::CASE,
+    hertz::CASE,
+    incline::CASE,
+    restitution::CASE,
+    rebound::CASE,
 ];

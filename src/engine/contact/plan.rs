@@ -91,6 +91,7 @@ fn pairs_of(
         Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
             Sides { first: of.id, nodes, second: on.id },
+            sim.gravity().length(),
         ))))
     };
     let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();

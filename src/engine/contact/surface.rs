@@ -21,6 +21,8 @@ const SKIN: f64 = 0.5;
 pub(super) struct SurfaceContact {
     interaction: Interaction,
     pub sides: Sides,
+    /// Acceleration of gravity, m/s2.
+    gravity: f64,
     pub memories: Memories,
     /// Nodes that may touch, ascending.
     candidates: Vec<u32>,
@@ -42,11 +44,12 @@ struct Frequencies {
 
 impl SurfaceContact {
     /// Contact of the nodes of a body with the surface of another.
-    pub fn new(interaction: Interaction, sides: Sides) -> Self {
+    pub fn new(interaction: Interaction, sides: Sides, gravity: f64) -> Self {
         let count = if let Nodes::Particles(radius) = &sides.nodes { radius.len() } else { 0 };
         Self {
             interaction,
             sides,
+            gravity,
             memories: Memories::default(),
             candidates: Vec::new(),
             budget: -1.0,
@@ -104,10 +107,14 @@ impl SurfaceContact {
         let NodeView::Rigid(body) = nodes else { return nodes.least_radius() };
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
         let inverse_mass = inverse(body) + inverse(tool);
-        if inverse_mass == 0.0 || speed == 0.0 {
+        if inverse_mass == 0.0 {
             return 0.0;
         }
         let touch = touch_of(nodes, 0, tool, 0.0);
+        // A body at rest may fall: what it gains over the length of a node counts as its speed.
+        let acceleration = |body: &RigidBody| (body.state.force / body.mass).length();
+        let gain = self.gravity.max(acceleration(body)).max(acceleration(tool));
+        let speed = speed + (2.0 * gain * touch.length).sqrt();
         self.interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass
     }
 

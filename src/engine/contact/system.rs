@@ -7,6 +7,7 @@ use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::SimBuilder;
+use crate::rigid::RigidBodies;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mobility, Position, ReferencePosition, Removed, Velocity};
 
@@ -92,6 +93,12 @@ impl BlockSum for Largest {
 }
 
 fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {
+    if let Some(bodies) = step.resources.try_get::<RigidBodies>()
+        && let Some(rigid) = bodies.lock().iter().find(|rigid| rigid.id == body)
+    {
+        // The points that touch are farther out than the particles.
+        return Ok(rigid.largest_speed());
+    }
     let (view, rows) = step.world.body_view(body);
     let velocity = view.read::<Velocity>()?;
     let squared = for_each_block(&velocity[rows], &mut Vec::new(), &|_, rows: &[Velocity]| {

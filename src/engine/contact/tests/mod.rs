@@ -1,6 +1,7 @@
 //! Contact in small scenes, against closed forms and invariants.
 
 mod laws;
+mod long;
 mod particles;
 mod rigid;
 
