@@ -24,7 +24,7 @@ mod support;
 
 pub use bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
-pub use formulation::{BodyBondTerm, TotalLagrangian};
+pub use formulation::{BodyBondTerm, INTERNAL_FORCE, TotalLagrangian};
 pub use images::Images;
 pub(crate) use images::MirrorPlane;
 pub use rows::{PairStress, PairStressRows, Site};
