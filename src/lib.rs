@@ -30,6 +30,7 @@ pub fn standard_plugins() -> Registry {
         .with(particle_shifting::register)
         .with(tensile_control::register)
         .with(xsph::register)
+        .with(failure::register)
         .with(rerun_recorder::register)
 }
 

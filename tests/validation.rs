@@ -53,6 +53,11 @@ fn s6_taylor_bar_in_plane_strain() {
 }
 
 #[test]
+fn s7_tensile_failure() {
+    passes("S7");
+}
+
+#[test]
 fn s8_oscillating_plate() {
     passes("S8");
 }

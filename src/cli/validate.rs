@@ -29,6 +29,7 @@ mod rubber_pull;
 mod taylor;
 mod taylor_bars;
 mod taylor_plane;
+mod tensile_failure;
 mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;

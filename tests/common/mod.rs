@@ -128,6 +128,36 @@ pub fn metals() -> Source {
     Source::new("metals.ron", text)
 }
 
+/// Strips that break, each in another way, and go on.
+pub fn failing() -> Source {
+    let strip = |name: &str, at: f64, failure: &str| {
+        format!(
+            r#"(name: "{name}", material: "brittle", shape: Box(min: (0, {at:?}), max: (1.0, {:?})), spacing: 0.04,
+                formulation: TotalLagrangian, plugins: [hourglass_control(), failure({failure})])"#,
+            at + 0.4
+        )
+    };
+    let strips = [
+        strip(
+            "rubble",
+            0.0,
+            "criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(factor: 0.1)",
+        ),
+        strip("liquid", 1.0, "criterion: MaximumPrincipalStress(limit: 0.05), then: NoDeviator"),
+        strip(
+            "gone",
+            2.0,
+            "criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: Removed",
+        ),
+    ];
+    let text = format!(
+        r#"(dimension: Two, materials: {{"brittle": NeoHookean(density: 1, young: 1, poisson: 0.3)}}, bodies: [{}],
+            conditions: [InitialVelocity(on: Select(), value: ("0.3*(x - 0.5)*(1 + x)", "0.05*sin(9*x)"))], time: (end: 10.0))"#,
+        strips.join(", ")
+    );
+    Source::new("failing.ron", text)
+}
+
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));

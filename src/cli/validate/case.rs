@@ -5,9 +5,10 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, hertz, incline, jaumann_shear,
-    johnson_cook, oscillating_plate, patch, punch, rebound, restitution, rubber_pull, taylor_bars,
-    taylor_plane, turek_hron, twisting_column, uniaxial_strain,
+    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, hertz, incline, invariants,
+    jaumann_shear, johnson_cook, kernels, laws, neighbor_lists, oscillating_plate, patch, punch, rebound,
+    restitution, rubber_pull, taylor_bars, taylor_plane, tensile_failure, turek_hron, twisting_column,
+    uniaxial_strain,
 };
 
 /// A case with a known answer.
@@ -34,6 +35,7 @@ pub const CASES: &[Case] = &[
     cantilever_large::CASE,
     rubber_pull::CASE,
     taylor_plane::CASE,
+    tensile_failure::CASE,
     oscillating_plate::CASE,
     turek_hron::CASE,
     cook_membrane::CASE,

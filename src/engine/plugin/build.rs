@@ -206,15 +206,19 @@ fn build_plugins(
         }
         recorder_items.resize(sim.count_extensions::<Box<dyn Recorder>>(), item.clone());
     };
-    for (k, body) in scene.bodies.iter().enumerate() {
-        for item in &body.plugins {
-            build(Kind::Plugin, item, BodySet::new([BodyId(k)]), sim);
+    for of_materials in [true, false] {
+        let due = |item: &&Item| registry.changes_materials(item) == of_materials;
+        for (k, body) in scene.bodies.iter().enumerate() {
+            for item in body.plugins.iter().filter(due) {
+                build(Kind::Plugin, item, BodySet::new([BodyId(k)]), sim);
+            }
         }
-    }
-    for item in &scene.plugins {
-        let own = |body: &&crate::scene::Body| !body.plugins.iter().any(|other| other.name() == item.name());
-        let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
-        build(Kind::Plugin, item, BodySet::new(ids), sim);
+        for item in scene.plugins.iter().filter(due) {
+            let own =
+                |body: &&crate::scene::Body| !body.plugins.iter().any(|other| other.name() == item.name());
+            let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
+            build(Kind::Plugin, item, BodySet::new(ids), sim);
+        }
     }
     let all = BodySet::new((0..scene.bodies.len()).map(BodyId));
     for item in &scene.conditions {

@@ -3,6 +3,7 @@
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -10,6 +11,7 @@ use super::error::SetupError;
 use super::plan::BodyPlan;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
+use crate::materials::{Law, SolidLaw};
 use crate::scene::{Dimension, Scene, Select};
 use crate::schedule::{Stage, Step, System};
 use crate::shapes::{Shape, Surface};
@@ -116,6 +118,21 @@ impl<'s> SimBuilder<'s> {
         for phase in self.phases_of(bodies) {
             self.phases[phase.0].1.add::<T>();
         }
+    }
+
+    /// Puts a law in the place of the one that a body's material has, made from that: damage about any solid.
+    ///
+    /// # Errors
+    /// The material of the body is not a solid; what `wrap` finds wrong.
+    pub fn wrap_solid_law<L: SolidLaw + 'static>(
+        &mut self,
+        id: BodyId,
+        wrap: impl FnOnce(Arc<dyn SolidLaw>) -> Result<L, SetupError>,
+    ) -> Result<(), SetupError> {
+        let law = wrap(Arc::clone(self.body(id).solid_law()?))?;
+        law.state(&mut self.phases[self.bodies[id.0].phase.0].1);
+        self.bodies[id.0].material.law = Law::Solid(Arc::new(law));
+        Ok(())
     }
 
     /// Adds a system.

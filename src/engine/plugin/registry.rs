@@ -1,7 +1,7 @@
 //! The registry: which names a scene may use, and what is behind them.
 
 use std::any::Any;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
@@ -88,6 +88,8 @@ pub struct Registry {
     formulations: BTreeMap<&'static str, FormulationEntry>,
     contact_laws: BTreeMap<&'static str, BuildContactLaw>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
+    /// Names of the plugins that change the laws of materials.
+    of_materials: BTreeSet<&'static str>,
     entries: BTreeMap<(Kind, &'static str), Entry>,
 }
 
@@ -144,6 +146,9 @@ impl Registry {
 
     /// Registers a plugin.
     pub fn plugin<P: Plugin>(&mut self) -> &mut Self {
+        if P::CHANGES_MATERIALS {
+            self.of_materials.insert(P::NAME);
+        }
         self.plugins.insert((Kind::Plugin, P::NAME), build_plugin::<P>);
         self.describe::<P>(Kind::Plugin, P::NAME, P::REFERENCE)
     }
@@ -153,6 +158,11 @@ impl Registry {
     pub fn with(mut self, register: impl FnOnce(&mut Registry)) -> Self {
         register(&mut self);
         self
+    }
+
+    /// Whether a plugin changes the laws of materials.
+    pub(super) fn changes_materials(&self, item: &Item) -> bool {
+        self.of_materials.contains(item.name())
     }
 
     /// All names of a kind, in order, with their parameters.

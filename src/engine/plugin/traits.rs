@@ -16,6 +16,10 @@ pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
     /// Source of the method, printed in the run log.
     const REFERENCE: &'static str;
 
+    /// Whether it puts laws about those of materials. Such plugins are built before the others, which look at the laws, wherever they
+    /// stand in the scene.
+    const CHANGES_MATERIALS: bool = false;
+
     /// Adds systems, terms, columns, diagnostics and limits of the time step.
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError>;
 }

@@ -56,6 +56,8 @@ column! {
     pub struct PlasticWork(f64) = "plastic_work", "w_p", "J/m^3";
     /// Volume ratio to which an equation of state has integrated its energy.
     pub struct ReachedVolumeRatio(f64) = "reached_volume_ratio", "J", "1";
+    /// Damage: the share of the strength that is lost; 1 for a particle that has failed.
+    pub struct Damage(f64) = "damage", "D", "1";
     /// Temperature.
     pub struct Temperature(f64) = "temperature", "T", "K";
     /// Modulus that hourglass control resists with.

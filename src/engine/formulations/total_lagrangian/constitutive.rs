@@ -15,8 +15,8 @@ use crate::parallel::{Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
 use crate::world::{
-    BodyId, Column, ColumnSet, DeformationGradient, HourglassMisfit, HourglassModulus, PhaseId, PhaseView,
-    PiolaStress, Position, ReferencePosition, ReferenceVolume, World,
+    BodyId, Column, ColumnSet, Damage, DeformationGradient, HourglassMisfit, HourglassModulus, PhaseId,
+    PhaseView, PiolaStress, Position, ReferencePosition, ReferenceVolume, World,
 };
 
 /// A body as the deformation system sees it.
@@ -157,11 +157,14 @@ impl Run for Deformation {
             self.pass(step.world, &mut packed, step.clock.dt)?;
             self.book(step)?;
         }
-        let gradient = step.world.phase(self.phase).read::<DeformationGradient>()?;
+        let view = step.world.phase(self.phase);
+        let gradient = view.read::<DeformationGradient>()?;
+        let damage = view.read::<Damage>().ok();
         for (law, stable_step) in self.laws.iter_mut().zip(&packed.stable_step) {
             let body = step.world.body(law.id);
             if step.clock.step.is_multiple_of(STRETCH_INTERVAL) {
-                law.refresh(&gradient[body.rows.clone()]);
+                let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
+                law.refresh(&gradient[body.rows.clone()], damage);
             }
             step.limits.propose(stable_step * law.stretch_factor, || law.limited_by(&body.name));
         }
@@ -220,8 +223,8 @@ impl BodyLaw {
         }
     }
 
-    fn refresh(&mut self, gradient: &[DeformationGradient]) {
-        self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient));
+    fn refresh(&mut self, gradient: &[DeformationGradient], damage: Option<&[Damage]>) {
+        self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient, damage));
     }
 
     fn limited_by(&self, body: &str) -> String {

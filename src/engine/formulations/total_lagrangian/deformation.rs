@@ -27,7 +27,7 @@ pub(super) struct DeformationSum {
     pub plastic_work: f64,
     /// Energy of each bond term, J.
     pub terms: [BondEnergy; MAX_TERMS],
-    /// Row with det F <= 0 that comes first, counted from one; zero if there is none.
+    /// Row with det F <= 0 that comes first of those that resist, counted from one; zero if there is none.
     pub inverted: usize,
 }
 
@@ -160,7 +160,9 @@ impl DeformationPass<'_> {
             sum.strain += energy[k] * volume[k];
             sum.plastic_work += plastic_work[k] * volume[k];
         }
-        let inverted = rows.deformation.iter().position(|f| f.determinant() <= 0.0);
+        // What resists nothing, because it has failed, may turn inside out.
+        let mut resisting = rows.deformation.iter().zip(&*modulus);
+        let inverted = resisting.position(|(f, modulus)| f.determinant() <= 0.0 && *modulus != 0.0);
         sum.inverted = inverted.map_or(0, |k| first + k + 1);
         sum
     }

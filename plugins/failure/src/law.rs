@@ -1,0 +1,198 @@
+//! The law of a material that can fail, about any other law.
+//!
+//! Up to failure, the law is asked as it is, and damage 0 < D < 1 takes its share of the stress. The energy that is left is
+//! the share sigma' : sigma / sigma : sigma of the law's. What stress does in a step and is neither stored nor plastic work
+//! has been set free by damage: mean stress times the change of F, as the two kicks spend it.
+//!
+//! After failure, the law is shown the deformation at failure at the present volume: only the mean stress sigma_m(J) of what
+//! comes back is borne, P = sigma_m J F^-T. Its energy is the integral of sigma_m dJ.
+
+use std::sync::Arc;
+
+use glam::DMat3;
+use meshless_engine::linalg::Sym3;
+use meshless_engine::materials::{ElasticConstants, SolidLaw, StateRows, StressRows, Stretches};
+use meshless_engine::parallel::BLOCK;
+use meshless_engine::world::{ColumnSet, Damage, PlasticStrain, Temperature};
+
+use crate::criterion::{Seen, Watch};
+use crate::softening::{Then, at_volume, cauchy, cofactor};
+use crate::{DamagedDeformation, DamagedEnergy, FailedStress, FailedVolume, FailureIndex, FractureEnergy};
+
+pub(crate) struct FailingLaw {
+    watch: Watch,
+    inner: Arc<dyn SolidLaw>,
+    /// Growth of the cube root of damage where the criterion is met, 1/s.
+    growth: f64,
+    then: Then,
+}
+
+/// The columns of the law, block by block.
+struct Own<'a> {
+    damage: &'a mut [Damage],
+    index: &'a mut [FailureIndex],
+    fracture: &'a mut [FractureEnergy],
+    energy: &'a mut [DamagedEnergy],
+    deformation: &'a mut [DamagedDeformation],
+    volume: &'a mut [FailedVolume],
+    mean: &'a mut [FailedStress],
+}
+
+impl<'a> Own<'a> {
+    fn take(state: &mut StateRows<'a>) -> Self {
+        Self {
+            damage: state.take(),
+            index: state.take(),
+            fracture: state.take(),
+            energy: state.take(),
+            deformation: state.take(),
+            volume: state.take(),
+            mean: state.take(),
+        }
+    }
+}
+
+impl FailingLaw {
+    pub fn new(watch: Watch, inner: Arc<dyn SolidLaw>, growth: f64, then: Then) -> Self {
+        Self { watch, inner, growth, then }
+    }
+
+    /// Damage after a step of length `dt`, s, in which the criterion is met.
+    fn grown(&self, damage: f64, dt: f64) -> f64 {
+        (damage.cbrt() + self.growth * dt).min(1.0).powi(3)
+    }
+
+    /// A particle that has failed in an earlier step.
+    fn failed(&self, k: usize, given: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
+        let f = &rows.deformation[k];
+        let (volume, mean) = (f.determinant(), cauchy(&rows.stress[k], given).trace() / 3.0);
+        let mean = self.then.borne(mean);
+        if rows.dt > 0.0 {
+            own.energy[k].0 += 0.5 * (own.mean[k].0 + mean) * (volume - own.volume[k].0);
+            own.volume[k].0 = volume;
+            own.mean[k].0 = mean;
+        }
+        rows.stress[k] = cofactor(f) * mean;
+        rows.energy[k] = own.energy[k].0;
+        rows.plastic_work[k] = 0.0;
+        rows.modulus[k] = 0.0;
+    }
+
+    /// A particle in which there is damage, below or just at 1; `before` is its stress at the end of the last step, Pa.
+    fn soften(&self, k: usize, stress: &Sym3, before: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
+        let f = &rows.deformation[k];
+        let damage = own.damage[k].0;
+        let stored = if damage < 1.0 {
+            let left = self.then.soften(stress, damage);
+            let square = stress.double_dot(stress);
+            rows.stress[k] = left.to_matrix() * cofactor(f);
+            rows.energy[k] * if square > 0.0 { left.double_dot(stress) / square } else { 1.0 }
+        } else {
+            let mean = self.then.borne(stress.trace() / 3.0);
+            let volume = f.determinant();
+            (own.volume[k].0, own.mean[k].0) = (volume, mean);
+            rows.stress[k] = cofactor(f) * mean;
+            0.5 * (volume * mean).powi(2) / self.inner.elastic().bulk
+        };
+        rows.plastic_work[k] *= 1.0 - damage;
+        rows.modulus[k] *= 1.0 - damage;
+        if rows.dt > 0.0 {
+            let change = *f - own.deformation[k].0;
+            let work = 0.5 * double_dot(&(*before + rows.stress[k]), &change);
+            own.fracture[k].0 += work - (stored - own.energy[k].0) - rows.plastic_work[k];
+        }
+        rows.energy[k] = stored;
+    }
+}
+
+/// A : B, the sum of products of all components.
+fn double_dot(a: &DMat3, b: &DMat3) -> f64 {
+    a.x_axis.dot(b.x_axis) + a.y_axis.dot(b.y_axis) + a.z_axis.dot(b.z_axis)
+}
+
+impl SolidLaw for FailingLaw {
+    fn elastic(&self) -> &ElasticConstants {
+        self.inner.elastic()
+    }
+
+    fn needs_positive_volume(&self) -> bool {
+        self.inner.needs_positive_volume()
+    }
+
+    fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
+        self.inner.stable_step_factor(stretches)
+    }
+
+    fn state(&self, columns: &mut ColumnSet) {
+        self.inner.state(columns);
+        columns.add::<Damage>().add::<FailureIndex>().add::<FractureEnergy>().add::<DamagedEnergy>();
+        columns.add::<DamagedDeformation>().add::<FailedVolume>().add::<FailedStress>();
+    }
+
+    fn start(&self, mut state: StateRows<'_>) {
+        state.reborrow().take::<DamagedDeformation>().fill(DamagedDeformation(DMat3::IDENTITY));
+        self.inner.start(state);
+    }
+
+    fn stress(&self, rows: &mut StressRows<'_>) {
+        let n = rows.deformation.len();
+        let mut given = [DMat3::IDENTITY; BLOCK];
+        let mut before = [DMat3::ZERO; BLOCK];
+        let mut strain = [0.0; BLOCK];
+        before[..n].copy_from_slice(rows.stress);
+        let mut state = rows.state.reborrow();
+        let (damage, reached) = (state.take::<Damage>(), state.take::<DamagedDeformation>());
+        for k in 0..n {
+            let f = rows.deformation[k];
+            given[k] = if damage[k].0 < 1.0 { f } else { at_volume(&reached[k].0, f.determinant()) };
+        }
+        if self.watch.plastic {
+            let now = state.take::<PlasticStrain>();
+            strain.iter_mut().zip(now).for_each(|(before, now)| *before = now.0);
+        }
+        self.inner.stress(&mut StressRows {
+            dt: rows.dt,
+            deformation: &given[..n],
+            stress: rows.stress,
+            energy: rows.energy,
+            modulus: rows.modulus,
+            strength: rows.strength,
+            plastic_work: rows.plastic_work,
+            state: rows.state.reborrow(),
+        });
+        // Taken out of the rows, so that the loop can hand both on.
+        let mut all = std::mem::take(&mut rows.state);
+        let mut state = all.reborrow();
+        let mut own = Own::take(&mut state);
+        let now = self.watch.plastic.then(|| state.take::<PlasticStrain>());
+        let temperature = self.watch.temperature.then(|| state.take::<Temperature>());
+        for k in 0..n {
+            if own.damage[k].0 >= 1.0 {
+                self.failed(k, &given[k], rows, &mut own);
+                continue;
+            }
+            let stress = cauchy(&rows.stress[k], &given[k]);
+            if rows.dt > 0.0 {
+                let seen = Seen {
+                    deformation: &given[k],
+                    stress: &stress,
+                    plastic: now.as_deref().map_or(0.0, |now| now[k].0 - strain[k]),
+                    temperature: temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
+                    dt: rows.dt,
+                };
+                let (index, met) = self.watch.index(own.index[k].0, &seen);
+                own.index[k].0 = index;
+                if met {
+                    own.damage[k].0 = self.grown(own.damage[k].0, rows.dt);
+                }
+            }
+            if own.damage[k].0 > 0.0 {
+                self.soften(k, &stress, &before[k], rows, &mut own);
+            }
+            own.deformation[k].0 = given[k];
+            own.energy[k].0 = rows.energy[k];
+        }
+        drop(own);
+        rows.state = all;
+    }
+}

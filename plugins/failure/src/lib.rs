@@ -1,0 +1,115 @@
+//! Failure of solids: when a particle breaks, how fast, and what it then does. It is put about the material of a body,
+//! whichever that is.
+
+mod criterion;
+mod energy;
+mod johnson_cook;
+mod law;
+mod removal;
+mod softening;
+#[cfg(test)]
+mod tests;
+
+pub use criterion::Criterion;
+pub use johnson_cook::JohnsonCookFailure;
+pub use softening::Then;
+
+use criterion::Watch;
+use law::FailingLaw;
+use meshless_engine::column;
+use meshless_engine::materials::ParameterError;
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::world::BodyId;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<Failure>();
+}
+
+column! {
+    /// How near a particle is, or has been, to failure: 1 where its criterion is met.
+    pub struct FailureIndex(f64) = "failure_index", "w", "1";
+    /// Energy set free by damage since the start, per reference volume.
+    pub struct FractureEnergy(f64) = "fracture_energy", "w_f", "J/m^3";
+    /// What a damaged particle still stores, per reference volume.
+    pub struct DamagedEnergy(f64) = "damaged_energy", "psi_D", "J/m^3";
+    /// Deformation gradient at the end of the last step; of a failed particle that at failure.
+    pub struct DamagedDeformation(glam::DMat3) = "damaged_deformation", "F_D", "1";
+    /// Volume ratio of a failed particle at the end of the last step.
+    pub struct FailedVolume(f64) = "failed_volume", "J_D", "1";
+    /// Mean stress of a failed particle at the end of the last step.
+    pub struct FailedStress(f64) = "failed_stress", "sigma_m", "Pa";
+}
+
+/// Lets particles of solids fail.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Failure {
+    /// When a particle begins to fail.
+    pub criterion: Criterion,
+    /// How damage grows from there on.
+    #[serde(default)]
+    pub growth: Growth,
+    /// What a particle does whose damage has reached 1.
+    #[serde(default)]
+    pub then: Then,
+}
+
+/// How damage grows where the criterion is met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Growth {
+    /// From 0 to 1 within one step.
+    #[default]
+    AtOnce,
+    /// The cube root of the damage grows by factor c / h per second: a crack crosses the support h (2.41 spacings) at the speed factor c,
+    /// c being the speed of longitudinal waves.
+    CrackSpeed {
+        /// Speed of the crack over the speed of waves.
+        #[serde(default = "usual_speed")]
+        factor: f64,
+    },
+}
+
+fn usual_speed() -> f64 {
+    0.4
+}
+
+/// Support of a particle in spacings: that of the total-Lagrangian formulation where a scene does not say otherwise.
+const SUPPORT: f64 = 2.41;
+
+impl Plugin for Failure {
+    const NAME: &'static str = "failure";
+    const REFERENCE: &'static str = "damage: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106, section 4.6; \
+        failure strain: G. R. Johnson, W. H. Cook, Eng. Fract. Mech. 21 (1985) 31-48";
+
+    const CHANGES_MATERIALS: bool = true;
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        self.criterion.check()?;
+        if let Growth::CrackSpeed { factor } = self.growth {
+            ParameterError::require_positive("growth.factor", factor)?;
+        }
+        let solid = |id: &BodyId| sim.body(*id).solid_law().is_ok();
+        let bodies: Vec<BodyId> = sim.scope().iter().filter(solid).collect();
+        for &id in &bodies {
+            let body = sim.body(id);
+            let speed = body.material.sound_speed().unwrap_or_default();
+            let growth = match self.growth {
+                Growth::AtOnce => f64::INFINITY,
+                Growth::CrackSpeed { factor } => factor * speed / (SUPPORT * body.spacing),
+            };
+            let (name, criterion, then) = (body.name.clone(), self.criterion.clone(), self.then);
+            sim.wrap_solid_law(id, |inner| {
+                Ok(FailingLaw::new(Watch::new(criterion, &*inner, &name)?, inner, growth, then))
+            })?;
+        }
+        if self.then == Then::Removed {
+            sim.add_removal_rule(removal::Failed { bodies: bodies.clone() });
+        }
+        energy::add_system(sim, bodies);
+        Ok(())
+    }
+}

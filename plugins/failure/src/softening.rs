@@ -1,0 +1,89 @@
+//! What damage leaves of the stress.
+
+use glam::{DMat3, DVec3};
+use meshless_engine::linalg::{Eigen, Sym3};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to be lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Then {
+    /// It resists compression of its volume alone, like rubble. On the way there damage takes from positive principal stresses.
+    #[default]
+    NoTension,
+    /// It resists changes of its volume alone, like a liquid, tension included. On the way there damage takes from the deviator.
+    NoDeviator,
+    /// It is taken out of the run. On the way there damage takes from positive principal stresses.
+    Removed,
+}
+
+impl Then {
+    /// The Cauchy stress, Pa, that damage 0 < D < 1 leaves.
+    pub(crate) fn soften(self, stress: &Sym3, damage: f64) -> Sym3 {
+        let left = 1.0 - damage;
+        match self {
+            Self::NoDeviator => {
+                let mean = Sym3::from_diagonal(DVec3::splat(stress.trace() / 3.0));
+                stress.deviator() * left + mean
+            }
+            Self::NoTension | Self::Removed => {
+                Eigen::new(stress).map(|principal| if principal > 0.0 { left * principal } else { principal })
+            }
+        }
+    }
+
+    /// The mean stress, Pa, that a failed particle bears of the one that its volume would have.
+    pub(crate) fn borne(self, mean: f64) -> f64 {
+        if self == Self::NoDeviator { mean } else { mean.min(0.0) }
+    }
+}
+
+/// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.
+pub(crate) fn cofactor(f: &DMat3) -> DMat3 {
+    let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
+    DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
+}
+
+/// Cauchy stress, Pa, from the first Piola-Kirchhoff stress.
+pub(crate) fn cauchy(p: &DMat3, f: &DMat3) -> Sym3 {
+    Sym3::symmetric_part(*p * f.transpose()) * (1.0 / f.determinant())
+}
+
+/// Volume ratios between which the pressure of a failed particle follows its law; beyond them it stays.
+const VOLUMES: [f64; 2] = [0.3, 3.0];
+
+/// The deformation at failure, blown up or pressed together to the volume ratio `j`: what the law of a failed particle is shown. Its
+/// deviator and plastic flow stay as they were; only the pressure moves.
+pub(crate) fn at_volume(at_failure: &DMat3, j: f64) -> DMat3 {
+    let ratio = j.clamp(VOLUMES[0], VOLUMES[1]) / at_failure.determinant().clamp(VOLUMES[0], VOLUMES[1]);
+    *at_failure * ratio.cbrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tension_is_softened_and_compression_is_not() {
+        let stress = Sym3::from_diagonal(DVec3::new(4.0, -6.0, 2.0));
+        for then in [Then::NoTension, Then::Removed] {
+            let left = then.soften(&stress, 0.25);
+            assert!(
+                (left.to_matrix() - DMat3::from_diagonal(DVec3::new(3.0, -6.0, 1.5)))
+                    .abs_diff_eq(DMat3::ZERO, 1e-14)
+            );
+            assert_eq!((then.borne(5.0), then.borne(-5.0)), (0.0, -5.0));
+        }
+        // Mean 0: the deviator is all.
+        let left = Then::NoDeviator.soften(&stress, 0.25);
+        assert!((left.to_matrix() - (stress * 0.75).to_matrix()).abs_diff_eq(DMat3::ZERO, 1e-14));
+        assert_eq!(Then::NoDeviator.borne(5.0), 5.0);
+    }
+
+    #[test]
+    fn the_cofactor_is_that_of_the_inverse() {
+        let f = DMat3::from_cols_array(&[1.1, 0.2, -0.1, 0.3, 0.9, 0.05, 0.0, -0.2, 1.3]);
+        assert!((cofactor(&f) - f.inverse().transpose() * f.determinant()).abs_diff_eq(DMat3::ZERO, 1e-14));
+        assert!((at_volume(&f, 0.8).determinant() - 0.8).abs() < 1e-14);
+    }
+}
