@@ -28,6 +28,46 @@ fn m4_jaumann_rate_in_simple_shear() {
 }
 
 #[test]
+fn k1_kernels() {
+    passes("K1");
+}
+
+#[test]
+fn k2_affine_map() {
+    passes("K2");
+}
+
+#[test]
+fn k3_force_and_energy() {
+    passes("K3");
+}
+
+#[test]
+fn k4_pair_term() {
+    passes("K4");
+}
+
+#[test]
+fn k5_neighbor_lists() {
+    passes("K5");
+}
+
+#[test]
+fn k6_thrown_body() {
+    passes("K6");
+}
+
+#[test]
+fn m1_homogeneous_stretch() {
+    passes("M1");
+}
+
+#[test]
+fn m5_stress_and_rotation() {
+    passes("M5");
+}
+
+#[test]
 fn s1_breathing_patch() {
     passes("S1");
 }

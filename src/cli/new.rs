@@ -44,6 +44,7 @@ const TEMPLATES: &[Template] = &templates![
     "cook_membrane",
     "bending_column",
     "twisting_column",
+    "taylor_bar",
     "dam_break",
     "dam_break_3d",
     "sloshing",

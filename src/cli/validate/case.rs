@@ -27,6 +27,14 @@ pub struct Case {
 
 /// All cases.
 pub const CASES: &[Case] = &[
+    kernels::CASE,
+    invariants::AFFINE,
+    invariants::GRADIENT,
+    invariants::PAIR_TERM,
+    neighbor_lists::CASE,
+    invariants::THROWN,
+    laws::STRETCH,
+    laws::CONSISTENCY,
     uniaxial_strain::CASE,
     johnson_cook::CASE,
     jaumann_shear::CASE,

@@ -212,9 +212,13 @@ impl BodyLaw {
         }
         for (&k, energy) in self.terms.iter().zip(sum.terms) {
             let BodyBondTerm { account, released, .. } = &terms[k];
-            if let Some(account) = account {
-                let account = ledger.account(account, AccountKind::Stored);
-                ledger.set(account, self.id, energy.stored);
+            if let Some(name) = account {
+                // Terms of one account hold its energy together.
+                let own = |(other, _): &(&usize, BondEnergy)| terms[**other].account.as_ref() == Some(name);
+                let all = self.terms.iter().zip(sum.terms).filter(own);
+                let stored = all.map(|(_, energy)| energy.stored).sum();
+                let account = ledger.account(name, AccountKind::Stored);
+                ledger.set(account, self.id, stored);
             }
             if let Some(released) = released {
                 let released = ledger.account(released, AccountKind::Dissipated);
