@@ -15,6 +15,7 @@ pub use schemars;
 pub use serde;
 
 pub mod boundaries;
+pub mod contact;
 pub mod correction;
 pub mod formulations;
 pub mod integrate;
@@ -27,6 +28,7 @@ pub mod parallel;
 pub mod plugin;
 pub mod record;
 pub mod removal;
+pub mod rigid;
 pub mod scene;
 pub mod schedule;
 pub mod shapes;

@@ -1,10 +1,14 @@
 //! Particles that do not move.
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::rigid_part::split_rigid;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::rigid::{Drive, DrivenBody};
 use crate::scene::{Axis, Select};
+use crate::schedule::{Clock, StepError};
 use crate::world::Velocity;
 
 /// Holds particles where they are at the start.
@@ -22,6 +26,15 @@ fn all_axes() -> Vec<Axis> {
     vec![Axis::X, Axis::Y, Axis::Z]
 }
 
+/// No motion.
+struct Rest;
+
+impl Drive for Rest {
+    fn velocity(&self, _: bool, _: &Clock, _: DVec3, _: DVec3) -> Result<DVec3, StepError> {
+        Ok(DVec3::ZERO)
+    }
+}
+
 impl Plugin for Fix {
     const NAME: &'static str = "Fix";
     const REFERENCE: &'static str = "";
@@ -30,6 +43,10 @@ impl Plugin for Fix {
         let selection = sim.select(&self.on, "on")?;
         let held = [Axis::X, Axis::Y, Axis::Z].map(|axis| self.axes.contains(&axis));
         // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to run.
+        let (selection, rigid) = split_rigid(&selection, sim)?;
+        for body in rigid {
+            sim.extend(DrivenBody { body, by: Self::NAME, axes: held, drive: Box::new(Rest) });
+        }
         sim.prescribe(&selection, held, Self::NAME)?;
         sim.add_setup(move |setup| {
             for (body, rows) in &selection.parts {

@@ -10,9 +10,11 @@ use glam::DVec3;
 
 use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
+use super::rigid_part::split_rigid;
 use crate::integrate::KICK;
 use crate::plugin::{Selection, SetupError, SimBuilder};
-use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::rigid::{Drive, DrivenBody};
+use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Mass, Position, Removed, Velocity};
 
 /// How the value of a condition gives the velocity.
@@ -42,11 +44,19 @@ pub(super) fn prescribe(
     selection: &Selection,
     sim: &mut SimBuilder<'_>,
 ) -> Result<(), SetupError> {
-    sim.prescribe(selection, field.axes(), name)?;
+    let (selection, rigid) = split_rigid(selection, sim)?;
     let least_difference = 1e-6 * sim.scene().time.end;
-    let motion = Motion { name, kind, field, parts: parts_of(selection, sim), least_difference };
+    for body in rigid {
+        let motion = Motion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
+        sim.extend(DrivenBody { body, by: name, axes: field.axes(), drive: Box::new(motion) });
+    }
+    if selection.is_empty() {
+        return Ok(());
+    }
+    sim.prescribe(&selection, field.axes(), name)?;
+    let motion = Motion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
     let motion = Arc::new(motion);
-    let phases = phases_of(selection, sim);
+    let phases = phases_of(&selection, sim);
     let label = name.to_lowercase();
     let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
     let at_end = SetVelocity { motion, end_of_step: true, values: Vec::new() };
@@ -70,7 +80,35 @@ pub(super) fn prescribe(
     Ok(())
 }
 
+impl Drive for Motion {
+    fn velocity(
+        &self,
+        end_of_step: bool,
+        clock: &Clock,
+        center: DVec3,
+        reference: DVec3,
+    ) -> Result<DVec3, StepError> {
+        let mut value = Vec::with_capacity(1);
+        let mut at = |t: f64| self.field.values(&[reference], t, self.name, &mut value).map(|()| value[0]);
+        match (self.kind, end_of_step) {
+            (Kind::Velocity, false) => at(clock.middle()),
+            (Kind::Velocity, true) => at(clock.end()),
+            (Kind::Displacement, false) => Ok((reference + at(clock.end())? - center) / clock.dt),
+            (Kind::Displacement, true) => {
+                let (before, after) = self.around_end(clock);
+                Ok((at(after)? - at(before)?) / (after - before))
+            }
+        }
+    }
+}
+
 impl Motion {
+    /// Two times, s, whose difference gives the velocity at the end of the step.
+    fn around_end(&self, clock: &Clock) -> (f64, f64) {
+        let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.least_difference };
+        ((clock.end() - half).max(0.0), clock.end() + half)
+    }
+
     /// Velocity of every particle of a part: at mid-step, or at the end of the step.
     fn velocities(
         &self,
@@ -94,9 +132,7 @@ impl Motion {
                 Ok(())
             }
             (Kind::Displacement, true) => {
-                let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.least_difference };
-                let before = (clock.end() - half).max(0.0);
-                let after = clock.end() + half;
+                let (before, after) = self.around_end(&clock);
                 self.field.values(&part.points, after, self.name, out)?;
                 for (value, &point) in out.iter_mut().zip(&part.points) {
                     *value = (*value - self.field.at(point, before)) / (after - before);

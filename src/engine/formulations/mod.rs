@@ -10,5 +10,6 @@ pub fn register(registry: &mut Registry) {
     registry
         .formulation::<total_lagrangian::TotalLagrangian>()
         .formulation::<fluid::Fluid>()
-        .formulation::<fluid::Wall>();
+        .formulation::<fluid::Wall>()
+        .formulation::<crate::rigid::Rigid>();
 }

@@ -8,28 +8,40 @@ use glam::DVec3;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, Mass, Mobility, Position, Velocity};
+use crate::world::{BodyId, BodySet, Force, Mass, Mobility, Position, Velocity};
 
 /// Label of the system of stage [`Stage::InitialIntegrate`].
 pub const DRIFT: &str = "kick_and_drift";
 /// Label of the system of stage [`Stage::FinalIntegrate`].
 pub const KICK: &str = "kick";
 
-/// Adds the two systems of the leapfrog, for all bodies.
+/// A body that its formulation moves itself; formulations add it with [`SimBuilder::extend`].
+pub struct OwnMotion(pub BodyId);
+
+/// Adds the two systems of the leapfrog, for all bodies that do not move by themselves.
 pub fn add_systems(sim: &mut SimBuilder<'_>) {
     let gravity = sim.gravity();
-    let phases: Vec<_> = sim.phases_of(&crate::world::BodySet::new(sim.bodies().iter().map(|body| body.id)));
+    let own = BodySet::new(sim.take_extensions::<OwnMotion>().into_iter().map(|own| own.0));
+    let bodies = BodySet::new(sim.bodies().iter().map(|body| body.id).filter(|&id| !own.contains(id)));
+    if bodies.is_empty() {
+        return;
+    }
+    let phases = sim.phases_of(&bodies);
     sim.add_system(
-        System::new(Stage::InitialIntegrate, DRIFT, KickDrift { gravity, sums: Vec::new() })
-            .on_phases(phases.clone())
-            .reads::<Force>()
-            .reads::<Mobility>()
-            .reads::<Mass>()
-            .touches(<Velocity as crate::world::Column>::NAME, Mode::Writes)
-            .writes::<Position>(),
+        System::new(
+            Stage::InitialIntegrate,
+            DRIFT,
+            KickDrift { bodies: bodies.clone(), gravity, sums: Vec::new() },
+        )
+        .on_phases(phases.clone())
+        .reads::<Force>()
+        .reads::<Mobility>()
+        .reads::<Mass>()
+        .touches(<Velocity as crate::world::Column>::NAME, Mode::Writes)
+        .writes::<Position>(),
     );
     sim.add_system(
-        System::new(Stage::FinalIntegrate, KICK, Kick { sums: Vec::new() })
+        System::new(Stage::FinalIntegrate, KICK, Kick { bodies, sums: Vec::new() })
             .on_phases(phases)
             .reads::<Force>()
             .reads::<Mobility>()
@@ -67,6 +79,7 @@ impl BlockSum for MotionSum {
 }
 
 struct KickDrift {
+    bodies: BodySet,
     gravity: DVec3,
     sums: Vec<MotionSum>,
 }
@@ -76,7 +89,8 @@ impl Run for KickDrift {
         let dt = step.clock.dt;
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
-        for (k, body) in step.world.bodies().iter().enumerate() {
+        for id in self.bodies.iter() {
+            let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
             let force = view.read::<Force>()?;
@@ -102,8 +116,8 @@ impl Run for KickDrift {
                 }
                 sum
             });
-            step.ledger.add(constraints, BodyId(k), -0.5 * dt * sum.constraint_power);
-            step.ledger.add(gravity_work, BodyId(k), dt * sum.momentum.dot(self.gravity));
+            step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
+            step.ledger.add(gravity_work, id, dt * sum.momentum.dot(self.gravity));
         }
         Ok(())
     }
@@ -113,6 +127,7 @@ impl Run for KickDrift {
 const ACCELERATION_FACTOR: f64 = 0.25;
 
 struct Kick {
+    bodies: BodySet,
     sums: Vec<MotionSum>,
 }
 
@@ -121,7 +136,8 @@ impl Run for Kick {
         let dt = step.clock.dt;
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
-        for (k, body) in step.world.bodies().iter().enumerate() {
+        for id in self.bodies.iter() {
+            let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
             let force = view.read::<Force>()?;
@@ -146,11 +162,11 @@ impl Run for Kick {
                 }
                 sum
             });
-            step.ledger.add(constraints, BodyId(k), -0.5 * dt * sum.constraint_power);
-            step.ledger.set(kinetic, BodyId(k), 0.5 * sum.twice_kinetic);
+            step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
+            step.ledger.set(kinetic, id, 0.5 * sum.twice_kinetic);
             if !sum.twice_kinetic.is_finite() {
                 let broken = velocity[rows].iter().position(|v| !v.0.is_finite()).unwrap_or(0);
-                return Err(step.unstable("velocity is not a finite number", BodyId(k), broken));
+                return Err(step.unstable("velocity is not a finite number", id, broken));
             }
             if sum.acceleration_squared > 0.0 {
                 let limit = ACCELERATION_FACTOR * (body.spacing / sum.acceleration_squared.sqrt()).sqrt();

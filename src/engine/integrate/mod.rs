@@ -2,4 +2,4 @@
 
 mod leapfrog;
 
-pub use leapfrog::{DRIFT, KICK, add_systems};
+pub use leapfrog::{DRIFT, KICK, OwnMotion, add_systems};

@@ -48,10 +48,6 @@ fn build_in(
     registry: &Registry,
     options: &BuildOptions,
 ) -> Result<Simulation, Vec<Problem>> {
-    if !scene.contacts.is_empty() {
-        let problem = Problem::at_path("contacts[0]", "contact between bodies is not there yet");
-        return Err(vec![problem.help("a later version will have it; leave `contacts` out until then")]);
-    }
     let (mut bodies, phases, parsed) = place_bodies(scene, source, registry)?;
     crate::formulations::fluid::estimate_sound_speeds(&mut bodies, scene)?;
     let overlaps = overlap::problems(&bodies);
@@ -63,6 +59,10 @@ fn build_in(
     assemble(scene, parsed, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);
+    for contact in &scene.contacts {
+        sim.cite(registry.reference(Kind::ContactLaw, contact.law.name()));
+    }
+    crate::contact::add_systems(&mut sim, &|item, pair| registry.build_contact_law(item, pair))?;
     crate::integrate::add_systems(&mut sim);
     crate::record::watchdog::add_system(&mut sim);
     let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::traits::{Formulation, Plugin};
+use crate::contact::{ContactLaw, ContactPair, NormalForce};
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Item, Parameter, Problem, TypeDoc, parameters, type_docs, unknown};
 use crate::world::{BodyId, ColumnSet};
@@ -19,6 +20,8 @@ pub enum Kind {
     Formulation,
     /// A boundary or initial condition.
     Condition,
+    /// A contact law.
+    ContactLaw,
     /// A plugin.
     Plugin,
 }
@@ -30,6 +33,7 @@ impl Kind {
             Self::Material => "material",
             Self::Formulation => "formulation",
             Self::Condition => "condition",
+            Self::ContactLaw => "contact law",
             Self::Plugin => "plugin",
         }
     }
@@ -56,10 +60,9 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: [(Kind, &str); 7] = [
+const LATER: [(Kind, &str); 6] = [
     (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
-    (Kind::Formulation, "Rigid"),
     (Kind::Material, "J2"),
     (Kind::Material, "JohnsonCook"),
     (Kind::Plugin, "hessian_stabilization"),
@@ -77,6 +80,7 @@ pub(super) struct FormulationEntry {
 }
 
 type BuildMaterial = fn(&Item) -> Result<Material, Vec<Problem>>;
+type BuildContactLaw = fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
 type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 
 /// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin crates.
@@ -84,17 +88,19 @@ type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 pub struct Registry {
     materials: BTreeMap<&'static str, BuildMaterial>,
     formulations: BTreeMap<&'static str, FormulationEntry>,
+    contact_laws: BTreeMap<&'static str, BuildContactLaw>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
     entries: BTreeMap<(Kind, &'static str), Entry>,
 }
 
 impl Registry {
-    /// What the engine itself brings: materials, formulations and conditions, no plugin.
+    /// What the engine itself brings: materials, formulations, conditions and contact laws, no plugin.
     pub fn standard() -> Self {
         Self::default()
             .with(crate::materials::register)
             .with(crate::formulations::register)
             .with(crate::boundaries::register)
+            .with(crate::contact::register)
     }
 
     /// Registers a material.
@@ -127,6 +133,15 @@ impl Registry {
     pub fn condition<P: Plugin>(&mut self) -> &mut Self {
         self.plugins.insert((Kind::Condition, P::NAME), build_plugin::<P>);
         self.describe::<P>(Kind::Condition, P::NAME, P::REFERENCE)
+    }
+
+    /// Registers a contact law.
+    pub fn contact_law<L: ContactLaw>(&mut self) -> &mut Self {
+        self.contact_laws.insert(L::NAME, |item, pair| {
+            let law: L = item.parse()?;
+            law.build(pair).map_err(|error| SetupError::from(error).into_problems(item))
+        });
+        self.describe::<L>(Kind::ContactLaw, L::NAME, L::REFERENCE)
     }
 
     /// Registers a plugin.
@@ -177,6 +192,23 @@ impl Registry {
 
     pub(super) fn find_formulation(&self, item: &Item) -> Result<&FormulationEntry, Vec<Problem>> {
         self.formulations.get(item.name()).ok_or_else(|| self.unknown(Kind::Formulation, item))
+    }
+
+    pub(super) fn build_contact_law(
+        &self,
+        item: &Item,
+        pair: &ContactPair,
+    ) -> Result<Box<dyn NormalForce>, Vec<Problem>> {
+        let build = self.contact_laws.get(item.name()).ok_or_else(|| self.unknown(Kind::ContactLaw, item))?;
+        build(item, pair)
+    }
+
+    /// The source of what is behind a name; empty if it has none.
+    pub(super) fn reference(&self, kind: Kind, name: &str) -> &'static str {
+        self.entries
+            .iter()
+            .find(|((k, n), _)| *k == kind && *n == name)
+            .map_or("", |(_, entry)| entry.reference)
     }
 
     pub(super) fn build_plugin(

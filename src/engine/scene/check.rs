@@ -146,6 +146,9 @@ fn place_of_probe(probe: &Probe, i: usize) -> Option<Problem> {
         (None, Some(_), Quantity::Force) => {
             ("at", "there is no reaction force at a point: `Force` is that of a selection")
         }
+        (None, Some(_), Quantity::Torque) => {
+            ("at", "there is no torque at a point: `Torque` is that of a selection")
+        }
         (None, None, Quantity::Energy) | (Some(_), None, _) | (None, Some(_), _) => return None,
         (None, None, _) => ("name", "the probe does not say where it measures"),
     };

@@ -11,12 +11,18 @@ use super::Item;
 pub struct Contact {
     /// The names of the two bodies; twice the same name is contact of a body with itself.
     pub between: (String, String),
-    /// How the force follows from the approach of the surfaces.
+    /// How the force follows from the overlap of the surfaces: `Penalty`, `Hertz`.
     pub law: Item,
     /// Coulomb's coefficient of friction \[-\].
     #[serde(default)]
     pub friction: f64,
-    /// Ratio of the normal velocities after and before an impact \[-\].
-    #[serde(default)]
+    /// Ratio of the normal velocities after and before an impact of rigid bodies \[-\]; at 1 the contact has no
+    /// dashpot. Between deformable bodies the dashpot is that of the two particles that touch, beside what waves in the bodies
+    /// take along.
+    #[serde(default = "elastic")]
     pub restitution: f64,
+}
+
+const fn elastic() -> f64 {
+    1.0
 }

@@ -37,6 +37,8 @@ pub enum Quantity {
     /// holds or drives the selection, the force that the body exerts on the condition. A body that hangs from its
     /// support by its weight pulls it down.
     Force,
+    /// Torque of the same forces about the centre of mass of the selection \[N m\].
+    Torque,
     /// A field of the particles by name, such as `"pressure"`, `"velocity.x"` or `"stress.xy"`.
     Field(String),
     /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given \[J\].

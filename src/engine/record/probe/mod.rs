@@ -4,6 +4,7 @@ mod energies;
 mod particles;
 mod point;
 mod resolve;
+mod torque;
 
 pub use energies::EnergyColumns;
 pub use resolve::{Gauge, Probe};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::energies::EnergyColumns;
 use super::particles::ParticleGauge;
 use super::point::PointGauge;
+use super::torque::TorqueGauge;
 use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::record::fields::{ChosenField, FieldTable};
 use crate::scene::{self, Problem, Quantity, Select};
@@ -17,6 +18,8 @@ pub enum Gauge {
     Particles(ParticleGauge),
     /// Interpolation at a point.
     Point(PointGauge),
+    /// Torque of the forces on particles.
+    Torque(TorqueGauge),
     /// Accounts of the energy ledger.
     Energies(EnergyColumns),
 }
@@ -34,13 +37,19 @@ pub struct Probe {
 impl Gauge {
     /// Name and unit of what it measures; none for energies, whose accounts open in the run.
     pub fn columns(&self) -> Vec<(String, &'static str)> {
+        if let Self::Torque(_) = self {
+            return ["x", "y", "z"].map(|axis| (axis.to_owned(), "N m")).to_vec();
+        }
         let Some(field) = self.field() else { return Vec::new() };
         field.column_names().into_iter().map(|name| (name, field.unit())).collect()
     }
 
     /// Names of the particle columns that it reads.
     pub fn needs(&self) -> Vec<&'static str> {
-        self.field().map(ChosenField::needs).unwrap_or_default()
+        match self {
+            Self::Torque(_) => TorqueGauge::NEEDS.to_vec(),
+            _ => self.field().map(ChosenField::needs).unwrap_or_default(),
+        }
     }
 
     /// Measures; nothing for energies.
@@ -51,6 +60,7 @@ impl Gauge {
         match self {
             Self::Particles(gauge) => gauge.read(world, resources),
             Self::Point(gauge) => gauge.read(world, resources),
+            Self::Torque(gauge) => gauge.read(world),
             Self::Energies(_) => Ok(Vec::new()),
         }
     }
@@ -59,7 +69,7 @@ impl Gauge {
         match self {
             Self::Particles(gauge) => Some(&gauge.field),
             Self::Point(gauge) => Some(&gauge.field),
-            Self::Energies(_) => None,
+            Self::Torque(_) | Self::Energies(_) => None,
         }
     }
 }
@@ -76,6 +86,10 @@ impl Probe {
         table: &Arc<FieldTable>,
     ) -> Result<Self, Vec<Problem>> {
         let gauge = match field_name(&probe.quantity) {
+            None if probe.quantity == Quantity::Torque => {
+                let on = probe.on.clone().unwrap_or_default();
+                Gauge::Torque(TorqueGauge { selection: select(k, &on, sim)? })
+            }
             Some(name) => field_gauge(k, probe, name, sim, table)?,
             None => Gauge::Energies(energies(k, probe.on.as_ref(), sim)?),
         };
@@ -92,7 +106,7 @@ fn field_name(quantity: &Quantity) -> Option<&str> {
         // The force column holds all that acts on a particle except its constraint: what it exerts on what holds it.
         Quantity::Force => Some("force"),
         Quantity::Field(name) => Some(name),
-        Quantity::Energy => None,
+        Quantity::Torque | Quantity::Energy => None,
     }
 }
 

@@ -1,0 +1,34 @@
+//! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of [`register`].
+
+mod hertz;
+mod law;
+mod memory;
+mod node_view;
+mod particles;
+mod penalty;
+mod plan;
+mod response;
+mod restitution;
+mod search;
+mod sides;
+mod start;
+mod stiffness;
+mod surface;
+mod system;
+mod tally;
+#[cfg(test)]
+mod tests;
+
+pub use hertz::{Hertz, PlaneForce};
+pub use law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
+pub use penalty::Penalty;
+pub use plan::{MakeLaw, add_systems};
+pub use restitution::{damping_ratio, restitution};
+pub use system::CONTACT;
+
+use crate::plugin::Registry;
+
+/// Registers all contact laws of the engine.
+pub fn register(registry: &mut Registry) {
+    registry.contact_law::<Penalty>().contact_law::<Hertz>();
+}

@@ -1,0 +1,134 @@
+//! From the contacts of a scene to the systems that make them.
+
+use super::law::{ContactPair, NormalForce};
+use super::particles::{ParticleContact, radii};
+use super::response::Interaction;
+use super::restitution::damping_ratio;
+use super::sides::{Nodes, Sides};
+use super::surface::SurfaceContact;
+use super::system::{self, Touching};
+use crate::materials::{ElasticConstants, Law};
+use crate::plugin::{BodyPlan, Formulation, SimBuilder};
+use crate::rigid::{Rigid, sphere_of};
+use crate::scene::{Contact, Item, Problem};
+use crate::world::{BodyId, BodySet};
+
+/// Makes the force of a law between two bodies.
+pub type MakeLaw<'m> = &'m dyn Fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
+
+/// Adds the contacts of the scene.
+///
+/// # Errors
+/// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
+pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
+    let scene = sim.scene();
+    let mut problems = Vec::new();
+    let mut touching = Vec::new();
+    // The contact of the scene that each pair belongs to.
+    let mut numbers = Vec::new();
+    for (k, contact) in scene.contacts.iter().enumerate() {
+        if let Some(problem) = named_before(&scene.contacts[..k], contact, k) {
+            problems.push(problem);
+            continue;
+        }
+        if contact.between.0 == contact.between.1 && is_rigid(find(sim, &contact.between.0)) {
+            let message = format!("rigid body `{}` cannot touch itself", contact.between.0);
+            problems.push(
+                Problem::at_path(format!("contacts[{k}].between"), message).help("leave this contact out"),
+            );
+            continue;
+        }
+        match pairs_of(contact, sim, make) {
+            Ok(pairs) => {
+                numbers.resize(numbers.len() + pairs.len(), k);
+                touching.extend(pairs);
+            }
+            Err(found) => problems.extend(found),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    if !touching.is_empty() {
+        let bodies = BodySet::new(touching.iter().flat_map(Touching::bodies));
+        system::add(sim, touching, numbers, &bodies);
+    }
+    Ok(())
+}
+
+fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Problem> {
+    let (a, b) = &contact.between;
+    let same =
+        |other: &Contact| other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone());
+    others.iter().any(same).then(|| {
+        let message = format!("the contact between `{a}` and `{b}` is given twice");
+        Problem::at_path(format!("contacts[{k}].between"), message).help("give each pair of bodies once")
+    })
+}
+
+fn pairs_of(
+    contact: &Contact,
+    sim: &SimBuilder<'_>,
+    make: MakeLaw<'_>,
+) -> Result<Vec<Touching>, Vec<Problem>> {
+    let (first, second) = (find(sim, &contact.between.0), find(sim, &contact.between.1));
+    let softness = |body: &BodyPlan| elastic_of(body).map_or(0.0, |e| (1.0 - e.poisson.powi(2)) / e.young);
+    let pair =
+        ContactPair { dimension: sim.dimension(), modulus: 1.0 / (softness(first) + softness(second)) };
+    let both = [first, second].into_iter().filter_map(elastic_of).map(|elastic| elastic.poisson);
+    let (count, sum) = both.fold((0.0, 0.0), |(count, sum), poisson| (count + 1.0, sum + poisson));
+    let poisson = if count > 0.0 { sum / count } else { 0.0 };
+    let interaction = || -> Result<Interaction, Vec<Problem>> {
+        Ok(Interaction {
+            law: make(&contact.law, &pair)?,
+            friction: contact.friction,
+            damping_ratio: damping_ratio(contact.restitution),
+            tangential: 2.0 * (1.0 - poisson) / (2.0 - poisson),
+        })
+    };
+    let particles = |body| Nodes::Particles(radii(body, sim.dimension()));
+    let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
+        Ok(Touching::Surface(Box::new(SurfaceContact::new(
+            interaction()?,
+            Sides { first: of.id, nodes, second: on.id },
+            sim.gravity().length(),
+        ))))
+    };
+    let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();
+    Ok(match (is_rigid(first), is_rigid(second)) {
+        (false, false) => {
+            vec![Touching::Particles(Box::new(ParticleContact::new(
+                interaction()?,
+                first,
+                second,
+                sim.dimension(),
+            )))]
+        }
+        (false, true) => vec![on_surface(particles(first), first, second)?],
+        (true, false) => vec![on_surface(particles(second), second, first)?],
+        // A sphere is one node, and touches the surface of the other exactly.
+        (true, true) if is_sphere(first) => vec![on_surface(Nodes::Rigid, first, second)?],
+        (true, true) if is_sphere(second) => vec![on_surface(Nodes::Rigid, second, first)?],
+        (true, true) => {
+            vec![on_surface(Nodes::Rigid, first, second)?, on_surface(Nodes::Rigid, second, first)?]
+        }
+    })
+}
+
+fn is_rigid(body: &BodyPlan) -> bool {
+    body.formulation == Rigid::NAME
+}
+
+fn find<'s>(sim: &'s SimBuilder<'_>, name: &str) -> &'s BodyPlan {
+    let k = sim.bodies().iter().position(|body| body.name == name);
+    // Names of bodies are checked with the scene.
+    sim.body(BodyId(k.unwrap_or(0)))
+}
+
+/// The elastic constants of a body; none where nothing deforms it.
+fn elastic_of(body: &BodyPlan) -> Option<&ElasticConstants> {
+    match &body.material.law {
+        Law::Solid(law) => Some(law.elastic()),
+        Law::Fluid(_) | Law::Nothing => None,
+    }
+}

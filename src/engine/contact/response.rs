@@ -1,0 +1,137 @@
+//! The force of one contact: spring and dashpot along the normal, spring, dashpot and Coulomb's limit across it.
+//!
+//! Velocities are those of mid-step. The dashpots act on the velocity that the contact itself leaves at the end of the
+//! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w: they are damping at any time step, and the
+//! restitution does not depend on it to first order.
+
+use glam::DVec3;
+
+use super::law::{NormalForce, Spring, Touch};
+use super::memory::Memory;
+
+/// How two bodies act on each other where they touch.
+pub(super) struct Interaction {
+    pub law: Box<dyn NormalForce>,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Damping ratio of an impact.
+    pub damping_ratio: f64,
+    /// Tangential over normal stiffness (Mindlin): 2 (1 - nu)/(2 - nu).
+    pub tangential: f64,
+}
+
+/// A contact as it is now.
+pub(super) struct Meeting {
+    pub touch: Touch,
+    /// Unit vector from the second side to the first.
+    pub normal: DVec3,
+    /// Velocity of the first side relative to the second at mid-step, m/s.
+    pub velocity: DVec3,
+}
+
+/// What a contact does.
+pub(super) struct Response {
+    /// Force on the first side, N.
+    pub force: DVec3,
+    pub spring: Spring,
+    pub memory: Memory,
+}
+
+/// What a contact has turned into heat in a step, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Losses {
+    pub damping: f64,
+    pub friction: f64,
+}
+
+impl Interaction {
+    /// The force; `inverse_mass` is that of both sides together along a direction, 1/kg.
+    pub fn respond(
+        &self,
+        meeting: &Meeting,
+        inverse_mass: impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &Memory,
+    ) -> Response {
+        let Meeting { touch, normal, velocity } = meeting;
+        let spring = self.law.at(touch);
+        let across = inverse_mass(*normal);
+        let approach = -velocity.dot(*normal);
+        let begun = self.share_of_first_step(touch, approach, dt, before);
+        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force, dt);
+        let pressure = (spring.force + pull).max(0.0);
+        let (tangential, drag) =
+            self.tangential(meeting, spring.stiffness, pressure, &inverse_mass, dt, before);
+        let stiffness = self.tangential * spring.stiffness;
+        let dashpot = (pressure - spring.force) * *normal + drag;
+        Response {
+            force: pressure * *normal + tangential + drag,
+            spring,
+            memory: Memory { spring: tangential, stiffness, dashpot },
+        }
+    }
+
+    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the share of a
+    /// step for which it is to act in the kicks around the end of its first one.
+    fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &Memory) -> f64 {
+        let is_new = before.stiffness == 0.0 && approach * dt > 0.0;
+        if is_new && self.law.at(&Touch { overlap: 0.0, ..*touch }).stiffness > 0.0 {
+            0.5 + (touch.overlap / (approach * dt)).min(1.0)
+        } else {
+            1.0
+        }
+    }
+
+    /// Force of a dashpot beside a spring of that stiffness and force that slows a motion at `speed`, N.
+    fn dashpot(&self, stiffness: f64, inverse_mass: f64, speed: f64, force: f64, dt: f64) -> f64 {
+        if self.damping_ratio == 0.0 || inverse_mass <= 0.0 {
+            return 0.0;
+        }
+        let c = 2.0 * self.damping_ratio * self.law.damping_factor() * (stiffness / inverse_mass).sqrt();
+        let half = 0.5 * dt * inverse_mass;
+        c * (speed - half * force) / (1.0 + half * c)
+    }
+
+    /// Forces of the tangential spring and dashpot on the first side, N.
+    fn tangential(
+        &self,
+        meeting: &Meeting,
+        stiffness: f64,
+        pressure: f64,
+        inverse_mass: &impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &Memory,
+    ) -> (DVec3, DVec3) {
+        if self.friction == 0.0 {
+            return (DVec3::ZERO, DVec3::ZERO);
+        }
+        let Meeting { normal, velocity, .. } = meeting;
+        let stiffness = self.tangential * stiffness;
+        let slip = velocity - velocity.dot(*normal) * normal;
+        let mut spring = before.spring - before.spring.dot(*normal) * normal;
+        // A spring that gets softer keeps its stretch, one that gets stiffer its force: neither makes energy.
+        if stiffness < before.stiffness {
+            spring *= stiffness / before.stiffness;
+        }
+        spring -= stiffness * dt * slip;
+        let limit = self.friction * pressure;
+        let held = spring.length();
+        if held >= limit {
+            return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
+        }
+        let along = slip.normalize_or(spring.normalize_or_zero());
+        let drag =
+            -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), -spring.dot(along), dt) * along;
+        let room = limit - held;
+        (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
+    }
+}
+
+impl Losses {
+    /// Adds the losses of a contact over the step to `now`; the two kicks put half of each force into the motion.
+    pub fn add(&mut self, before: &Memory, now: &Memory, velocity: DVec3, dt: f64) {
+        let half = 0.5 * dt * velocity;
+        self.damping -= (before.dashpot + now.dashpot).dot(half);
+        self.friction -= (before.spring + now.spring).dot(half) + now.energy() - before.energy();
+    }
+}

@@ -1,0 +1,163 @@
+//! Which particles may touch: pairs within reach and a skin, found again when the bodies may have moved by the skin.
+//!
+//! Only particles near the common part of the boxes around two bodies are looked at. The list holds every pair that
+//! touches, whenever it was made, so that nothing depends on when that was.
+
+use glam::DVec3;
+
+use super::memory::PairKey;
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+use crate::parallel::{BlockSum, for_each_block};
+use crate::shapes::Aabb;
+use crate::world::Position;
+
+/// Skin over the distance of two particles that just touch.
+const SKIN: f64 = 0.5;
+
+/// Places of the particles of a body.
+#[derive(Clone, Copy)]
+pub(super) struct Crowd<'a> {
+    pub position: &'a [Position],
+    /// Radius of every particle, m.
+    pub radius: &'a [f64],
+}
+
+/// Candidates of contact between the particles of two bodies, or of one with itself.
+pub(super) struct Search {
+    skin: f64,
+    /// Largest radius on each side, m.
+    largest: [f64; 2],
+    /// How far the two bodies may move together before the list is made again, m; how far they have.
+    budget: f64,
+    travelled: f64,
+    regions: [Region; 2],
+    search: NeighborSearch,
+    list: NeighborList,
+    pairs: Vec<PairKey>,
+}
+
+/// The particles of a body that are near the other one.
+#[derive(Default)]
+struct Region {
+    numbers: Vec<u32>,
+    position: Vec<DVec3>,
+    reach: Vec<f64>,
+}
+
+impl Region {
+    fn collect(&mut self, crowd: Crowd<'_>, within: Option<&Aabb>) {
+        self.numbers.clear();
+        self.position.clear();
+        self.reach.clear();
+        for (k, (x, radius)) in crowd.position.iter().zip(crowd.radius).enumerate() {
+            if within.is_none_or(|within| x.0.cmpge(within.min).all() && x.0.cmple(within.max).all()) {
+                self.numbers.push(k as u32);
+                self.position.push(x.0);
+                self.reach.push(2.0 * radius);
+            }
+        }
+    }
+
+    fn cloud(&self) -> Cloud<'_> {
+        Cloud { positions: &self.position, support: Support::PerParticle(&self.reach) }
+    }
+}
+
+impl Search {
+    /// A search between particles of these radii.
+    pub fn new(first: &[f64], second: &[f64]) -> Self {
+        let largest = [first, second].map(|radius| radius.iter().copied().fold(0.0, f64::max));
+        Self {
+            skin: SKIN * (largest[0] + largest[1]),
+            largest,
+            budget: -1.0,
+            travelled: 0.0,
+            regions: Default::default(),
+            search: NeighborSearch::default(),
+            list: NeighborList::default(),
+            pairs: Vec::new(),
+        }
+    }
+
+    /// Takes in how far the two bodies may have moved together, m, and says whether the list has to be made again.
+    pub fn moved(&mut self, distance: f64) -> bool {
+        self.travelled += distance;
+        // A distance that is not a number must not keep an old list.
+        self.travelled.is_nan() || self.travelled > self.budget
+    }
+
+    /// The pairs that may touch, ascending.
+    pub fn pairs(&self) -> &[PairKey] {
+        &self.pairs
+    }
+
+    /// Finds the pairs of two bodies.
+    pub fn between(&mut self, first: Crowd<'_>, second: Crowd<'_>) -> Result<(), NeighborError> {
+        self.pairs.clear();
+        self.travelled = 0.0;
+        let reach = self.largest[0] + self.largest[1];
+        let boxes = [first, second].map(|crowd| around(crowd.position));
+        let gap = (boxes[0].min - boxes[1].max).max(boxes[1].min - boxes[0].max).max(DVec3::ZERO).length();
+        self.budget = self.skin.max(gap - reach);
+        if gap >= reach + self.skin {
+            return Ok(());
+        }
+        let margin = DVec3::splat(reach + self.skin);
+        for (k, crowd) in [first, second].into_iter().enumerate() {
+            let other = boxes[1 - k];
+            let within = Aabb { min: other.min - margin, max: other.max + margin };
+            self.regions[k].collect(crowd, Some(&within));
+        }
+        let [targets, sources] = &self.regions;
+        if targets.numbers.is_empty() || sources.numbers.is_empty() {
+            return Ok(());
+        }
+        let (list, periodic) = (&mut self.list, Periodic::NONE);
+        self.search.between(targets.cloud(), sources.cloud(), self.skin, &periodic, list)?;
+        for (k, &i) in targets.numbers.iter().enumerate() {
+            self.pairs.extend(self.list.row(k).iter().map(|&j| (i, sources.numbers[j as usize])));
+        }
+        Ok(())
+    }
+
+    /// Finds the pairs of a body with itself that `apart` accepts, the smaller number first.
+    pub fn within(
+        &mut self,
+        crowd: Crowd<'_>,
+        apart: impl Fn(u32, u32) -> bool,
+    ) -> Result<(), NeighborError> {
+        self.pairs.clear();
+        self.travelled = 0.0;
+        self.budget = self.skin;
+        self.regions[0].collect(crowd, None);
+        self.search.within(self.regions[0].cloud(), self.skin, &Periodic::NONE, &mut self.list)?;
+        for i in 0..crowd.position.len() as u32 {
+            let others = self.list.row(i as usize).iter().filter(|&&j| i < j && apart(i, j));
+            self.pairs.extend(others.map(|&j| (i, j)));
+        }
+        Ok(())
+    }
+}
+
+/// The box around particles.
+fn around(position: &[Position]) -> Aabb {
+    let bounds = for_each_block(position, &mut Vec::new(), &|_, rows: &[Position]| {
+        rows.iter().fold(Bounds::default(), |bounds, x| Bounds(bounds.0.min(x.0), bounds.1.max(x.0)))
+    });
+    Aabb { min: bounds.0, max: bounds.1 }
+}
+
+#[derive(Clone, Copy)]
+struct Bounds(DVec3, DVec3);
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self(DVec3::INFINITY, DVec3::NEG_INFINITY)
+    }
+}
+
+impl BlockSum for Bounds {
+    fn add(&mut self, next: &Self) {
+        *self = Self(self.0.min(next.0), self.1.max(next.1));
+    }
+}

@@ -1,0 +1,78 @@
+//! The two sides of a contact with a rigid body: nodes and a surface.
+
+use glam::DVec3;
+
+use super::node_view::NodeView;
+use crate::rigid::RigidBody;
+use crate::schedule::StepError;
+use crate::world::{BodyId, Mobility, Position, Removed, Velocity, World};
+
+/// Where the nodes are.
+#[derive(Clone)]
+pub(super) enum Nodes {
+    /// Particles with these radii, m.
+    Particles(Vec<f64>),
+    /// The points of a rigid body.
+    Rigid,
+}
+
+/// The nodes of one body and the surface of another.
+#[derive(Clone)]
+pub(super) struct Sides {
+    /// Body with the nodes.
+    pub first: BodyId,
+    pub nodes: Nodes,
+    /// Rigid body with the surface.
+    pub second: BodyId,
+}
+
+/// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without radius.
+const RADIUS_SHARE: f64 = 0.5;
+const SPACING_SHARE: f64 = 0.05;
+
+impl Sides {
+    /// Calls `f` with the nodes and the body with the surface.
+    pub fn with<T>(
+        &self,
+        world: &World,
+        bodies: &[RigidBody],
+        f: impl FnOnce(&NodeView<'_>, &RigidBody) -> T,
+    ) -> Result<T, StepError> {
+        let tool = find(bodies, self.second)?;
+        Ok(match &self.nodes {
+            Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
+            Nodes::Particles(radius) => {
+                let (view, rows) = world.body_view(self.first);
+                let (x, v, m) =
+                    (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Mobility>()?);
+                let gone = view.read::<Removed>()?;
+                let view = NodeView::Particles {
+                    position: &x[rows.clone()],
+                    velocity: &v[rows.clone()],
+                    mobility: &m[rows.clone()],
+                    removed: &gone[rows],
+                    radius,
+                };
+                f(&view, tool)
+            }
+        })
+    }
+
+    /// Place of the first node that is deeper inside the other body than one may start, m.
+    pub fn inside(nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
+        let deep = |i: usize, x: DVec3| {
+            let overlap = nodes.radius(i) - tool.surface.closest(tool.reference(x)).signed_distance;
+            let radius = nodes.radius(i);
+            overlap > if radius > 0.0 { RADIUS_SHARE * radius } else { SPACING_SHARE * nodes.size(i) }
+        };
+        (0..nodes.len()).map(|i| (i, nodes.position(i))).find(|&(i, x)| deep(i, x)).map(|(_, x)| x)
+    }
+}
+
+fn find(bodies: &[RigidBody], id: BodyId) -> Result<&RigidBody, StepError> {
+    let missing = || StepError::System {
+        system: super::CONTACT.to_owned(),
+        message: format!("body {} is not rigid", id.0),
+    };
+    bodies.iter().find(|body| body.id == id).ok_or_else(missing)
+}

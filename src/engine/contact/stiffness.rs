@@ -1,0 +1,67 @@
+//! The time step that contact allows.
+
+use crate::schedule::Step;
+use crate::world::BodyId;
+
+/// Stiffness over mass of the contacts of every node, 1/s2: a bound on the square of a frequency (Gershgorin).
+pub(super) struct NodeStiffness {
+    sums: Vec<f64>,
+    touched: Vec<u32>,
+}
+
+impl NodeStiffness {
+    /// For that many nodes.
+    pub fn new(nodes: usize) -> Self {
+        Self { sums: vec![0.0; nodes], touched: Vec::new() }
+    }
+
+    /// Adds a contact.
+    pub fn add(&mut self, node: usize, stiffness_over_mass: f64) {
+        self.sums[node] += stiffness_over_mass;
+        self.touched.push(node as u32);
+    }
+
+    /// What a node has.
+    pub fn of(&self, node: usize) -> f64 {
+        self.sums[node]
+    }
+
+    /// Empties all nodes.
+    pub fn clear(&mut self) {
+        for node in self.touched.drain(..) {
+            self.sums[node as usize] = 0.0;
+        }
+    }
+}
+
+/// Half the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts together stay stable.
+const FREQUENCY_FACTOR: f64 = 1.0;
+/// Share of the distance of two particles that just touch by which they may approach in a step.
+const SWEPT_FACTOR: f64 = 0.25;
+
+/// Proposes the limits of two bodies: for contacts of a squared frequency, 1/s2, and for an approach at `speed`, m/s,
+/// of particles that touch at a distance of `reach`, m.
+pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64, speed: f64, reach: f64) {
+    let world = step.world;
+    let names = || format!("`{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
+    if squared > 0.0 {
+        step.limits
+            .propose(FREQUENCY_FACTOR / squared.sqrt(), || format!("stiffness of contact of {}", names()));
+    }
+    if speed > 0.0 {
+        step.limits.propose(SWEPT_FACTOR * reach / speed, || format!("speed of approach of {}", names()));
+    }
+}
+
+/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy.
+const IMPACT_FACTOR: f64 = 0.05;
+
+/// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
+pub(super) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {
+    if squared > 0.0 {
+        let world = step.world;
+        let by =
+            || format!("contact of rigid `{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
+        step.limits.propose(IMPACT_FACTOR / squared.sqrt(), by);
+    }
+}

@@ -1,0 +1,197 @@
+//! Rigid bodies that touch each other and deformable ones.
+
+use glam::DVec3;
+
+use super::{centre, momentum, simulation};
+use crate::rigid::RigidBodies;
+use crate::simulation::Simulation;
+
+/// A sphere of steel that falls on a fixed block at `speed`; `contact` goes into the contact.
+fn sphere_on_block(speed: f64, contact: &str, end: f64) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Three,
+            materials: {{"steel": NeoHookean(density: 7850, young: 2.1e11, poisson: 0.3),
+                        "anvil": NeoHookean(density: 7850, young: 1e25, poisson: 0.3)}},
+            bodies: [
+                (name: "anvil", material: "anvil", shape: Box(min: (-0.02, -0.02, -0.02), max: (0.02, 0.02, 0)), spacing: 0.01,
+                 formulation: Rigid()),
+                (name: "ball", material: "steel", shape: Sphere(center: (0.003, 0.001, 0.0100001), radius: 0.01), spacing: 0.005,
+                 formulation: Rigid(), velocity: (0, 0, {})),
+            ],
+            conditions: [Fix(on: Select(body: "anvil"))],
+            contacts: [Contact(between: ("ball", "anvil"), {contact})],
+            time: (end: {end:?}))"#,
+        -speed
+    ))
+}
+
+#[test]
+fn hertz_impact_of_a_sphere_has_the_depth_force_and_time_of_the_closed_form() {
+    let mut sim = sphere_on_block(1.0, "law: Hertz()", 1e-4);
+    sim.start().unwrap();
+    let (mut deepest, mut begin, mut finish, mut force) = (0.0f64, 0.0, 0.0, 0.0f64);
+    while !sim.is_finished() {
+        sim.step().unwrap();
+        let overlap = 0.01 - centre(&sim, 1).0.z;
+        let bodies = sim.resources().get::<RigidBodies>().clone();
+        force = force.max(bodies.lock()[1].state.force.length());
+        deepest = deepest.max(overlap);
+        if overlap > 0.0 {
+            if begin == 0.0 {
+                begin = sim.clock().time;
+            }
+            finish = sim.clock().time;
+        }
+    }
+    // E_hertz_sphere_impact.csv, first row.
+    let check = |found: f64, expected: f64, tolerance: f64| {
+        assert!((found / expected - 1.0).abs() < tolerance, "{found} {expected}");
+    };
+    check(deepest, 1.77951091e-05, 0.01);
+    check(force, 2309.76408, 0.01);
+    check(finish - begin, 5.23745652e-05, 0.03);
+    let (_, v) = centre(&sim, 1);
+    assert!((v.z - 1.0).abs() < 5e-3 && v.x.abs() < 1e-12, "{v}");
+    assert!(sim.ledger().relative_error().abs() < 1e-2, "{}", sim.ledger().relative_error());
+}
+
+#[test]
+fn restitution_is_what_is_asked_for() {
+    for (law, wanted) in [("Penalty()", 0.9), ("Penalty()", 0.5), ("Penalty()", 0.2), ("Hertz()", 0.6)] {
+        let contact = format!("law: {law}, restitution: {wanted}");
+        let mut sim = sphere_on_block(1.0, &contact, 3e-4);
+        sim.run(|_| true).unwrap();
+        let (_, v) = centre(&sim, 1);
+        assert!((v.z / wanted - 1.0).abs() < 0.02, "{law} {wanted}: {}", v.z);
+        let lost = sim.ledger().total_named("contact_damping");
+        let energy = sim.ledger().stored_at_start();
+        assert!((lost / energy - (1.0 - wanted * wanted)).abs() < 0.02, "{lost} of {energy}");
+    }
+}
+
+#[test]
+fn a_roller_that_is_turned_drives_what_lies_on_it_and_its_work_is_booked() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -10),
+            materials: {"stone": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "roller", material: "stone", shape: Sphere(center: (0, -0.1), radius: 0.1), spacing: 0.05, formulation: Rigid()),
+                (name: "plank", material: "stone", shape: Box(min: (-0.5, 0), max: (0.5, 0.05)), spacing: 0.025,
+                 formulation: Rigid(rotation: Held)),
+            ],
+            conditions: [Fix(on: Select(body: "roller")), Turn(on: Select(body: "roller"), rate: "-2*smoothstep(t/0.05)")],
+            contacts: [Contact(between: ("roller", "plank"), law: Penalty(stiffness: 1e6), friction: 0.5, restitution: 0.3)],
+            time: (end: 0.5))"#,
+    );
+    sim.run(|_| true).unwrap();
+    let (_, plank) = centre(&sim, 1);
+    // The surface of the roller moves at 0.2 m/s.
+    assert!((plank.x - 0.2).abs() < 2e-3 && plank.y.abs() < 1e-3, "{plank}");
+    let constraints = sim.ledger().total_named("constraints");
+    assert!(constraints > 0.9 && sim.ledger().relative_error().abs() < 1e-2, "{constraints}");
+}
+
+/// Momentum and angular momentum about the origin of all rigid bodies.
+fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
+    let bodies = sim.resources().get::<RigidBodies>().clone();
+    let bodies = bodies.lock();
+    let linear = bodies.iter().map(|body| body.mass * body.state.velocity).sum();
+    let angular = |body: &crate::rigid::RigidBody| {
+        body.state.center.cross(body.mass * body.state.velocity) + body.state.angular_momentum
+    };
+    (linear, bodies.iter().map(angular).sum())
+}
+
+#[test]
+fn tumbling_boxes_and_a_sphere_keep_momentum_and_angular_momentum() {
+    let mut sim = simulation(
+        r#"(dimension: Three,
+            materials: {"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "one", material: "steel", shape: Box(min: (0, 0, 0), max: (0.1, 0.06, 0.04)), spacing: 0.01,
+                 formulation: Rigid(spin: (3, -20, 9))),
+                (name: "two", material: "steel", shape: Box(min: (0.03, 0.02, 0.07), max: (0.09, 0.08, 0.11)), spacing: 0.01,
+                 formulation: Rigid(spin: (10, 2, -5)), velocity: (0.1, -0.2, -2.0)),
+                (name: "ball", material: "steel", shape: Sphere(center: (0.02, 0.03, -0.05), radius: 0.03), spacing: 0.01,
+                 formulation: Rigid(), velocity: (0.0, 0.1, 1.5)),
+            ],
+            contacts: [
+                Contact(between: ("one", "two"), law: Penalty(), friction: 0.3, restitution: 0.9),
+                Contact(between: ("one", "ball"), law: Hertz(), friction: 0.5, restitution: 0.7),
+                Contact(between: ("two", "ball"), law: Hertz()),
+            ],
+            time: (end: 0.1))"#,
+    );
+    sim.start().unwrap();
+    let (p, l) = momenta(&sim);
+    let particles = momentum(&sim);
+    assert!((particles - p).length() < 1e-12 * p.length());
+    sim.run(|_| true).unwrap();
+    let (q, m) = momenta(&sim);
+    assert!((q - p).length() < 1e-12 * p.length(), "{p} {q}");
+    assert!((m - l).length() < 1e-12 * l.length(), "{l} {m}");
+    let bodies = sim.resources().get::<RigidBodies>().clone();
+    let hit = bodies.lock().iter().filter(|body| body.state.velocity.length() > 0.05).count();
+    assert!(hit == 3 && sim.ledger().total_named("friction") > 0.0);
+    assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+}
+
+#[test]
+fn a_body_may_not_start_inside_a_tool() {
+    let text = r#"(dimension: Two,
+        materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [
+            (name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
+             formulation: TotalLagrangian),
+            (name: "tool", material: "soft", shape: Box(min: (0.0, 0.097), max: (0.1, 0.3)), spacing: 0.05,
+             formulation: Rigid()),
+        ],
+        contacts: [Contact(between: ("block", "tool"), law: Penalty())],
+        time: (end: 1e-3))"#;
+    let (scene, source) = crate::scene::parse(crate::scene::Source::new("x.ron", text)).unwrap();
+    let error = crate::plugin::build(&scene, &source, &crate::plugin::Registry::standard());
+    let Err(error) = error else { panic!("it was built") };
+    assert!(error.to_string().contains("a particle of `block` starts inside rigid body `tool`"), "{error}");
+}
+
+/// A block pressed by a tool against a fixed one.
+#[test]
+fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
+    let mut sim = simulation(
+        r#"(dimension: Two,
+            materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+            bodies: [
+                (name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
+                 formulation: TotalLagrangian),
+                (name: "table", material: "soft", shape: Box(min: (-0.05, -0.1), max: (0.15, 0)), spacing: 0.05,
+                 formulation: Rigid()),
+                (name: "tool", material: "soft", shape: Box(min: (-0.05, 0.1), max: (0.15, 0.2)), spacing: 0.05,
+                 formulation: Rigid()),
+            ],
+            conditions: [
+                Fix(on: Select(body: "table")),
+                Velocity(on: Select(body: "tool"), value: (0.0, "-0.5*smoothstep(t/0.01)")),
+            ],
+            contacts: [
+                Contact(between: ("block", "tool"), law: Penalty()),
+                Contact(between: ("block", "table"), law: Penalty()),
+            ],
+            time: (end: 0.02))"#,
+    );
+    sim.run(|_| true).unwrap();
+    let bodies = sim.resources().get::<RigidBodies>().clone();
+    let states: Vec<_> = bodies.lock().iter().map(|body| body.state).collect();
+    let (table, tool) = (states[0], states[1]);
+    // Pressed by 7.5 mm of 100: about E'(0.075) over 0.1 m, with half a spacing of soft contact on both sides.
+    assert!((5e3..9e3).contains(&tool.force.y), "{}", tool.force);
+    assert!((table.force.y + tool.force.y).abs() < 0.1 * tool.force.y, "{} {}", table.force, tool.force);
+    assert!((tool.center.y - 0.15 + 0.0075).abs() < 1e-6, "{}", tool.center);
+    let work = sim.ledger().total_named("constraints");
+    assert!(work > 0.0 && (sim.ledger().stored() / work - 1.0).abs() < 0.01, "{work}");
+    assert!(sim.ledger().relative_error().abs() < 2e-3, "{}", sim.ledger().relative_error());
+    // The force column of its particles adds up to the reaction.
+    let (view, rows) = sim.world().body_view(crate::world::BodyId(2));
+    let force = view.read::<crate::world::Force>().unwrap();
+    let sum: DVec3 = rows.map(|row| force[row].0).sum();
+    assert!((sum - tool.force).length() < 1e-9 * tool.force.length());
+}

@@ -1,0 +1,145 @@
+//! A rigid body: where it is, how it moves, what acts on it.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::constraint::Constraint;
+use super::nodes::Nodes;
+use super::rotation::Inertia;
+use crate::linalg::Sym3;
+use crate::shapes::Surface;
+use crate::world::BodyId;
+
+/// State of a rigid body; at mid-step the velocities are those of mid-step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigidState {
+    /// Centre of mass, m.
+    pub center: DVec3,
+    /// Rotation from the reference configuration.
+    pub rotation: DQuat,
+    /// Velocity of the centre, m/s.
+    pub velocity: DVec3,
+    /// Angular momentum about the centre, kg m2/s.
+    pub angular_momentum: DVec3,
+    /// Angular velocity, 1/s.
+    pub angular_velocity: DVec3,
+    /// Force on the body at the end of the last step, N.
+    pub force: DVec3,
+    /// Torque about its centre at the end of the last step, N m.
+    pub torque: DVec3,
+}
+
+/// A rigid body.
+pub struct RigidBody {
+    /// Index in the scene.
+    pub id: BodyId,
+    /// Mass, kg; in two dimensions per metre of thickness.
+    pub mass: f64,
+    /// Inertia about the centre.
+    pub inertia: Inertia,
+    /// Inverse of the inertia of its particles as points, in the reference configuration.
+    pub(super) points: Option<Sym3>,
+    /// Centre in the reference configuration, m.
+    pub reference_center: DVec3,
+    /// Largest distance of a point of the body from its centre, m.
+    pub reach: f64,
+    /// Surface in the reference configuration.
+    pub surface: Box<dyn Surface>,
+    /// Points that touch other surfaces.
+    pub nodes: Nodes,
+    pub(super) constraint: Constraint,
+    /// State.
+    pub state: RigidState,
+    /// Force and torque about the centre that contacts have added in this step, N and N m.
+    contact: (DVec3, DVec3),
+}
+
+impl RigidBody {
+    pub(super) fn new(parts: RigidParts, state: RigidState) -> Self {
+        let RigidParts { id, mass, inertia, points, reach, surface, nodes, constraint } = parts;
+        let contact = (DVec3::ZERO, DVec3::ZERO);
+        let reference_center = state.center;
+        Self {
+            id,
+            mass,
+            inertia,
+            points,
+            reference_center,
+            reach,
+            surface,
+            nodes,
+            constraint,
+            state,
+            contact,
+        }
+    }
+
+    /// Where a point of the reference configuration is now.
+    pub fn place(&self, reference: DVec3) -> DVec3 {
+        self.state.center + self.state.rotation * (reference - self.reference_center)
+    }
+
+    /// Where a point of space is in the reference configuration.
+    pub fn reference(&self, place: DVec3) -> DVec3 {
+        self.reference_center + self.state.rotation.inverse() * (place - self.state.center)
+    }
+
+    /// Velocity of the point of the body that is at `place`, m/s.
+    pub fn velocity_at(&self, place: DVec3) -> DVec3 {
+        self.state.velocity + self.state.angular_velocity.cross(place - self.state.center)
+    }
+
+    /// Largest speed of any of its points, m/s.
+    pub fn largest_speed(&self) -> f64 {
+        self.state.velocity.length() + self.state.angular_velocity.length() * self.reach
+    }
+
+    /// How much a force at `place` along `direction` speeds up that point along it, 1/kg.
+    pub fn inverse_mass_at(&self, place: DVec3, direction: DVec3) -> f64 {
+        let lever = (place - self.state.center).cross(direction);
+        let spin = self.constraint.angular_response(&self.inertia, self.state.rotation, lever);
+        let free = self.constraint.free_axes();
+        direction.dot(free * direction) / self.mass + lever.dot(spin)
+    }
+
+    /// Whether nothing that touches it can move it.
+    pub fn is_driven(&self) -> bool {
+        self.constraint.is_complete()
+    }
+
+    /// Adds the force of a contact at `place`, N.
+    pub fn push(&mut self, place: DVec3, force: DVec3) {
+        self.contact.0 += force;
+        self.contact.1 += (place - self.state.center).cross(force);
+    }
+
+    /// Takes the force and torque of the contacts of this step, N and N m.
+    pub(super) fn take_contact(&mut self) -> (DVec3, DVec3) {
+        std::mem::take(&mut self.contact)
+    }
+}
+
+/// What a rigid body is made of.
+pub(super) struct RigidParts {
+    pub id: BodyId,
+    pub mass: f64,
+    pub inertia: Inertia,
+    pub points: Option<Sym3>,
+    pub reach: f64,
+    pub surface: Box<dyn Surface>,
+    pub nodes: Nodes,
+    pub constraint: Constraint,
+}
+
+/// The rigid bodies of a simulation, in scene order, shared by the systems that move them and those that push them.
+#[derive(Clone, Default)]
+pub struct RigidBodies(Arc<Mutex<Vec<RigidBody>>>);
+
+impl RigidBodies {
+    /// All bodies. Systems run one after another: nobody waits.
+    pub fn lock(&self) -> MutexGuard<'_, Vec<RigidBody>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

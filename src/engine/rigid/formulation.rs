@@ -1,0 +1,211 @@
+//! The formulation of rigid bodies: parameters, and what they are made of at the start.
+
+use glam::{DQuat, DVec3};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
+use super::constraint::{Constraint, DrivenBody, DrivenRotation, Turning};
+use super::inertia::MassProperties;
+use super::nodes::Nodes;
+use super::rotation::Inertia;
+use super::systems;
+use crate::integrate::OwnMotion;
+use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
+use crate::scene::{Dimension, Vec3};
+use crate::world::{BodyId, ColumnSet, Mass, Mobility, Position, Velocity};
+
+/// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact surface of its
+/// shape. It moves freely, except along the axes that `Fix`, `Velocity` or `Displacement` hold or drive; these conditions must
+/// select the whole body.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Rigid {
+    /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation.
+    pub rotation: Option<Rotation>,
+    /// Angular velocity at the start, about its centre \[rad/s\].
+    pub spin: Vec3,
+    /// Mass \[kg; kg per metre of thickness in two dimensions\]. Default: density times volume.
+    pub mass: Option<f64>,
+}
+
+/// How a rigid body may turn.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+pub enum Rotation {
+    /// Freely about its centre.
+    Free,
+    /// Not at all.
+    Held,
+    /// About an axis through its centre with this direction.
+    About(Vec3),
+}
+
+impl Formulation for Rigid {
+    const NAME: &'static str = "Rigid";
+    const REFERENCE: &'static str = "rigid rotation: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) \
+                                     5840-5851";
+
+    fn columns(_: &mut ColumnSet) {}
+
+    fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let mut drives: Vec<DrivenBody> = sim.take_extensions();
+        let mut rotations: Vec<DrivenRotation> = sim.take_extensions();
+        let shared = RigidBodies::default();
+        let mut spins = Vec::new();
+        for (id, parameters) in bodies {
+            sim.extend(OwnMotion(id));
+            let own = drives.extract_if(.., |drive| drive.body == id).collect();
+            let turning = rotations.extract_if(.., |rotation| rotation.body == id).collect();
+            let constraint = parameters.constraint(id, own, turning, sim)?;
+            spins.push(parameters.spin.0);
+            shared.lock().push(parameters.body(id, constraint, sim)?);
+        }
+        let owned = shared.clone();
+        sim.add_setup(move |setup| {
+            start(&owned, &spins, setup)?;
+            setup.resources.insert(owned);
+            Ok(())
+        });
+        systems::add(sim, &shared);
+        Ok(())
+    }
+}
+
+impl Rigid {
+    fn constraint(
+        &self,
+        id: BodyId,
+        drives: Vec<DrivenBody>,
+        mut rotations: Vec<DrivenRotation>,
+        sim: &SimBuilder<'_>,
+    ) -> Result<Constraint, SetupError> {
+        let at = |field: &str| format!("bodies[{}].formulation{field}", id.0);
+        for axis in 0..3 {
+            let mut by = drives.iter().filter(|drive| drive.axes[axis]).map(|drive| drive.by);
+            if let (Some(one), Some(other)) = (by.next(), by.next()) {
+                let body = &sim.body(id).name;
+                let name = ["x", "y", "z"][axis];
+                let message =
+                    format!("`{one}` and `{other}` both prescribe the {name} motion of rigid body `{body}`");
+                return Err(SetupError::parameter(at(""), message, "leave the axis to one of them"));
+            }
+        }
+        if rotations.len() > 1 {
+            let message = format!("rigid body `{}` is turned by two conditions", sim.body(id).name);
+            return Err(SetupError::parameter(at(""), message, "leave its rotation to one of them"));
+        }
+        let turning = match (rotations.pop(), self.rotation) {
+            (Some(_), Some(_)) => {
+                let message = "the rotation of the body is prescribed by a condition, and stated here too";
+                return Err(SetupError::parameter(at(""), message, "leave out `rotation`"));
+            }
+            (Some(driven), None) => Turning::Driven(driven),
+            (None, Some(Rotation::Free)) => Turning::Free,
+            (None, Some(Rotation::Held)) => Turning::Held,
+            (None, Some(Rotation::About(axis))) => {
+                Turning::About(checked_axis(axis.0, sim.dimension(), &at(""))?)
+            }
+            (None, None) if drives.is_empty() => Turning::Free,
+            (None, None) => Turning::Held,
+        };
+        Ok(Constraint { drives, turning })
+    }
+
+    fn body(
+        &self,
+        id: BodyId,
+        constraint: Constraint,
+        sim: &SimBuilder<'_>,
+    ) -> Result<RigidBody, SetupError> {
+        let plan = sim.body(id);
+        let shape = &sim.scene().bodies[id.0].shape;
+        let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
+        let of_shape = MassProperties::new(plan, shape, sim.dimension());
+        let mass = self.mass.unwrap_or(of_shape.mass);
+        let has_mass = mass > 0.0 && mass.is_finite();
+        if !has_mass && !constraint.is_complete() {
+            return Err(SetupError::parameter(
+                format!("bodies[{}].formulation", id.0),
+                format!("rigid body `{}` moves freely and has a mass of {mass} kg", plan.name),
+                "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`",
+            ));
+        }
+        let factor = mass / of_shape.mass;
+        let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
+        let reach =
+            nodes.points.iter().map(|x| x.distance(of_shape.center)).fold(0.0, f64::max) + nodes.radius;
+        let points = of_shape.points * factor;
+        let parts = RigidParts {
+            id,
+            mass,
+            inertia: Inertia::new(&(of_shape.tensor * factor)),
+            points: (points.determinant() > 0.0).then(|| points.inverse()),
+            reach,
+            surface,
+            nodes,
+            constraint,
+        };
+        let state = RigidState {
+            center: of_shape.center,
+            rotation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            angular_momentum: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
+            force: DVec3::ZERO,
+            torque: DVec3::ZERO,
+        };
+        if sim.dimension() == Dimension::Two && (self.spin.0.x != 0.0 || self.spin.0.y != 0.0) {
+            let message = "a two-dimensional body turns about z alone";
+            let help = "give `spin: (0.0, 0.0, rate)`";
+            return Err(SetupError::parameter(format!("bodies[{}].formulation.spin", id.0), message, help));
+        }
+        Ok(RigidBody::new(parts, state))
+    }
+}
+
+/// The unit vector along an axis of rotation.
+pub(crate) fn checked_axis(axis: DVec3, dimension: Dimension, field: &str) -> Result<DVec3, SetupError> {
+    let length = axis.length();
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(SetupError::parameter(
+            field,
+            format!("the axis {axis} has no direction"),
+            "such as `(0, 0, 1)`",
+        ));
+    }
+    if dimension == Dimension::Two && (axis.x != 0.0 || axis.y != 0.0) {
+        return Err(SetupError::parameter(
+            field,
+            "a two-dimensional body turns about z alone",
+            "give `(0, 0, 1)`",
+        ));
+    }
+    Ok(axis / length)
+}
+
+/// The motion at the start from the velocities of the particles, which initial conditions have set.
+fn start(bodies: &RigidBodies, spins: &[DVec3], setup: &mut Setup<'_>) -> Result<(), SetupError> {
+    let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
+    for (body, spin) in bodies.lock().iter_mut().zip(spins) {
+        let (view, rows) = setup.world.body_view(body.id);
+        let (x, velocity) =
+            (view.read::<Position>().map_err(missing)?, view.read::<Velocity>().map_err(missing)?);
+        let mut mass = view.write::<Mass>().map_err(missing)?;
+        let total: f64 = rows.clone().map(|row| mass[row].0).sum();
+        let mut momentum = DVec3::ZERO;
+        let mut turning = DVec3::ZERO;
+        for row in rows.clone() {
+            let own = &mut mass[row].0;
+            *own *= body.mass / total;
+            momentum += *own * velocity[row].0;
+            turning += (x[row].0 - body.state.center).cross(*own * velocity[row].0);
+        }
+        let angular = body.points.map_or(DVec3::ZERO, |inverse| inverse * turning) + *spin;
+        body.state.velocity = momentum / body.mass;
+        body.state.angular_velocity = angular;
+        body.state.angular_momentum = body.inertia.angular_momentum(DQuat::IDENTITY, angular);
+        // The engine's own integrator and all plugins leave the particles alone.
+        view.write::<Mobility>().map_err(missing)?[rows].fill(Mobility(DVec3::ZERO));
+    }
+    Ok(())
+}

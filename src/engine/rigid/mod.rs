@@ -1,0 +1,18 @@
+//! Rigid bodies: particles that move as one, with the exact surface of their shape.
+
+mod body;
+mod constraint;
+mod formulation;
+mod inertia;
+mod nodes;
+mod rotation;
+mod systems;
+
+pub use body::{RigidBodies, RigidBody, RigidState};
+pub use constraint::{Drive, DrivenBody, DrivenRotation};
+pub(crate) use formulation::checked_axis;
+pub use formulation::{Rigid, Rotation};
+pub(crate) use inertia::sphere_of;
+pub use nodes::Nodes;
+pub use rotation::Inertia;
+pub use systems::{RIGID_DRIFT, RIGID_KICK, RIGID_WEIGHT};

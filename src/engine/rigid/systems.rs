@@ -1,0 +1,253 @@
+//! The systems that move rigid bodies: kick and drift of the body, the second kick, particles taken along.
+
+use glam::{DMat3, DVec3};
+
+use super::body::{RigidBodies, RigidBody, RigidState};
+use super::constraint::Turning;
+use crate::plugin::SimBuilder;
+use crate::schedule::{AccountKind, Clock, Run, Stage, Step, StepError, System};
+use crate::world::{BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Velocity};
+
+/// Label of the system that moves rigid bodies by the first kick and the drift.
+pub const RIGID_DRIFT: &str = "rigid_drift";
+/// Label of the system that gives rigid bodies their weight.
+pub const RIGID_WEIGHT: &str = "rigid_weight";
+/// Label of the system that sums the forces on rigid bodies and makes the second kick.
+pub const RIGID_KICK: &str = "rigid_kick";
+
+/// Adds the systems of all rigid bodies.
+pub(super) fn add(sim: &mut SimBuilder<'_>, bodies: &RigidBodies) {
+    let ids = BodySet::new(bodies.lock().iter().map(|body| body.id));
+    let phases: Vec<PhaseId> = sim.phases_of(&ids);
+    let (gravity, end) = (sim.gravity(), sim.scene().time.end);
+    sim.add_system(
+        System::new(Stage::InitialIntegrate, RIGID_DRIFT, Drift { bodies: bodies.clone(), gravity })
+            .on_phases(phases.clone())
+            .reads::<ReferencePosition>()
+            .writes::<Position>()
+            .writes::<Velocity>(),
+    );
+    sim.add_system(
+        System::each::<(&mut Force, &Mass)>(Stage::Rates, RIGID_WEIGHT, ids, move |_, (force, mass)| {
+            force.0 = gravity * mass.0;
+        })
+        .on_phases(phases.clone()),
+    );
+    sim.add_system(
+        System::new(Stage::FinalIntegrate, RIGID_KICK, Kick { bodies: bodies.clone(), end })
+            .on_phases(phases)
+            .reads::<Position>()
+            .reads::<Mass>()
+            .writes::<Velocity>()
+            .writes::<Force>(),
+    );
+}
+
+impl RigidBody {
+    /// Half a kick, s, with the force and torque of the state.
+    fn kick(&mut self, half: f64) {
+        let free = self.constraint.free_axes();
+        self.state.velocity += half / self.mass * (free * self.state.force);
+        let torque = half * self.state.torque;
+        let (inertia, rotation) = (&self.inertia, self.state.rotation);
+        match &self.constraint.turning {
+            Turning::Free => {
+                self.state.angular_momentum += torque;
+                self.state.angular_velocity = inertia.angular_velocity(rotation, self.state.angular_momentum);
+            }
+            Turning::About(_) => {
+                self.state.angular_velocity += self.constraint.angular_response(inertia, rotation, torque);
+            }
+            Turning::Held | Turning::Driven(_) => {}
+        }
+        self.refresh();
+    }
+
+    /// Angular velocity and momentum fit each other and the constraint.
+    fn refresh(&mut self) {
+        let (inertia, state) = (&self.inertia, &mut self.state);
+        match &self.constraint.turning {
+            Turning::Free => {
+                state.angular_velocity = inertia.angular_velocity(state.rotation, state.angular_momentum);
+                return;
+            }
+            Turning::About(axis) => state.angular_velocity = *axis * axis.dot(state.angular_velocity),
+            Turning::Held => state.angular_velocity = DVec3::ZERO,
+            Turning::Driven(_) => {}
+        }
+        state.angular_momentum = inertia.angular_momentum(state.rotation, state.angular_velocity);
+    }
+
+    /// Sets the prescribed parts of the velocities. Returns the work that this takes, J.
+    fn drive(&mut self, end_of_step: bool, clock: &Clock) -> Result<f64, StepError> {
+        let before = self.kinetic();
+        let (center, reference) = (self.state.center, self.reference_center);
+        self.constraint.set_velocity(end_of_step, clock, center, reference, &mut self.state.velocity)?;
+        if let Turning::Driven(driven) = &self.constraint.turning {
+            let rate = driven.rate.velocity(end_of_step, clock, center, reference)?;
+            self.state.angular_velocity = driven.axis * rate.x;
+        }
+        self.refresh();
+        Ok(self.kinetic() - before)
+    }
+
+    /// Power of force and torque on what is prescribed, W: what the constraints take up.
+    fn constraint_power(&self) -> f64 {
+        let held = DVec3::ONE - self.constraint.free_axes();
+        let turning = match self.constraint.turning {
+            Turning::Driven(_) => self.state.torque.dot(self.state.angular_velocity),
+            _ => 0.0,
+        };
+        (held * self.state.force).dot(self.state.velocity) + turning
+    }
+
+    fn drift(&mut self, dt: f64) {
+        self.state.center += dt * self.state.velocity;
+        let state = &mut self.state;
+        state.rotation = match &self.constraint.turning {
+            Turning::Free => self.inertia.turn(state.rotation, state.angular_momentum, dt),
+            Turning::Held => state.rotation,
+            Turning::About(_) | Turning::Driven(_) => {
+                (glam::DQuat::from_scaled_axis(dt * state.angular_velocity) * state.rotation).normalize()
+            }
+        };
+        self.refresh();
+    }
+
+    /// Kinetic energy, J.
+    pub fn kinetic(&self) -> f64 {
+        let RigidState { velocity, angular_velocity, angular_momentum, .. } = &self.state;
+        let moving = if self.mass.is_finite() { self.mass * velocity.length_squared() } else { 0.0 };
+        0.5 * (moving + angular_velocity.dot(*angular_momentum))
+    }
+}
+
+struct Drift {
+    bodies: RigidBodies,
+    gravity: DVec3,
+}
+
+impl Run for Drift {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let dt = step.clock.dt;
+        let constraints = step.ledger.account("constraints", AccountKind::Supplied);
+        let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
+        for body in self.bodies.lock().iter_mut() {
+            // As for particles: what is prescribed is set first, then the forces kick what is free.
+            let work = body.drive(false, &step.clock)?;
+            body.kick(0.5 * dt);
+            step.ledger.add(constraints, body.id, work - 0.5 * dt * body.constraint_power());
+            step.ledger.add(gravity_work, body.id, dt * body.mass * body.state.velocity.dot(self.gravity));
+            body.drift(dt);
+            place_particles(body, step)?;
+        }
+        Ok(())
+    }
+}
+
+/// Puts the particles of a body in their places.
+fn place_particles(body: &RigidBody, step: &Step<'_>) -> Result<(), StepError> {
+    let (view, rows) = step.world.body_view(body.id);
+    let reference = view.read::<ReferencePosition>()?;
+    let mut position = view.write::<Position>()?;
+    let mut velocity = view.write::<Velocity>()?;
+    let rotation = DMat3::from_quat(body.state.rotation);
+    for row in rows {
+        let arm = rotation * (reference[row].0 - body.reference_center);
+        position[row].0 = body.state.center + arm;
+        velocity[row].0 = body.state.velocity + body.state.angular_velocity.cross(arm);
+    }
+    Ok(())
+}
+
+/// Share of the spacing by which a body may move in a step, and of a radian by which it may turn.
+const MOTION_FACTOR: f64 = 0.1;
+/// Steps of a body that nothing moves, in the whole run.
+const LEAST_STEPS: f64 = 100.0;
+
+struct Kick {
+    bodies: RigidBodies,
+    end: f64,
+}
+
+impl Run for Kick {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let half = 0.5 * step.clock.dt;
+        let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
+        let constraints = step.ledger.account("constraints", AccountKind::Supplied);
+        for body in self.bodies.lock().iter_mut() {
+            let contact = sum_of_forces(body, step)?;
+            share_out(body, contact, step)?;
+            let power = body.constraint_power();
+            body.kick(half);
+            let work = body.drive(true, &step.clock)?;
+            step.ledger.add(constraints, body.id, work - half * power);
+            step.ledger.set(kinetic, body.id, body.kinetic());
+            let (view, rows) = step.world.body_view(body.id);
+            let position = view.read::<Position>()?;
+            let mut velocity = view.write::<Velocity>()?;
+            for row in rows {
+                velocity[row].0 = body.velocity_at(position[row].0);
+            }
+            if !body.kinetic().is_finite() {
+                return Err(step.unstable("velocity is not a finite number", body.id, 0));
+            }
+            propose(body, self.end, step);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let states: Vec<RigidState> = self.bodies.lock().iter().map(|body| body.state).collect();
+        postcard::to_stdvec(&states).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok(states) = postcard::from_bytes::<Vec<RigidState>>(state) else { return false };
+        let mut bodies = self.bodies.lock();
+        let fits = states.len() == bodies.len();
+        bodies.iter_mut().zip(states).for_each(|(body, state)| body.state = state);
+        fits
+    }
+}
+
+/// Sums the forces on the particles and those of contact into the state of the body; returns the share of contact.
+fn sum_of_forces(body: &mut RigidBody, step: &Step<'_>) -> Result<(DVec3, DVec3), StepError> {
+    let contact = body.take_contact();
+    let (view, rows) = step.world.body_view(body.id);
+    let (position, force) = (view.read::<Position>()?, view.read::<Force>()?);
+    let (mut sum, mut torque) = contact;
+    for row in rows {
+        sum += force[row].0;
+        torque += (position[row].0 - body.state.center).cross(force[row].0);
+    }
+    (body.state.force, body.state.torque) = (sum, torque);
+    Ok(contact)
+}
+
+/// Spreads force and torque of contact over the particles as a rigid acceleration, so that sums over the particles are those
+/// of the body.
+fn share_out(body: &RigidBody, (force, torque): (DVec3, DVec3), step: &Step<'_>) -> Result<(), StepError> {
+    if force == DVec3::ZERO && torque == DVec3::ZERO {
+        return Ok(());
+    }
+    let (view, rows) = step.world.body_view(body.id);
+    let (position, mass) = (view.read::<Position>()?, view.read::<Mass>()?);
+    let mut forces = view.write::<Force>()?;
+    let turn = body.state.rotation;
+    let spin = body.points.map_or(DVec3::ZERO, |inverse| turn * (inverse * (turn.inverse() * torque)));
+    for row in rows {
+        let arm = position[row].0 - body.state.center;
+        forces[row].0 += mass[row].0 * (force / body.mass + spin.cross(arm));
+    }
+    Ok(())
+}
+
+fn propose(body: &RigidBody, end: f64, step: &mut Step<'_>) {
+    let spacing = step.world.body(body.id).spacing;
+    let speed = body.state.velocity.length() / spacing + body.state.angular_velocity.length();
+    let acceleration = (body.state.force / body.mass).length() / spacing;
+    let rate = (speed / MOTION_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
+    let name = &step.world.body(body.id).name;
+    step.limits.propose(1.0 / rate, || format!("motion of `{name}`"));
+}
