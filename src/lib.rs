@@ -38,6 +38,8 @@ pub fn standard_plugins() -> Registry {
 mod recipes {
     #[doc = include_str!("../docs/add-a-boundary-condition.md")]
     mod boundary_condition {}
+    #[doc = include_str!("../docs/add-a-contact-law.md")]
+    mod contact_law {}
     #[doc = include_str!("../docs/add-a-kernel.md")]
     mod kernel {}
     #[doc = include_str!("../docs/add-a-material.md")]

@@ -98,6 +98,36 @@ fn s12_twisting_column() {
 }
 
 #[test]
+fn s4_punch() {
+    passes("S4");
+}
+
+#[test]
+fn s22_impact_of_two_bars() {
+    passes("S22");
+}
+
+#[test]
+fn c1_hertz() {
+    passes("C1");
+}
+
+#[test]
+fn c2_incline() {
+    passes("C2");
+}
+
+#[test]
+fn c3_restitution() {
+    passes("C3");
+}
+
+#[test]
+fn c4_rebound() {
+    passes("C4");
+}
+
+#[test]
 fn every_case_has_a_test_and_resolutions_that_rise() {
     let tests = include_str!("validation.rs");
     for case in CASES {

@@ -32,10 +32,12 @@ macro_rules! templates {
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: [Template; 13] = templates![
+const TEMPLATES: &[Template] = &templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
+    "punch",
+    "colliding_rings",
     "patch_breathing",
     "thrown_ring",
     "turek_hron_csm3",
@@ -75,7 +77,7 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
 
 fn list() -> String {
     let mut table = Table::new(&["template", "what it shows"], 0);
-    for template in &TEMPLATES {
+    for template in TEMPLATES {
         table.row([template.name.to_owned(), template.about().to_owned()]);
     }
     table.render() + "\n`meshless new TEMPLATE [FILE]` writes one"

@@ -18,7 +18,8 @@ pub struct Arguments {
 }
 
 /// Kinds in the order in which a scene uses them.
-pub const KINDS: [Kind; 4] = [Kind::Material, Kind::Formulation, Kind::Condition, Kind::Plugin];
+pub const KINDS: [Kind; 5] =
+    [Kind::Material, Kind::Formulation, Kind::Condition, Kind::ContactLaw, Kind::Plugin];
 
 /// Prints the list or the description.
 pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {

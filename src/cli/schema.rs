@@ -62,6 +62,7 @@ fn heading(kind: Kind) -> &'static str {
         Kind::Material => "Materials",
         Kind::Formulation => "Formulations",
         Kind::Condition => "Conditions",
+        Kind::ContactLaw => "Contact laws",
         Kind::Plugin => "Plugins",
     }
 }

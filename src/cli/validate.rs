@@ -3,6 +3,7 @@
 //! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way `--set` sets
 //! them, and one file here, which says what is measured and what it is compared with.
 
+mod bar_impact;
 mod bending_column;
 mod cantilever;
 mod cantilever_large;
@@ -10,6 +11,8 @@ mod case;
 mod check;
 mod cook_membrane;
 mod disorder;
+mod hertz;
+mod incline;
 mod invariants;
 mod kernels;
 mod laws;
@@ -17,8 +20,12 @@ mod measure;
 mod neighbor_lists;
 mod oscillating_plate;
 mod patch;
+mod punch;
 mod random;
+mod rebound;
 mod report;
+mod restitution;
+mod rigid;
 mod rubber_pull;
 mod turek_hron;
 mod twisting_column;

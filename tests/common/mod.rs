@@ -5,19 +5,22 @@ use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
 use meshless::{plugin, standard_plugins};
 
-/// Two bodies in two or three dimensions, one irregular, loaded and damped, with every stabilizer of solids.
+/// Two bodies in two or three dimensions, one irregular, loaded and damped, with every stabilizer of
+/// solids, and a rigid ball that is thrown onto one of them.
 pub fn all_plugins(dimension: usize) -> Source {
-    let (name, shapes, load) = if dimension == 2 {
+    let (name, shapes, load, ball) = if dimension == 2 {
         (
             "Two",
             ["Box(min: (0, 0), max: (1.0, 0.4))", "Box(min: (2, 0), max: (3.0, 0.4))"],
             r#"("0.2*t", "-0.01*x")"#,
+            "(center: (0.5, 0.52), radius: 0.11)",
         )
     } else {
         (
             "Three",
             ["Box(min: (0, 0, 0), max: (1.0, 0.4, 0.4))", "Box(min: (2, 0, 0), max: (3.0, 0.4, 0.4))"],
             r#"("0.2*t", "-0.01*x", "0.02")"#,
+            "(center: (0.5, 0.52, 0.2), radius: 0.11)",
         )
     };
     let spacing = if dimension == 2 { 0.02 } else { 0.05 };
@@ -31,6 +34,13 @@ pub fn all_plugins(dimension: usize) -> Source {
                  formulation: TotalLagrangian, plugins: [hourglass_control()]),
                 (name: "b", material: "hard", shape: {second}, spacing: {spacing:?}, formulation: TotalLagrangian,
                  plugins: [hourglass_control(form: Ganzenmueller2015)]),
+                (name: "c", material: "hard", shape: Sphere{ball}, spacing: {spacing:?}, velocity: (0.3, -0.5),
+                 formulation: Rigid(spin: (0, 0, 1))),
+            ],
+            contacts: [
+                Contact(between: ("a", "c"), law: Penalty(), friction: 0.4, restitution: 0.5),
+                Contact(between: ("b", "a"), law: Hertz()),
+                Contact(between: ("b", "b"), law: Penalty()),
             ],
             conditions: [
                 Fix(on: Select(body: "a", face: MinX)),

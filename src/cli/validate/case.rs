@@ -5,8 +5,9 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, invariants, kernels, laws, neighbor_lists,
-    oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
+    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, hertz, incline, invariants,
+    kernels, laws, neighbor_lists, oscillating_plate, patch, punch, rebound, restitution, rubber_pull,
+    turek_hron, twisting_column,
 };
 
 /// A case with a known answer.
@@ -42,4 +43,10 @@ pub const CASES: &[Case] = &[
     cook_membrane::CASE,
     bending_column::CASE,
     twisting_column::CASE,
+    punch::CASE,
+    bar_impact::CASE,
+    hertz::CASE,
+    incline::CASE,
+    restitution::CASE,
+    rebound::CASE,
 ];

@@ -1,0 +1,71 @@
+//! S4: a rubber block between two rigid tools.
+
+use anyhow::{Context, Result};
+use meshless_engine::plugin::Registry;
+
+use super::case::Case;
+use super::check::{Check, Tolerance};
+use super::disorder::Disorder;
+use super::measure::{body, run};
+use super::rigid::state;
+use super::template::Template;
+
+pub(super) const CASE: Case =
+    Case { id: "S4", title: "punch", resolutions: &[22, 44], ci_resolution: 22, run: punch };
+
+const SOURCE: &str = "own refinement: 44 across";
+
+/// `across` is the number of particles over the height of the block.
+fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let scene = Template::new(
+        "tests/validation/punch/scene.ron",
+        include_str!("../../../tests/validation/punch/scene.ron"),
+    )
+    .set("bodies.block.spacing", 3.0e-3 / across as f64)?;
+    let mut simulation = scene.clone().build(registry)?;
+    let block = body(&simulation, "block")?;
+    // Reaction over compression: the mean of both tools.
+    let mut reaction: Vec<(f64, f64)> = Vec::new();
+    let disorder = Disorder::new(&simulation, block)?;
+    run(&mut simulation, |simulation| {
+        let (upper, lower) = (state(simulation, "upper")?, state(simulation, "lower")?);
+        let gap = upper.center.y - lower.center.y - 0.6e-3;
+        reaction.push((1.0 - gap / 3.0e-3, 0.5 * (upper.force.y - lower.force.y)));
+        Ok(())
+    })?;
+    let worst = disorder.measure(&simulation)?;
+    // The force falls in steps, whenever a particle slips over the edge of a tool: a line through some of them.
+    let at = |compression: f64| -> Result<f64> {
+        let near = |done: &f64| (done - compression).abs() < WINDOW;
+        let window: Vec<_> = reaction.iter().filter(|(done, _)| near(done)).collect();
+        anyhow::ensure!(!window.is_empty(), "the block was not pressed to {compression}");
+        let mean = |f: &dyn Fn(f64, f64) -> f64| {
+            window.iter().map(|(done, force)| f(done - compression, *force)).sum::<f64>()
+                / window.len() as f64
+        };
+        let (x, y) = (mean(&|x, _| x), mean(&|_, y| y));
+        let slope = (mean(&|x, y| x * y) - x * y) / (mean(&|x, _| x * x) - x * x);
+        Ok(y - slope * x)
+    };
+    let energy = simulation.ledger().relative_error().abs();
+    let mut without = scene.set("bodies.block.plugins", "[]")?.build(registry)?;
+    let pairs = Disorder::new(&without, block)?;
+    // It may end early: particles turn inside out.
+    let _ = run(&mut without, |_| Ok(()));
+    let spoiled = pairs.measure(&without)?;
+    let last = reaction.last().context("no step")?;
+    anyhow::ensure!(last.0 > 0.5, "pressed to {} only", last.0);
+    Ok(vec![
+        Check::new("reaction at 10 %", at(0.1)?, REACTION_AT_10, Tolerance::Relative(0.05), "N/m", SOURCE),
+        Check::new("reaction at 50 %", at(0.5)?, REACTION_AT_50, Tolerance::Relative(0.05), "N/m", SOURCE),
+        Check::below("disorder with control", worst, 0.1, "smooth"),
+        Check::above("disorder without control", spoiled, 0.3, "pairing"),
+        Check::below("energy balance error", energy, 1e-2, "energy is conserved"),
+    ])
+}
+
+/// Reactions at 44 across, N per metre of thickness.
+const REACTION_AT_10: f64 = 8.252e5;
+const REACTION_AT_50: f64 = 5.546e6;
+/// Half the range of compression that the line is taken over.
+const WINDOW: f64 = 0.02;

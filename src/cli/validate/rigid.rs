@@ -1,0 +1,21 @@
+//! What cases measure on rigid bodies.
+
+use anyhow::{Context, Result};
+use meshless_engine::rigid::{RigidBodies, RigidState};
+use meshless_engine::simulation::Simulation;
+
+use super::measure::body;
+
+/// State of the rigid body of that name.
+pub fn state(simulation: &Simulation, name: &str) -> Result<RigidState> {
+    let id = body(simulation, name)?;
+    let bodies = simulation.resources().get::<RigidBodies>().clone();
+    let found = bodies.lock().iter().find(|body| body.id == id).map(|body| body.state);
+    found.with_context(|| format!("`{name}` is not rigid"))
+}
+
+/// The rows of a reference, each a list of texts, without comments and header.
+pub fn rows(csv: &str) -> impl Iterator<Item = Vec<&str>> {
+    let lines = csv.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    lines.skip(1).map(|line| line.split(',').collect())
+}
