@@ -45,6 +45,8 @@ const TEMPLATES: &[Template] = &templates![
     "bending_column",
     "twisting_column",
     "taylor_bar",
+    "tensile_specimen",
+    "brittle_bar",
     "dam_break",
     "dam_break_3d",
     "sloshing",

@@ -19,6 +19,7 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod traction;
+mod turn;
 mod velocity;
 
 pub use body_force::BodyForce;
@@ -30,6 +31,7 @@ pub use initial_velocity::InitialVelocity;
 pub use pressure::Pressure;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
+pub use turn::Turn;
 pub use velocity::Velocity;
 
 use crate::plugin::Registry;
@@ -46,5 +48,6 @@ pub fn register(registry: &mut Registry) {
         .condition::<Pressure>()
         .condition::<Force>()
         .condition::<BodyForce>()
-        .condition::<Symmetry>();
+        .condition::<Symmetry>()
+        .condition::<Turn>();
 }

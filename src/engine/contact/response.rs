@@ -57,7 +57,8 @@ impl Interaction {
         let spring = self.law.at(touch);
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
-        let pull = self.dashpot(spring.stiffness, across, approach, spring.force, dt);
+        let begun = self.share_of_first_step(touch, approach, dt, before);
+        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force, dt);
         let pressure = (spring.force + pull).max(0.0);
         let (tangential, drag) =
             self.tangential(meeting, spring.stiffness, pressure, &inverse_mass, dt, before);
@@ -67,6 +68,17 @@ impl Interaction {
             force: pressure * *normal + tangential + drag,
             spring,
             memory: Memory { spring: tangential, stiffness, dashpot },
+        }
+    }
+
+    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the share of a
+    /// step for which it is to act in the kicks around the end of its first one.
+    fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &Memory) -> f64 {
+        let is_new = before.stiffness == 0.0 && approach * dt > 0.0;
+        if is_new && self.law.at(&Touch { overlap: 0.0, ..*touch }).stiffness > 0.0 {
+            0.5 + (touch.overlap / (approach * dt)).min(1.0)
+        } else {
+            1.0
         }
     }
 

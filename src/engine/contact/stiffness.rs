@@ -53,8 +53,8 @@ pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64,
     }
 }
 
-/// Step of the contacts of rigid bodies, over one over their frequency: some thirty steps an impact, for its energy.
-const IMPACT_FACTOR: f64 = 0.1;
+/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy.
+const IMPACT_FACTOR: f64 = 0.05;
 
 /// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
 pub(super) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {

@@ -10,6 +10,7 @@ mod systems;
 
 pub use body::{RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation};
+pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
 pub use nodes::Nodes;

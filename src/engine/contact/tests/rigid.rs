@@ -69,6 +69,28 @@ fn restitution_is_what_is_asked_for() {
     }
 }
 
+#[test]
+fn a_roller_that_is_turned_drives_what_lies_on_it_and_its_work_is_booked() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -10),
+            materials: {"stone": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "roller", material: "stone", shape: Sphere(center: (0, -0.1), radius: 0.1), spacing: 0.05, formulation: Rigid()),
+                (name: "plank", material: "stone", shape: Box(min: (-0.5, 0), max: (0.5, 0.05)), spacing: 0.025,
+                 formulation: Rigid(rotation: Held)),
+            ],
+            conditions: [Fix(on: Select(body: "roller")), Turn(on: Select(body: "roller"), rate: "-2*smoothstep(t/0.05)")],
+            contacts: [Contact(between: ("roller", "plank"), law: Penalty(stiffness: 1e6), friction: 0.5, restitution: 0.3)],
+            time: (end: 0.5))"#,
+    );
+    sim.run(|_| true).unwrap();
+    let (_, plank) = centre(&sim, 1);
+    // The surface of the roller moves at 0.2 m/s.
+    assert!((plank.x - 0.2).abs() < 2e-3 && plank.y.abs() < 1e-3, "{plank}");
+    let constraints = sim.ledger().total_named("constraints");
+    assert!(constraints > 0.9 && sim.ledger().relative_error().abs() < 1e-2, "{constraints}");
+}
+
 /// Momentum and angular momentum about the origin of all rigid bodies.
 fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
     let bodies = sim.resources().get::<RigidBodies>().clone();
