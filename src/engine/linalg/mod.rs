@@ -1,6 +1,7 @@
 //! Small symmetric matrices, eigenvalues and polar decomposition: what glam does not have.
 
 mod eigen;
+mod near_identity;
 mod polar;
 mod stretch;
 mod sym3;

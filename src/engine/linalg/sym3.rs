@@ -30,19 +30,19 @@ impl Sym3 {
     pub const IDENTITY: Self = Self { xx: 1.0, yy: 1.0, zz: 1.0, ..Self::ZERO };
 
     /// Diagonal matrix.
-    #[inline]
+    #[inline(always)]
     pub const fn from_diagonal(diagonal: DVec3) -> Self {
         Self { xx: diagonal.x, yy: diagonal.y, zz: diagonal.z, ..Self::ZERO }
     }
 
     /// `v (x) v`.
-    #[inline]
+    #[inline(always)]
     pub fn dyad(v: DVec3) -> Self {
         Self { xx: v.x * v.x, yy: v.y * v.y, zz: v.z * v.z, xy: v.x * v.y, xz: v.x * v.z, yz: v.y * v.z }
     }
 
     /// Symmetric part of a matrix, `(A + A^T) / 2`.
-    #[inline]
+    #[inline(always)]
     pub fn symmetric_part(a: DMat3) -> Self {
         Self {
             xx: a.x_axis.x,
@@ -55,14 +55,14 @@ impl Sym3 {
     }
 
     /// `A^T A`: with A = F, the right Cauchy-Green tensor.
-    #[inline]
+    #[inline(always)]
     pub fn gram(a: DMat3) -> Self {
         let (x, y, z) = (a.x_axis, a.y_axis, a.z_axis);
         Self { xx: x.dot(x), yy: y.dot(y), zz: z.dot(z), xy: x.dot(y), xz: x.dot(z), yz: y.dot(z) }
     }
 
     /// The full matrix.
-    #[inline]
+    #[inline(always)]
     pub const fn to_matrix(self) -> DMat3 {
         DMat3::from_cols_array(&[
             self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz,
@@ -70,20 +70,20 @@ impl Sym3 {
     }
 
     /// Sum of the diagonal.
-    #[inline]
+    #[inline(always)]
     pub fn trace(&self) -> f64 {
         self.xx + self.yy + self.zz
     }
 
     /// Determinant.
-    #[inline]
+    #[inline(always)]
     pub fn determinant(&self) -> f64 {
         self.xx * (self.yy * self.zz - self.yz * self.yz) - self.xy * (self.xy * self.zz - self.yz * self.xz)
             + self.xz * (self.xy * self.yz - self.yy * self.xz)
     }
 
     /// Inverse; infinite or NaN components where the determinant is zero.
-    #[inline]
+    #[inline(always)]
     pub fn inverse(&self) -> Self {
         let (a, b, c) = (
             self.yy * self.zz - self.yz * self.yz,
@@ -102,7 +102,7 @@ impl Sym3 {
     }
 
     /// `A : B`, the sum of products of all nine components.
-    #[inline]
+    #[inline(always)]
     pub fn double_dot(&self, other: &Self) -> f64 {
         self.xx * other.xx
             + self.yy * other.yy
@@ -111,13 +111,13 @@ impl Sym3 {
     }
 
     /// `sqrt(A : A)`.
-    #[inline]
+    #[inline(always)]
     pub fn norm(&self) -> f64 {
         self.double_dot(self).sqrt()
     }
 
     /// `A - tr(A)/3 I`.
-    #[inline]
+    #[inline(always)]
     pub fn deviator(&self) -> Self {
         let mean = self.trace() / 3.0;
         Self { xx: self.xx - mean, yy: self.yy - mean, zz: self.zz - mean, ..*self }
@@ -126,7 +126,7 @@ impl Sym3 {
 
 impl Add for Sym3 {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self {
             xx: self.xx + b.xx,
@@ -140,7 +140,7 @@ impl Add for Sym3 {
 }
 
 impl AddAssign for Sym3 {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, b: Self) {
         *self = *self + b;
     }
@@ -148,7 +148,7 @@ impl AddAssign for Sym3 {
 
 impl Sub for Sym3 {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, b: Self) -> Self {
         self + -b
     }
@@ -156,7 +156,7 @@ impl Sub for Sym3 {
 
 impl Neg for Sym3 {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self * -1.0
     }
@@ -164,7 +164,7 @@ impl Neg for Sym3 {
 
 impl Mul<f64> for Sym3 {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, s: f64) -> Self {
         Self {
             xx: self.xx * s,
@@ -179,7 +179,7 @@ impl Mul<f64> for Sym3 {
 
 impl Mul<Sym3> for f64 {
     type Output = Sym3;
-    #[inline]
+    #[inline(always)]
     fn mul(self, a: Sym3) -> Sym3 {
         a * self
     }
@@ -187,7 +187,7 @@ impl Mul<Sym3> for f64 {
 
 impl Mul<DVec3> for Sym3 {
     type Output = DVec3;
-    #[inline]
+    #[inline(always)]
     fn mul(self, v: DVec3) -> DVec3 {
         DVec3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,

@@ -84,6 +84,17 @@ proptest! {
     }
 
     #[test]
+    fn logarithm_and_exponential_agree_with_jacobi(r in rotation(), e in vector(), size in 0.0..0.2_f64) {
+        // On both sides of the change from series to eigenvalues, and where eigenvalues coincide.
+        for strain in [e * size, DVec3::splat(e.x * size), DVec3::new(e.x, e.x, e.y) * size] {
+            let of = |f: fn(f64) -> f64| Sym3::symmetric_part(r * DMat3::from_diagonal(strain.map(f)) * r.transpose());
+            let square = of(|e| (2.0 * e).exp());
+            prop_assert!(distance(square.half_log().to_matrix(), of(|e| e).to_matrix()) < 1e-12);
+            prop_assert!(distance((of(|e| e) * 2.0).exp().to_matrix(), square.to_matrix()) < 1e-12);
+        }
+    }
+
+    #[test]
     fn closed_form_stretches_agree_with_jacobi((f, stretch) in deformation()) {
         let (smallest, largest) = smallest_and_largest_stretch(f);
         let squares = Eigen::new(&Sym3::gram(f)).values;

@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::elastic_constants::ElasticConstants;
 use super::fluid::FluidLaw;
 use super::state::StateRows;
+use super::stretches::Stretches;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::ColumnSet;
 
@@ -120,8 +121,10 @@ pub struct StressRows<'a> {
     pub stress: &'a mut [DMat3],
     /// Strain energy per reference volume, J/m3: to be written.
     pub energy: &'a mut [f64],
-    /// Modulus that hourglass control resists with, Pa: Young's modulus, the yield stress after yield; to be written.
+    /// Young's modulus as it is now, Pa: to be written. Hourglass control resists with it.
     pub modulus: &'a mut [f64],
+    /// Stress beyond which a particle that has yielded flows, Pa; infinite before the call, for all that has not.
+    pub strength: &'a mut [f64],
     /// Plastic work done in this step per reference volume, J/m3; zero before the call. Heat that it turns into is part
     /// of it.
     pub plastic_work: &'a mut [f64],
@@ -137,8 +140,8 @@ pub trait SolidLaw: Send + Sync {
     /// Whether the law has no meaning for a particle that is turned inside out (det F <= 0).
     fn needs_positive_volume(&self) -> bool;
 
-    /// Factor of the stable time step at the smallest and largest principal stretch of a body.
-    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64;
+    /// Factor of the stable time step at the extreme stretches of a body.
+    fn stable_step_factor(&self, stretches: &Stretches) -> f64;
 
     /// Adds the columns that hold the state of the law, at most [`MAX_STATE`](super::MAX_STATE).
     fn state(&self, _columns: &mut ColumnSet) {}
@@ -200,8 +203,8 @@ impl<H: Hyperelastic> SolidLaw for H {
         H::NEEDS_POSITIVE_VOLUME
     }
 
-    fn stable_step_factor(&self, smallest: f64, largest: f64) -> f64 {
-        Hyperelastic::stable_step_factor(self, smallest, largest)
+    fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
+        Hyperelastic::stable_step_factor(self, stretches.smallest, stretches.largest)
     }
 
     fn stress(&self, rows: &mut StressRows<'_>) {

@@ -2,21 +2,46 @@
 
 mod decoupled_neo_hookean;
 mod elastic_constants;
+mod eos;
+mod eos_state;
+#[cfg(test)]
+mod eos_tests;
 mod fluid;
+mod hardening;
+mod heating;
+mod hypoelastic;
+mod j2;
+#[cfg(test)]
+mod j2_tests;
+mod jaumann;
+mod johnson_cook;
 mod law;
 mod neo_hookean;
+mod return_mapping;
+#[cfg(test)]
+mod specimen;
 mod st_venant_kirchhoff;
 mod state;
+mod stretches;
 #[cfg(test)]
 mod tests;
 
 pub use decoupled_neo_hookean::DecoupledNeoHookean;
 pub use elastic_constants::ElasticConstants;
+pub use eos::{Pressure, SolidEos};
 pub use fluid::{EquationOfState, Fluid, FluidLaw};
+pub use hardening::Hardening;
+pub use heating::Heating;
+pub use hypoelastic::Hypoelastic;
+pub use j2::J2;
+pub use jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
+pub use johnson_cook::{JohnsonCook, JohnsonCookFlow};
 pub use law::{Hyperelastic, Law, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 pub use neo_hookean::NeoHookean;
+pub use return_mapping::Trial;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use state::{MAX_STATE, StateColumns, StateRows};
+pub use stretches::Stretches;
 
 use crate::plugin::Registry;
 
@@ -26,5 +51,8 @@ pub fn register(registry: &mut Registry) {
         .material::<StVenantKirchhoff>()
         .material::<NeoHookean>()
         .material::<DecoupledNeoHookean>()
-        .material::<Fluid>();
+        .material::<Fluid>()
+        .material::<J2>()
+        .material::<JohnsonCook>()
+        .material::<Hypoelastic>();
 }

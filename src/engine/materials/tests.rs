@@ -18,6 +18,7 @@ fn stress_and_energy(material: &Material, deformation: DMat3) -> (DMat3, f64) {
         stress: &mut stress,
         energy: &mut energy,
         modulus: &mut modulus,
+        strength: &mut [f64::INFINITY],
         plastic_work: &mut [0.0],
         state: StateRows::default(),
     });

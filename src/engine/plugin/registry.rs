@@ -56,12 +56,10 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: [(Kind, &str); 7] = [
+const LATER: [(Kind, &str); 5] = [
     (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
     (Kind::Formulation, "Rigid"),
-    (Kind::Material, "J2"),
-    (Kind::Material, "JohnsonCook"),
     (Kind::Plugin, "hessian_stabilization"),
     (Kind::Plugin, "artificial_stress"),
 ];

@@ -44,6 +44,18 @@ column! {
     pub struct InversePlasticCauchyGreen(Sym3) = "inverse_plastic_cauchy_green", "Cp^-1", "1";
     /// Equivalent stress of the last step, sqrt(3/2 s : s) of the Kirchhoff stress.
     pub struct EquivalentStress(f64) = "equivalent_stress", "q", "Pa";
+    /// Flow stress at slow deformation, at the present plastic strain and temperature.
+    pub struct YieldStress(f64) = "yield_stress", "sigma_y", "Pa";
+    /// Deviator of the Cauchy stress, integrated by a hypoelastic law.
+    pub struct DeviatoricStress(Sym3) = "deviatoric_stress", "S", "Pa";
+    /// Deformation gradient to which a hypoelastic law has integrated the stress.
+    pub struct ReachedDeformation(DMat3) = "reached_deformation", "F", "1";
+    /// Internal energy of an equation of state per reference volume: work of the pressure, and heat.
+    pub struct InternalEnergy(f64) = "internal_energy", "E", "J/m^3";
+    /// Plastic work since the start per reference volume.
+    pub struct PlasticWork(f64) = "plastic_work", "w_p", "J/m^3";
+    /// Volume ratio to which an equation of state has integrated its energy.
+    pub struct ReachedVolumeRatio(f64) = "reached_volume_ratio", "J", "1";
     /// Temperature.
     pub struct Temperature(f64) = "temperature", "T", "K";
 }

@@ -11,8 +11,10 @@ pub struct BondRows<'a> {
     pub deformation: &'a [DMat3],
     /// Displacement gradient H_i = F_i - I, with all digits of a small strain.
     pub displacement_gradient: &'a [DMat3],
-    /// Modulus that the material offers to resist with, E_i, Pa: Young's modulus, the yield stress after yield.
+    /// Young's modulus E_i as it is now, Pa.
     pub modulus: &'a [f64],
+    /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
+    pub strength: &'a [f64],
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub misfit: &'a [f64],
     /// Reference volume V_i, m3.

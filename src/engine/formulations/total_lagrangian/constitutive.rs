@@ -8,7 +8,7 @@ use super::formulation::{BodyBondTerm, PackedRows};
 use super::removed::RemovedRows;
 use super::rows::Site;
 use super::stable_step::StepEstimate;
-use super::stretches::Stretches;
+use super::stretches;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows};
 use crate::parallel::{Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
@@ -210,8 +210,7 @@ impl BodyLaw {
     }
 
     fn refresh(&mut self, gradient: &[DeformationGradient]) {
-        let stretches = Stretches::of(gradient);
-        self.stretch_factor = self.law.stable_step_factor(stretches.smallest, stretches.largest);
+        self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient));
     }
 
     fn limited_by(&self, body: &str) -> String {

@@ -108,6 +108,7 @@ impl DeformationPass<'_> {
         let mut volume = [0.0; BLOCK];
         let mut energy = [0.0; BLOCK];
         let mut modulus = [0.0; BLOCK];
+        let mut strength = [f64::INFINITY; BLOCK];
         let mut plastic_work = [0.0; BLOCK];
         let (bonds, sites) = (self.bonds, self.sites);
         let gather = Gather {
@@ -127,6 +128,7 @@ impl DeformationPass<'_> {
             stress: &mut *stress,
             energy: &mut *energy,
             modulus: &mut *modulus,
+            strength: &mut strength[..n],
             plastic_work: &mut plastic_work[..n],
             state: rows.state,
         });
@@ -142,6 +144,7 @@ impl DeformationPass<'_> {
                 deformation: rows.deformation,
                 displacement_gradient: &gradient[..n],
                 modulus,
+                strength: &strength[..n],
                 misfit: &misfit[..n],
                 volume: &volume[..n],
                 pair_stress: PairStressRows(rows.pair_stress),

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::materials::{
-    ElasticConstants, Material, MaterialModel, ParameterError, SolidLaw, StateRows, StressRows,
+    ElasticConstants, Material, MaterialModel, ParameterError, SolidLaw, StateRows, StressRows, Stretches,
 };
 use crate::plugin::{Registry, build};
 use crate::scene::{Source, parse};
@@ -40,7 +40,7 @@ impl SolidLaw for WitnessLaw {
         false
     }
 
-    fn stable_step_factor(&self, _: f64, _: f64) -> f64 {
+    fn stable_step_factor(&self, _: &Stretches) -> f64 {
         1.0
     }
 

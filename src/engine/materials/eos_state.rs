@@ -1,0 +1,62 @@
+//! The state of an equation of state whose pressure depends on the path: what volume change and plastic work have put into
+//! a particle.
+
+use super::eos::Pressure;
+use super::state::StateRows;
+use crate::world::{ColumnSet, InternalEnergy, PlasticWork, ReachedVolumeRatio};
+
+/// The state columns of a block.
+pub(super) struct EnergyRows<'a> {
+    internal: &'a mut [InternalEnergy],
+    plastic: &'a mut [PlasticWork],
+    volume: &'a mut [ReachedVolumeRatio],
+}
+
+impl<'a> EnergyRows<'a> {
+    /// Adds the columns, if the pressure needs them.
+    pub fn declare(pressure: &Pressure, columns: &mut ColumnSet) {
+        if pressure.stored(1.0).is_none() {
+            columns.add::<InternalEnergy>().add::<PlasticWork>().add::<ReachedVolumeRatio>();
+        }
+    }
+
+    /// Fills the columns of undeformed particles.
+    pub fn start(pressure: &Pressure, state: &mut StateRows<'_>) {
+        if pressure.stored(1.0).is_none() {
+            state.take::<ReachedVolumeRatio>().fill(ReachedVolumeRatio(1.0));
+        }
+    }
+
+    /// The columns of a block, if the pressure needs them.
+    #[inline(always)]
+    pub fn take(pressure: &Pressure, state: &mut StateRows<'a>) -> Option<Self> {
+        pressure.stored(1.0).is_none().then(|| Self {
+            internal: state.take(),
+            plastic: state.take(),
+            volume: state.take(),
+        })
+    }
+
+    /// Brings row `k` to the volume ratio J; returns the pressure, Pa, and the work stored by the change of volume, J/m3.
+    ///
+    /// The work is the mean of the pressures before and after times the change of volume; the pressure is linear in the
+    /// energy, so that what it is after needs no iteration. All plastic work heats.
+    #[inline(always)]
+    pub fn advance(&mut self, k: usize, law: &Pressure, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
+        let (internal, plastic, volume) =
+            (&mut self.internal[k].0, &mut self.plastic[k].0, &mut self.volume[k].0);
+        let gamma = law.gamma();
+        let before = law.cold(*volume) + gamma * *internal;
+        let change = j - *volume;
+        let heated = *internal + plastic_work;
+        let pressure =
+            (law.cold(j) + gamma * (heated - 0.5 * before * change)) / (1.0 + 0.5 * gamma * change);
+        let after = heated - 0.5 * (before + pressure) * change;
+        let stored = after - (*plastic + plastic_work);
+        if dt > 0.0 {
+            (*internal, *volume) = (after, j);
+            *plastic += plastic_work;
+        }
+        (pressure, stored)
+    }
+}

@@ -1,0 +1,163 @@
+//! The hypoelastic law of [`HypoelasticJ2`] for formulations that know the deformation gradient.
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::elastic_constants::ElasticConstants;
+use super::eos::{Pressure, SolidEos};
+use super::eos_state::EnergyRows;
+use super::hardening::Hardening;
+use super::heating::Heating;
+use super::j2::{Volume, first_piola, require_heating};
+use super::jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
+use super::law::{Material, MaterialModel, ParameterError, SolidLaw, StressRows};
+use super::state::StateRows;
+use super::stretches::Stretches;
+use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation, Temperature};
+
+/// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is given. The pressure is
+/// K (rho/rho_0 - 1) unless `eos` says otherwise.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hypoelastic {
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+    /// Young's modulus E, Pa. Goes with `poisson`.
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Bulk modulus K, Pa. Goes with `shear`.
+    #[serde(default)]
+    pub bulk: Option<f64>,
+    /// Shear modulus mu, Pa. Goes with `bulk`.
+    #[serde(default)]
+    pub shear: Option<f64>,
+    /// Flow stress; without it there is no plasticity.
+    #[serde(default)]
+    pub hardening: Option<Hardening>,
+    /// Heat from plastic work; without it the temperature plays no part.
+    #[serde(default)]
+    pub heating: Option<Heating>,
+    /// Pressure as a function of volume.
+    #[serde(default)]
+    pub eos: Option<SolidEos>,
+}
+
+impl MaterialModel for Hypoelastic {
+    const NAME: &'static str = "Hypoelastic";
+    const REFERENCE: &'static str =
+        "Mohseni-Mofidi and Bierwisch 2020, eqs. 13-16 and 22; Hughes and Winget 1980";
+
+    fn build(self) -> Result<Material, ParameterError> {
+        ParameterError::require_positive("density", self.density)?;
+        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        require_heating(self.hardening.as_ref(), self.heating.as_ref())?;
+        let pressure = self.eos.unwrap_or(SolidEos::Linear).pressure(elastic.bulk, self.density)?;
+        let rise = self.heating.map_or(0.0, |heating| heating.rise(self.density));
+        let shape = HypoelasticJ2 { shear: elastic.shear, hardening: self.hardening, rise };
+        let temperature = self.heating.map(|heating| heating.temperature);
+        Ok(Material::solid(self.density, HypoelasticLaw { elastic, shape, pressure, temperature }))
+    }
+}
+
+/// The law of [`Hypoelastic`]: the velocity gradient comes from the change of F.
+#[derive(Clone, Copy, Debug)]
+struct HypoelasticLaw {
+    elastic: ElasticConstants,
+    shape: HypoelasticJ2,
+    pressure: Pressure,
+    /// Temperature at the start, K, if it plays a part.
+    temperature: Option<f64>,
+}
+
+impl SolidLaw for HypoelasticLaw {
+    fn elastic(&self) -> &ElasticConstants {
+        &self.elastic
+    }
+
+    fn needs_positive_volume(&self) -> bool {
+        true
+    }
+
+    fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
+        self.pressure.step_factor(&self.elastic, stretches)
+    }
+
+    fn state(&self, columns: &mut ColumnSet) {
+        columns.add::<DeviatoricStress>().add::<ReachedDeformation>().add::<PlasticStrain>();
+        if self.temperature.is_some() {
+            columns.add::<Temperature>();
+        }
+        EnergyRows::declare(&self.pressure, columns);
+    }
+
+    fn start(&self, mut state: StateRows<'_>) {
+        state.take::<ReachedDeformation>().fill(ReachedDeformation(DMat3::IDENTITY));
+        if let Some(temperature) = self.temperature {
+            state.take::<Temperature>().fill(Temperature(temperature));
+        }
+        EnergyRows::start(&self.pressure, &mut state);
+    }
+
+    fn stress(&self, rows: &mut StressRows<'_>) {
+        run_hot(HypoelasticLoop { law: self, rows });
+    }
+}
+
+struct HypoelasticLoop<'a, 'r> {
+    law: &'a HypoelasticLaw,
+    rows: &'a mut StressRows<'r>,
+}
+
+impl HotLoop for HypoelasticLoop<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let (law, rows) = (self.law, self.rows);
+        let mut state = rows.state.reborrow();
+        let deviator = state.take::<DeviatoricStress>();
+        let reached = state.take::<ReachedDeformation>();
+        let strain = state.take::<PlasticStrain>();
+        let mut temperature = law.temperature.map(|_| state.take::<Temperature>());
+        let mut energies = EnergyRows::take(&law.pressure, &mut state);
+        rows.modulus.fill(law.elastic.young);
+        let moves = rows.dt > 0.0;
+        for k in 0..rows.deformation.len() {
+            let f = &rows.deformation[k];
+            let volume = Volume::of(f);
+            let mut now = HypoelasticState {
+                deviator: deviator[k].0,
+                plastic_strain: strain[k].0,
+                temperature: temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
+            };
+            if moves {
+                let gradient = velocity_gradient_step(&reached[k].0, f) * (1.0 / rows.dt);
+                rows.plastic_work[k] = volume.ratio * law.shape.advance(&mut now, &gradient, rows.dt);
+                reached[k].0 = *f;
+                deviator[k].0 = now.deviator;
+                strain[k].0 = now.plastic_strain;
+                if let Some(temperature) = &mut temperature {
+                    temperature[k].0 = now.temperature;
+                }
+            }
+            let (pressure, stored) = match &mut energies {
+                None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
+                Some(energies) => {
+                    energies.advance(k, &law.pressure, volume.ratio, rows.plastic_work[k], rows.dt)
+                }
+            };
+            let tau = (now.deviator.plus_diagonal(-pressure)) * volume.ratio;
+            rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
+            let square = now.deviator.double_dot(&now.deviator);
+            rows.energy[k] = volume.ratio * square / (4.0 * law.elastic.shear) + stored;
+            if let Some(hardening) = law.shape.hardening.as_ref().filter(|_| now.plastic_strain > 0.0) {
+                rows.strength[k] = hardening.static_stress(now.plastic_strain, now.temperature);
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! J2 plasticity on the multiplicative split F = Fe Fp with logarithmic strain.
+//!
+//! The trial state is be = F Cp^-1 F^T with Cp^-1 of the step before; its logarithm splits into the volume, ln J, and the
+//! deviator e. The Kirchhoff stress is tau = 2 mu e - J p I. Where its equivalent stress q = sqrt(3/2) |2 mu e| is above the
+//! flow stress, e is scaled back by the plastic increment, and Cp^-1 = F^-1 be F^-T keeps what is left (Simo and Hughes
+//! 1998, section 9.3). Everything is three-dimensional: in plane strain the plastic flow out of the plane is kept.
+//!
+//! Plastic work is the increment times the mean equivalent stress before and after the step: what the trapezoidal rule
+//! of the leapfrog takes out of the motion where the stress keeps its direction, to second order of the step elsewhere.
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::elastic_constants::ElasticConstants;
+use super::eos::{Pressure, SolidEos};
+use super::eos_state::EnergyRows;
+use super::hardening::Hardening;
+use super::heating::Heating;
+use super::law::{Material, MaterialModel, ParameterError, SolidLaw, StressRows};
+use super::return_mapping::Trial;
+use super::state::StateRows;
+use super::stretches::Stretches;
+use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::world::{
+    ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, Temperature, YieldStress,
+};
+
+/// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate, and temperature.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct J2 {
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+    /// Young's modulus E, Pa. Goes with `poisson`.
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Bulk modulus K, Pa. Goes with `shear`.
+    #[serde(default)]
+    pub bulk: Option<f64>,
+    /// Shear modulus mu, Pa. Goes with `bulk`.
+    #[serde(default)]
+    pub shear: Option<f64>,
+    /// Flow stress.
+    pub hardening: Hardening,
+    /// Heat from plastic work; without it the temperature plays no part.
+    #[serde(default)]
+    pub heating: Option<Heating>,
+    /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
+    #[serde(default)]
+    pub eos: Option<SolidEos>,
+}
+
+impl MaterialModel for J2 {
+    const NAME: &'static str = "J2";
+    const REFERENCE: &'static str = "Simo and Hughes 1998, Computational Inelasticity, section 9.3";
+
+    fn build(self) -> Result<Material, ParameterError> {
+        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        require_heating(Some(&self.hardening), self.heating.as_ref())?;
+        plastic(self.density, elastic, self.hardening, self.heating, self.eos)
+    }
+}
+
+/// Checks flow stress and heating; a flow stress that depends on temperature needs one.
+pub(super) fn require_heating(
+    hardening: Option<&Hardening>,
+    heating: Option<&Heating>,
+) -> Result<(), ParameterError> {
+    hardening.map_or(Ok(()), Hardening::check)?;
+    if let Some(heating) = heating {
+        return heating.check(&Heating::FIELDS_OF_HEATING);
+    }
+    if hardening.is_some_and(Hardening::needs_temperature) {
+        return Err(ParameterError::new(
+            "heating",
+            "the flow stress depends on temperature, and `heating` is missing",
+            "give `heating: (temperature: ..., specific_heat: ...)`; without specific heat the temperature stays",
+        ));
+    }
+    Ok(())
+}
+
+/// A metal with parameters that are checked but for density and equation of state.
+pub(super) fn plastic(
+    density: f64,
+    elastic: ElasticConstants,
+    hardening: Hardening,
+    heating: Option<Heating>,
+    eos: Option<SolidEos>,
+) -> Result<Material, ParameterError> {
+    ParameterError::require_positive("density", density)?;
+    let pressure = match eos {
+        None => Pressure::Logarithmic { bulk: elastic.bulk },
+        Some(eos) => eos.pressure(elastic.bulk, density)?,
+    };
+    let rise = heating.map_or(0.0, |heating| heating.rise(density));
+    let temperature = heating.map(|heating| heating.temperature);
+    Ok(Material::solid(density, PlasticLaw { elastic, hardening, pressure, rise, temperature }))
+}
+
+/// The law of [`J2`] and [`JohnsonCook`](super::JohnsonCook).
+#[derive(Clone, Copy, Debug)]
+struct PlasticLaw {
+    elastic: ElasticConstants,
+    hardening: Hardening,
+    pressure: Pressure,
+    /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
+    rise: f64,
+    /// Temperature at the start, K, if it plays a part.
+    temperature: Option<f64>,
+}
+
+impl SolidLaw for PlasticLaw {
+    fn elastic(&self) -> &ElasticConstants {
+        &self.elastic
+    }
+
+    fn needs_positive_volume(&self) -> bool {
+        true
+    }
+
+    fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
+        self.pressure.step_factor(&self.elastic, stretches)
+    }
+
+    fn state(&self, columns: &mut ColumnSet) {
+        columns.add::<PlasticStrain>().add::<InversePlasticCauchyGreen>();
+        columns.add::<EquivalentStress>().add::<YieldStress>();
+        if self.temperature.is_some() {
+            columns.add::<Temperature>();
+        }
+        EnergyRows::declare(&self.pressure, columns);
+    }
+
+    fn start(&self, mut state: StateRows<'_>) {
+        state.take::<InversePlasticCauchyGreen>().fill(InversePlasticCauchyGreen(Sym3::IDENTITY));
+        let temperature = self.temperature.unwrap_or_default();
+        state.take::<YieldStress>().fill(YieldStress(self.hardening.static_stress(0.0, temperature)));
+        if self.temperature.is_some() {
+            state.take::<Temperature>().fill(Temperature(temperature));
+        }
+        EnergyRows::start(&self.pressure, &mut state);
+    }
+
+    fn stress(&self, rows: &mut StressRows<'_>) {
+        run_hot(PlasticLoop { law: self, rows });
+    }
+}
+
+struct PlasticLoop<'a, 'r> {
+    law: &'a PlasticLaw,
+    rows: &'a mut StressRows<'r>,
+}
+
+impl HotLoop for PlasticLoop<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let (law, rows) = (self.law, self.rows);
+        let mut state = rows.state.reborrow();
+        let strain = state.take::<PlasticStrain>();
+        let plastic = state.take::<InversePlasticCauchyGreen>();
+        let equivalent = state.take::<EquivalentStress>();
+        let yield_stress = state.take::<YieldStress>();
+        let mut temperature = law.temperature.map(|_| state.take::<Temperature>());
+        let mut energies = EnergyRows::take(&law.pressure, &mut state);
+        let shear = law.elastic.shear;
+        rows.modulus.fill(law.elastic.young);
+        for k in 0..rows.deformation.len() {
+            let f = &rows.deformation[k];
+            let volume = Volume::of(f);
+            let b = left_cauchy_green(f, &plastic[k].0);
+            let mut e = (b * volume.isochoric).half_log();
+            let square = e.double_dot(&e);
+            let mut q = (6.0 * square).sqrt() * shear;
+            let mut left = 1.0;
+            // NaN is not above the yield stress: it goes on into the stress, and the watchdog stops.
+            if q > yield_stress[k].0 && rows.dt > 0.0 {
+                let hot = temperature.as_deref().map_or(0.0, |temperature| temperature[k].0);
+                let trial = Trial { stress: q, shear, strain: strain[k].0, temperature: hot, dt: rows.dt };
+                let increment = trial.increment(&law.hardening);
+                left = 1.0 - 3.0 * shear * increment / q;
+                let kept = (e * (2.0 * (left - 1.0))).exp();
+                plastic[k].0 = pull_back(&b.times_coaxial(&kept), &volume.cofactor, volume.ratio);
+                e = e * left;
+                q *= left;
+                let work = increment * 0.5 * (equivalent[k].0 + q);
+                strain[k].0 += increment;
+                rows.plastic_work[k] = work;
+                let mut heated = 0.0;
+                if let Some(temperature) = &mut temperature {
+                    temperature[k].0 += law.rise * work;
+                    heated = temperature[k].0;
+                }
+                yield_stress[k].0 = law.hardening.static_stress(strain[k].0, heated);
+            }
+            if rows.dt > 0.0 {
+                equivalent[k].0 = q;
+            }
+            let (pressure, stored) = match &mut energies {
+                None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
+                Some(energies) => {
+                    energies.advance(k, &law.pressure, volume.ratio, rows.plastic_work[k], rows.dt)
+                }
+            };
+            let tau = (e * (2.0 * shear)).plus_diagonal(-volume.ratio * pressure);
+            rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
+            rows.energy[k] = shear * square * left * left + stored;
+            rows.strength[k] = if strain[k].0 > 0.0 { yield_stress[k].0 } else { f64::INFINITY };
+        }
+    }
+}
+
+/// The volume part of a deformation gradient.
+pub(super) struct Volume {
+    /// Cofactor J F^-T.
+    pub cofactor: DMat3,
+    /// J.
+    pub ratio: f64,
+    /// J^(-2/3).
+    pub isochoric: f64,
+}
+
+impl Volume {
+    #[inline(always)]
+    pub fn of(f: &DMat3) -> Self {
+        let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
+        let cofactor = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        let ratio = a.dot(cofactor.x_axis);
+        // ln and exp instead of powf: det F <= 0 gives NaN here too, and the watchdog stops.
+        Self { cofactor, ratio, isochoric: (-2.0 / 3.0 * ratio.ln()).exp() }
+    }
+}
+
+/// F C F^T.
+#[inline(always)]
+pub(super) fn left_cauchy_green(f: &DMat3, c: &Sym3) -> Sym3 {
+    let (x, y, z) = (f.x_axis, f.y_axis, f.z_axis);
+    let a = x * c.xx + y * c.xy + z * c.xz;
+    let b = x * c.xy + y * c.yy + z * c.yz;
+    let d = x * c.xz + y * c.yz + z * c.zz;
+    Sym3 {
+        xx: a.x * x.x + b.x * y.x + d.x * z.x,
+        yy: a.y * x.y + b.y * y.y + d.y * z.y,
+        zz: a.z * x.z + b.z * y.z + d.z * z.z,
+        xy: a.x * x.y + b.x * y.y + d.x * z.y,
+        xz: a.x * x.z + b.x * y.z + d.x * z.z,
+        yz: a.y * x.z + b.y * y.z + d.y * z.z,
+    }
+}
+
+/// F^-1 B F^-T from the cofactor of F.
+#[inline(always)]
+fn pull_back(b: &Sym3, cofactor: &DMat3, j: f64) -> Sym3 {
+    left_cauchy_green(&cofactor.transpose(), b) * (1.0 / (j * j))
+}
+
+/// P = tau F^-T from the cofactor of F.
+#[inline(always)]
+pub(super) fn first_piola(tau: &Sym3, cofactor: &DMat3, j: f64) -> DMat3 {
+    let tau = *tau * (1.0 / j);
+    DMat3::from_cols(tau * cofactor.x_axis, tau * cofactor.y_axis, tau * cofactor.z_axis)
+}

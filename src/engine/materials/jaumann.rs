@@ -1,0 +1,76 @@
+//! Hypoelastic J2 plasticity with the Jaumann rate of the Cauchy stress.
+//!
+//! S' = 2 mu dev(D) + Omega S - S Omega (Mohseni-Mofidi and Bierwisch 2020, eq. 14), then the radial return. The step turns
+//! the stress by the rotation that Hughes and Winget (1980, Int. J. Numer. Methods Engrg. 15, 1862-1867) make of the spin, so
+//! that rigid rotation is exact for any step, and errors are of second order.
+
+use glam::DMat3;
+
+use super::hardening::Hardening;
+use super::return_mapping::Trial;
+use crate::linalg::Sym3;
+
+/// What a step of the hypoelastic law starts from and leaves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HypoelasticState {
+    /// Deviator of the Cauchy stress S, Pa.
+    pub deviator: Sym3,
+    /// Accumulated plastic strain.
+    pub plastic_strain: f64,
+    /// Temperature, K.
+    pub temperature: f64,
+}
+
+/// Hypoelastic J2 plasticity: for every formulation that knows the velocity gradient of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HypoelasticJ2 {
+    /// Shear modulus mu, Pa.
+    pub shear: f64,
+    /// Flow stress; none for a law without plasticity.
+    pub hardening: Option<Hardening>,
+    /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
+    pub rise: f64,
+}
+
+impl HypoelasticJ2 {
+    /// Advances the state by a step of `dt` seconds with the velocity gradient L at its middle, 1/s. Returns the plastic
+    /// work, J for each cubic metre of the current volume.
+    #[inline(always)]
+    pub fn advance(&self, state: &mut HypoelasticState, gradient: &DMat3, dt: f64) -> f64 {
+        let before = (1.5 * state.deviator.double_dot(&state.deviator)).sqrt();
+        let rate = Sym3::symmetric_part(*gradient).deviator();
+        let turned = turn(&state.deviator, gradient, dt);
+        let mut deviator = turned + rate * (2.0 * self.shear * dt);
+        let mut work = 0.0;
+        if let Some(hardening) = &self.hardening {
+            let stress = (1.5 * deviator.double_dot(&deviator)).sqrt();
+            let strength = hardening.static_stress(state.plastic_strain, state.temperature);
+            if stress > strength && dt > 0.0 {
+                let (shear, strain) = (self.shear, state.plastic_strain);
+                let trial = Trial { stress, shear, strain, temperature: state.temperature, dt };
+                let increment = trial.increment(hardening);
+                let left = 1.0 - 3.0 * shear * increment / stress;
+                deviator = deviator * left;
+                work = increment * 0.5 * (before + stress * left);
+                state.plastic_strain += increment;
+                state.temperature += self.rise * work;
+            }
+        }
+        state.deviator = deviator;
+        work
+    }
+}
+
+/// Q S Q^T with Q = (I - W/2)^-1 (I + W/2), the rotation of the spin W = dt (L - L^T)/2.
+#[inline(always)]
+fn turn(s: &Sym3, gradient: &DMat3, dt: f64) -> Sym3 {
+    let spin = (*gradient - gradient.transpose()) * (0.25 * dt);
+    let rotation = (DMat3::IDENTITY - spin).inverse() * (DMat3::IDENTITY + spin);
+    super::j2::left_cauchy_green(&rotation, s)
+}
+
+/// Velocity gradient at the middle of a step, times its length: the change of F by the mean of F before and after.
+#[inline(always)]
+pub fn velocity_gradient_step(before: &DMat3, after: &DMat3) -> DMat3 {
+    (*after - *before) * ((*after + *before) * 0.5).inverse()
+}

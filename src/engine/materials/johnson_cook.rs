@@ -1,0 +1,194 @@
+//! Flow stress of Johnson and Cook, and the material that is named after it.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::elastic_constants::ElasticConstants;
+use super::eos::SolidEos;
+use super::hardening::{Hardening, LEAST_STRAIN};
+use super::heating::Heating;
+use super::j2::plastic;
+use super::law::{Material, MaterialModel, ParameterError};
+
+/// Flow stress sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m),
+/// T* = (T - reference_temperature) / (melt_temperature - reference_temperature) between 0 and 1.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JohnsonCookFlow {
+    /// Yield stress A at the reference rate and temperature, Pa.
+    pub a: f64,
+    /// Hardening coefficient B, Pa.
+    pub b: f64,
+    /// Hardening exponent n.
+    pub n: f64,
+    /// Rate coefficient C.
+    #[serde(default)]
+    pub c: f64,
+    /// Thermal exponent m.
+    #[serde(default = "one")]
+    pub m: f64,
+    /// Plastic strain rate at and below which the rate has no influence, 1/s.
+    #[serde(default = "one")]
+    pub reference_rate: f64,
+    /// Temperature at and below which temperature has no influence, K.
+    #[serde(default = "room")]
+    pub reference_temperature: f64,
+    /// Temperature at which the strength is gone, K.
+    pub melt_temperature: f64,
+}
+
+pub(super) fn one() -> f64 {
+    1.0
+}
+
+/// Room temperature, K.
+pub(super) fn room() -> f64 {
+    293.15
+}
+
+impl JohnsonCookFlow {
+    const FIELDS: [&'static str; 8] =
+        ["a", "b", "n", "c", "m", "reference_rate", "reference_temperature", "melt_temperature"];
+    /// The fields as errors name them where the flow stress is the `hardening` of another material.
+    pub(super) const FIELDS_OF_HARDENING: [&'static str; 8] = [
+        "hardening.a",
+        "hardening.b",
+        "hardening.n",
+        "hardening.c",
+        "hardening.m",
+        "hardening.reference_rate",
+        "hardening.reference_temperature",
+        "hardening.melt_temperature",
+    ];
+
+    /// Checks the parameters; `fields` are their names for errors.
+    pub(super) fn check(&self, fields: &[&'static str; 8]) -> Result<(), ParameterError> {
+        let [a, b, n, c, m, rate, reference, melt] = *fields;
+        ParameterError::require_positive(a, self.a)?;
+        ParameterError::require_not_negative(b, self.b)?;
+        ParameterError::require_positive(n, self.n)?;
+        ParameterError::require_not_negative(c, self.c)?;
+        ParameterError::require_positive(m, self.m)?;
+        ParameterError::require_positive(rate, self.reference_rate)?;
+        ParameterError::require_positive(reference, self.reference_temperature)?;
+        if self.melt_temperature.is_finite() && self.melt_temperature > self.reference_temperature {
+            return Ok(());
+        }
+        Err(ParameterError::new(
+            melt,
+            format!(
+                "a melt temperature of {} K is not above the reference temperature of {} K",
+                self.melt_temperature, self.reference_temperature
+            ),
+            "temperatures are in kelvin: add 273.15 to degrees Celsius",
+        ))
+    }
+
+    /// a + b strain^n, Pa, and its derivative by the strain.
+    #[inline]
+    pub fn hardened(&self, strain: f64) -> (f64, f64) {
+        let power = self.b * strain.powf(self.n);
+        (self.a + power, self.n * power / strain.max(LEAST_STRAIN))
+    }
+
+    /// Factor of the plastic strain rate, 1/s, and its derivative by the rate.
+    #[inline]
+    pub fn rate_factor(&self, rate: f64) -> (f64, f64) {
+        if rate > self.reference_rate {
+            (1.0 + self.c * (rate / self.reference_rate).ln(), self.c / rate)
+        } else {
+            (1.0, 0.0)
+        }
+    }
+
+    /// Factor of the temperature, K.
+    #[inline]
+    pub fn thermal(&self, temperature: f64) -> f64 {
+        let above = temperature - self.reference_temperature;
+        let homologous = above / (self.melt_temperature - self.reference_temperature);
+        match homologous {
+            below if below <= 0.0 => 1.0,
+            above if above >= 1.0 => 0.0,
+            between => 1.0 - between.powf(self.m),
+        }
+    }
+}
+
+/// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JohnsonCook {
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+    /// Young's modulus E, Pa. Goes with `poisson`.
+    #[serde(default)]
+    pub young: Option<f64>,
+    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
+    #[serde(default)]
+    pub poisson: Option<f64>,
+    /// Bulk modulus K, Pa. Goes with `shear`.
+    #[serde(default)]
+    pub bulk: Option<f64>,
+    /// Shear modulus mu, Pa. Goes with `bulk`.
+    #[serde(default)]
+    pub shear: Option<f64>,
+    /// Yield stress A at the reference rate and temperature, Pa.
+    pub a: f64,
+    /// Hardening coefficient B, Pa.
+    pub b: f64,
+    /// Hardening exponent n.
+    pub n: f64,
+    /// Rate coefficient C.
+    #[serde(default)]
+    pub c: f64,
+    /// Thermal exponent m.
+    #[serde(default = "one")]
+    pub m: f64,
+    /// Plastic strain rate at and below which the rate has no influence, 1/s.
+    #[serde(default = "one")]
+    pub reference_rate: f64,
+    /// Temperature at and below which temperature has no influence, K.
+    #[serde(default = "room")]
+    pub reference_temperature: f64,
+    /// Temperature at which the strength is gone, K.
+    pub melt_temperature: f64,
+    /// Specific heat, J/(kg K). Without it plastic work does not heat the metal.
+    #[serde(default)]
+    pub specific_heat: Option<f64>,
+    /// Share of plastic work that becomes heat (Taylor-Quinney), 0 to 1.
+    #[serde(default = "super::heating::usual_share")]
+    pub taylor_quinney: f64,
+    /// Temperature at the start, K; the reference temperature if not given.
+    #[serde(default)]
+    pub temperature: Option<f64>,
+    /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
+    #[serde(default)]
+    pub eos: Option<SolidEos>,
+}
+
+impl MaterialModel for JohnsonCook {
+    const NAME: &'static str = "JohnsonCook";
+    const REFERENCE: &'static str = "G. R. Johnson and W. H. Cook 1983, 7th Int. Symp. Ballistics; return mapping: Simo and Hughes 1998, section 9.3";
+
+    fn build(self) -> Result<Material, ParameterError> {
+        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let flow = JohnsonCookFlow {
+            a: self.a,
+            b: self.b,
+            n: self.n,
+            c: self.c,
+            m: self.m,
+            reference_rate: self.reference_rate,
+            reference_temperature: self.reference_temperature,
+            melt_temperature: self.melt_temperature,
+        };
+        flow.check(&JohnsonCookFlow::FIELDS)?;
+        let heating = Heating {
+            specific_heat: self.specific_heat,
+            taylor_quinney: self.taylor_quinney,
+            temperature: self.temperature.unwrap_or(self.reference_temperature),
+        };
+        heating.check(&Heating::FIELDS)?;
+        plastic(self.density, elastic, Hardening::JohnsonCook(flow), Some(heating), self.eos)
+    }
+}

@@ -1,0 +1,18 @@
+//! The extreme stretches of a body, on which its stable step depends.
+
+/// Extremes over the particles of a body; one where nothing is stretched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretches {
+    /// Smallest principal stretch.
+    pub smallest: f64,
+    /// Largest principal stretch.
+    pub largest: f64,
+    /// Smallest ratio of volumes J.
+    pub least_volume: f64,
+}
+
+impl Default for Stretches {
+    fn default() -> Self {
+        Self { smallest: 1.0, largest: 1.0, least_volume: 1.0 }
+    }
+}
