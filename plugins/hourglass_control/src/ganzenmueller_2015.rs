@@ -5,31 +5,28 @@
 //! not the gradient of an energy: its work is booked as dissipated, and may be negative.
 
 use meshless_engine::pair::{Pair, PairTerm, Rates};
-use meshless_engine::world::DeformationGradient;
+use meshless_engine::world::{DeformationGradient, HourglassModulus};
 
 /// The form of the paper for one body.
 pub struct Ganzenmueller2015 {
     /// alpha.
     pub alpha: f64,
-    /// Young's modulus E, Pa.
-    pub young: f64,
     /// Density rho_0, kg/m3.
     pub density: f64,
 }
 
 impl PairTerm for Ganzenmueller2015 {
-    type ReadI = (DeformationGradient,);
-    type ReadJ = (DeformationGradient,);
+    type ReadI = (DeformationGradient, HourglassModulus);
+    type ReadJ = (DeformationGradient, HourglassModulus);
 
     #[inline]
-    fn pair(&self, pair: &Pair, (f_i,): &Self::ReadI, (f_j,): &Self::ReadJ, rates: &mut Rates) {
-        let weight =
-            0.5 * self.alpha * self.young * pair.volume_j * pair.kernel / pair.reference_distance.powi(2);
-        rates.stiffness += 2.0 * weight / self.density;
+    fn pair(&self, pair: &Pair, (f_i, e_i): &Self::ReadI, (f_j, e_j): &Self::ReadJ, rates: &mut Rates) {
+        let weight = 0.5 * self.alpha * pair.volume_j * pair.kernel / pair.reference_distance.powi(2);
+        rates.stiffness += weight * (e_i.0 + e_j.0) / self.density;
         // A bond of no length has no direction; the variational form has no such gap.
         if pair.distance > 0.0 {
             let along = |f: &DeformationGradient| (f.0 * pair.reference_x_ij - pair.x_ij).dot(pair.x_ij);
-            let error = along(f_i) + along(f_j);
+            let error = e_i.0 * along(f_i) + e_j.0 * along(f_j);
             rates.force -= pair.x_ij * (weight * pair.volume_i * error / pair.distance.powi(2));
         }
     }

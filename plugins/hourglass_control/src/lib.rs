@@ -5,15 +5,21 @@
 //! `e_ij = F_i X_ij - x_ij`.
 
 mod ganzenmueller_2015;
+mod resistance;
 mod variational;
+mod viscous;
 
 use ganzenmueller_2015::Ganzenmueller2015;
+use meshless_engine::formulations::total_lagrangian::{BodyBondTerm, BondTerm};
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::world::BodySet;
+use meshless_engine::world::{BodySet, ColumnSet, HourglassMisfit, HourglassModulus};
+pub use resistance::AfterYield;
+use resistance::Resistance;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use variational::Variational;
+use viscous::Viscous;
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -26,13 +32,25 @@ pub fn register(registry: &mut Registry) {
 pub struct HourglassControl {
     /// How the error of the mean deformation is resisted.
     pub form: Form,
-    /// Coefficient alpha of the resistance. Default: 5 of `Variational`, 25 of `Ganzenmueller2015`.
+    /// Coefficient alpha of the elastic resistance. Default: 5 of `Variational` and `Combined`, 25 of `Ganzenmueller2015`.
     pub alpha: Option<f64>,
+    /// Coefficient zeta of the viscous resistance, of `Viscous` and `Combined`.
+    pub zeta: f64,
+    /// Share chi of the viscous part of `Combined`, 0 to 1.
+    pub chi: f64,
+    /// What the elastic resistance is in particles that have yielded.
+    pub after_yield: AfterYield,
 }
 
 impl Default for HourglassControl {
     fn default() -> Self {
-        Self { form: Form::Variational, alpha: None }
+        Self {
+            form: Form::Variational,
+            alpha: None,
+            zeta: 10.0,
+            chi: 0.5,
+            after_yield: AfterYield::YieldStress,
+        }
     }
 }
 
@@ -43,6 +61,10 @@ pub enum Form {
     Variational,
     /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work.
     Ganzenmueller2015,
+    /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
+    Viscous,
+    /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016; eq. 34 of the above).
+    Combined,
 }
 
 impl Plugin for HourglassControl {
@@ -51,26 +73,81 @@ impl Plugin for HourglassControl {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let bodies = sim.scope_of("TotalLagrangian");
-        let default = match self.form {
-            Form::Variational => 5.0,
-            Form::Ganzenmueller2015 => 25.0,
-        };
+        let default = if self.form == Form::Ganzenmueller2015 { 25.0 } else { 5.0 };
         let alpha = self.alpha.unwrap_or(default);
         ParameterError::require_not_negative("alpha", alpha)?;
+        ParameterError::require_not_negative("zeta", self.zeta)?;
+        if !(0.0..=1.0).contains(&self.chi) {
+            let message = format!("`chi` is {}, outside of 0 to 1", self.chi);
+            return Err(SetupError::parameter("chi", message, "it is the share of the viscous part"));
+        }
+        match self.form {
+            Form::Variational => self.add_variational(alpha, bodies, sim),
+            Form::Ganzenmueller2015 => self.add_ganzenmueller_2015(alpha, &bodies, sim),
+            Form::Viscous => add_viscous(self.zeta, &bodies, sim),
+            Form::Combined => {
+                add_viscous(self.chi * self.zeta, &bodies, sim)?;
+                self.add_variational((1.0 - self.chi) * alpha, bodies, sim)
+            }
+        }
+    }
+}
+
+impl HourglassControl {
+    fn add_variational(
+        &self,
+        alpha: f64,
+        bodies: BodySet,
+        sim: &mut SimBuilder<'_>,
+    ) -> Result<(), SetupError> {
         if alpha == 0.0 {
             return Ok(());
         }
-        match self.form {
-            Form::Variational => sim.add_bond_term(bodies, "hourglass", Variational { alpha }),
-            Form::Ganzenmueller2015 => {
-                for id in bodies.iter() {
-                    let body = sim.body(id);
-                    let young = body.solid_law()?.elastic().young;
-                    let term = Ganzenmueller2015 { alpha, young, density: body.material.density };
-                    sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
-                }
-            }
+        let mut state = ColumnSet::default();
+        for id in bodies.iter() {
+            sim.body(id).solid_law()?.state(&mut state);
+        }
+        // Only a law with state can make a particle softer.
+        let mut released = None;
+        if state.iter().next().is_some() {
+            sim.add_column_to::<HourglassModulus>(&bodies);
+            sim.add_column_to::<HourglassMisfit>(&bodies);
+            released = Some("hourglass_released".to_owned());
+        }
+        let term: Box<dyn BondTerm> = Box::new(Variational { alpha, after_yield: self.after_yield });
+        sim.extend(BodyBondTerm { bodies, account: Some("hourglass".to_owned()), released, term });
+        Ok(())
+    }
+
+    fn add_ganzenmueller_2015(
+        &self,
+        alpha: f64,
+        bodies: &BodySet,
+        sim: &mut SimBuilder<'_>,
+    ) -> Result<(), SetupError> {
+        if alpha == 0.0 {
+            return Ok(());
+        }
+        sim.add_column_to::<HourglassModulus>(bodies);
+        let term: Box<dyn BondTerm> = Box::new(Resistance(self.after_yield));
+        sim.extend(BodyBondTerm { bodies: bodies.clone(), account: None, released: None, term });
+        for id in bodies.iter() {
+            let term = Ganzenmueller2015 { alpha, density: sim.body(id).material.density };
+            sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
         }
         Ok(())
     }
+}
+
+fn add_viscous(zeta: f64, bodies: &BodySet, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    if zeta == 0.0 {
+        return Ok(());
+    }
+    for id in bodies.iter() {
+        let body = sim.body(id);
+        let density = body.material.density;
+        let sound_speed = (body.solid_law()?.elastic().bulk / density).sqrt();
+        sim.add_pair_term(BodySet::new([id]), "hourglass_viscosity", Viscous { zeta, sound_speed, density });
+    }
+    Ok(())
 }

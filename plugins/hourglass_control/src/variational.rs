@@ -5,24 +5,44 @@
 //! `f_i = -(alpha/6) V_i sum_j V_j w_ij [E_i (F_i X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors.
 //! With F_i X_ij - x_ij = H_i X_ij - u_ij it folds into the pair stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness,
 //! k_i += (alpha/6) E_i.
+//!
+//! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has worked for
+//! that: it is booked as released.
 
-use meshless_engine::formulations::total_lagrangian::{BondRows, BondTerm};
+use meshless_engine::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
+
+use crate::resistance::AfterYield;
 
 /// The variational form with its coefficient alpha.
 pub struct Variational {
     /// alpha.
     pub alpha: f64,
+    /// E_i after yield.
+    pub after_yield: AfterYield,
 }
 
 impl BondTerm for Variational {
-    fn add(&self, rows: &mut BondRows<'_>) -> f64 {
+    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
         let factor = self.alpha / 6.0;
-        let mut energy = 0.0;
+        let mut energy = BondEnergy::default();
+        let changes = !rows.memory.misfit.is_empty();
         for k in 0..rows.deformation.len() {
-            let stiffness = factor * rows.modulus[k];
+            let modulus = self.after_yield.modulus(rows, k);
+            let stiffness = factor * modulus;
             rows.pair_stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.pair_stress.add_stiffness(k, stiffness);
-            energy += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
+            let misfit = 0.5 * rows.volume[k] * rows.misfit[k];
+            energy.stored += stiffness * misfit;
+            if changes {
+                let memory = &mut rows.memory;
+                let (before, error) = (memory.modulus[k], memory.misfit[k]);
+                if before > 0.0 {
+                    // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 e_n . e_n+1 beyond the change of energy.
+                    let both = 0.5 * rows.volume[k] * (error * rows.misfit[k]).max(0.0).sqrt();
+                    energy.released += factor * (before - modulus) * both;
+                }
+                (memory.modulus[k], memory.misfit[k]) = (modulus, rows.misfit[k]);
+            }
         }
         energy
     }

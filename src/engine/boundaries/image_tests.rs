@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::formulations::total_lagrangian::{BondRows, BondTerm};
+use crate::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
 use crate::pair::{Pair, PairTerm, Rates};
 use crate::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
 use crate::scene::{Source, parse};
@@ -18,15 +18,15 @@ pub(super) struct Stiffener {}
 struct Stiff;
 
 impl BondTerm for Stiff {
-    fn add(&self, rows: &mut BondRows<'_>) -> f64 {
-        let mut energy = 0.0;
+    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+        let mut stored = 0.0;
         for k in 0..rows.deformation.len() {
             let stiffness = 0.5 * rows.modulus[k];
             rows.pair_stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.pair_stress.add_stiffness(k, stiffness);
-            energy += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
+            stored += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
         }
-        energy
+        BondEnergy { stored, released: 0.0 }
     }
 
     fn stiffness_factor(&self) -> f64 {

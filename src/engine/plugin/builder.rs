@@ -108,7 +108,12 @@ impl<'s> SimBuilder<'s> {
 
     /// Gives all particles of the phases of the scope a column, zero at the start.
     pub fn add_column<T: Column>(&mut self) {
-        for phase in self.phases_of(&self.scope.clone()) {
+        self.add_column_to::<T>(&self.scope.clone());
+    }
+
+    /// Gives all particles of the phases of the given bodies a column, zero at the start.
+    pub fn add_column_to<T: Column>(&mut self, bodies: &BodySet) {
+        for phase in self.phases_of(bodies) {
             self.phases[phase.0].1.add::<T>();
         }
     }

@@ -58,6 +58,10 @@ column! {
     pub struct ReachedVolumeRatio(f64) = "reached_volume_ratio", "J", "1";
     /// Temperature.
     pub struct Temperature(f64) = "temperature", "T", "K";
+    /// Modulus that hourglass control resists with.
+    pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
+    /// Error of the mean deformation that hourglass control last resisted, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
+    pub struct HourglassMisfit(f64) = "hourglass_misfit", "e^2", "1";
 }
 
 impl Removed {

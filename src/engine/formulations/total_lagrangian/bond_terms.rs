@@ -15,6 +15,8 @@ pub struct BondRows<'a> {
     pub modulus: &'a [f64],
     /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
     pub strength: &'a [f64],
+    /// What terms that become softer remember of the last step.
+    pub memory: BondMemory<'a>,
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub misfit: &'a [f64],
     /// Reference volume V_i, m3.
@@ -23,12 +25,40 @@ pub struct BondRows<'a> {
     pub pair_stress: PairStressRows<'a>,
 }
 
+/// Modulus and error of the mean deformation of the last step, for terms that become softer on the way. Slices are
+/// those of columns, and empty where no plugin has added them.
+#[derive(Default)]
+pub struct BondMemory<'a> {
+    /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
+    pub modulus: &'a mut [f64],
+    /// Error of the mean deformation: column [`HourglassMisfit`](crate::world::HourglassMisfit).
+    pub misfit: &'a mut [f64],
+}
+
+impl BondMemory<'_> {
+    /// The rows before and from `at`.
+    pub(super) fn split(self, at: usize) -> (Self, Self) {
+        let (modulus, modulus_rest) = self.modulus.split_at_mut(at.min(self.modulus.len()));
+        let (misfit, misfit_rest) = self.misfit.split_at_mut(at.min(self.misfit.len()));
+        (Self { modulus, misfit }, Self { modulus: modulus_rest, misfit: misfit_rest })
+    }
+}
+
+/// What a bond term tells of the energy of a block, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BondEnergy {
+    /// Energy that it stores now.
+    pub stored: f64,
+    /// Energy that it has given up in this step without work, because it has become softer.
+    pub released: f64,
+}
+
 /// A force term of total-Lagrangian bodies that is linear in the pair vectors: it adds to the pair stress A_i and to
 /// the bond stiffness k_i of every particle, and the engine's own pass over pairs applies it (see
 /// [`PairStress`](super::PairStress)).
 pub trait BondTerm: Send + Sync + 'static {
-    /// Adds the term to a block; returns the energy that it stores there, J.
-    fn add(&self, rows: &mut BondRows<'_>) -> f64;
+    /// Adds the term to a block; returns its energy there.
+    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy;
 
     /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
     /// step follows from it.

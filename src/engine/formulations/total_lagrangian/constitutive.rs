@@ -1,8 +1,9 @@
 //! The system of the first pass: every body with its law, its bond terms and the energies that they report.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use super::bond_terms::BondTerm;
+use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
 use super::removed::RemovedRows;
@@ -14,8 +15,8 @@ use crate::parallel::{Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
 use crate::world::{
-    BodyId, ColumnSet, DeformationGradient, PhaseId, PhaseView, PiolaStress, Position, ReferencePosition,
-    ReferenceVolume, World,
+    BodyId, Column, ColumnSet, DeformationGradient, HourglassMisfit, HourglassModulus, PhaseId, PhaseView,
+    PiolaStress, Position, ReferencePosition, ReferenceVolume, World,
 };
 
 /// A body as the deformation system sees it.
@@ -96,6 +97,8 @@ impl Deformation {
         images.fill_sites(sites);
         let mut gradient = view.write::<DeformationGradient>()?;
         let mut stress = view.write::<PiolaStress>()?;
+        let mut modulus = view.write::<HourglassModulus>().ok();
+        let mut misfit = view.write::<HourglassMisfit>().ok();
         self.found.clear();
         for law in &self.laws {
             let rows = world.body(law.id).rows.clone();
@@ -120,6 +123,10 @@ impl Deformation {
                     stress: bytemuck::cast_slice_mut(&mut stress[rows.clone()]),
                     pair_stress: &mut pair_stress[rows.clone()],
                     state: state.split(rows.len()).0,
+                    memory: BondMemory {
+                        modulus: modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
+                        misfit: misfit.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
+                    },
                 };
                 sum = pass.run(written, &mut self.sums);
             });
@@ -183,8 +190,8 @@ impl Run for Deformation {
 struct NoTerm;
 
 impl BondTerm for NoTerm {
-    fn add(&self, _: &mut super::BondRows<'_>) -> f64 {
-        0.0
+    fn add(&self, _: &mut super::BondRows<'_>) -> BondEnergy {
+        BondEnergy::default()
     }
 
     fn stiffness_factor(&self) -> f64 {
@@ -200,12 +207,20 @@ impl BodyLaw {
             let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
             ledger.add(plastic, self.id, sum.plastic_work);
         }
-        for &k in &self.terms {
-            // Terms of one account hold its energy together.
-            let own = |(other, _): &(&usize, f64)| terms[**other].account == terms[k].account;
-            let energy = self.terms.iter().zip(sum.terms).filter(own).map(|(_, energy)| energy).sum();
-            let account = ledger.account(&terms[k].account, AccountKind::Stored);
-            ledger.set(account, self.id, energy);
+        for (&k, energy) in self.terms.iter().zip(sum.terms) {
+            let BodyBondTerm { account, released, .. } = &terms[k];
+            if let Some(name) = account {
+                // Terms of one account hold its energy together.
+                let own = |(other, _): &(&usize, BondEnergy)| terms[**other].account.as_ref() == Some(name);
+                let all = self.terms.iter().zip(sum.terms).filter(own);
+                let stored = all.map(|(_, energy)| energy.stored).sum();
+                let account = ledger.account(name, AccountKind::Stored);
+                ledger.set(account, self.id, stored);
+            }
+            if let Some(released) = released {
+                let released = ledger.account(released, AccountKind::Dissipated);
+                ledger.add(released, self.id, energy.released);
+            }
         }
     }
 
@@ -221,6 +236,11 @@ impl BodyLaw {
             format!("{cause} of `{body}`")
         }
     }
+}
+
+/// The rows of a body in a column of numbers.
+fn rows_of<'a, C: Column<Value = f64>>(column: &'a mut [C], rows: &Range<usize>) -> &'a mut [f64] {
+    bytemuck::cast_slice_mut(&mut column[rows.clone()])
 }
 
 /// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.

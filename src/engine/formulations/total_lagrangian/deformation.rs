@@ -6,7 +6,7 @@
 
 use glam::DMat3;
 
-use super::bond_terms::{BondRows, BondTerm};
+use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
 use super::rows::{PairStress, PairStressRows, Site};
 use crate::linalg::Sym3;
@@ -25,8 +25,8 @@ pub(super) struct DeformationSum {
     pub strain: f64,
     /// Plastic work of the step, J.
     pub plastic_work: f64,
-    /// Energy stored by each bond term, J.
-    pub terms: [f64; MAX_TERMS],
+    /// Energy of each bond term, J.
+    pub terms: [BondEnergy; MAX_TERMS],
     /// Row with det F <= 0 that comes first, counted from one; zero if there is none.
     pub inverted: usize,
 }
@@ -43,7 +43,8 @@ impl BlockSum for DeformationSum {
         self.strain += next.strain;
         self.plastic_work += next.plastic_work;
         for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
-            *sum += next;
+            sum.stored += next.stored;
+            sum.released += next.released;
         }
         if self.inverted == 0 {
             self.inverted = next.inverted;
@@ -57,6 +58,7 @@ pub(super) struct DeformationRows<'a> {
     pub stress: &'a mut [DMat3],
     pub pair_stress: &'a mut [PairStress],
     pub state: StateRows<'a>,
+    pub memory: BondMemory<'a>,
 }
 
 impl Split for DeformationRows<'_> {
@@ -69,13 +71,15 @@ impl Split for DeformationRows<'_> {
         let (stress, stress_rest) = self.stress.split_at_mut(at);
         let (pair_stress, pair_stress_rest) = self.pair_stress.split_at_mut(at);
         let (state, state_rest) = self.state.split(at);
+        let (memory, memory_rest) = self.memory.split(at);
         (
-            Self { deformation, stress, pair_stress, state },
+            Self { deformation, stress, pair_stress, state, memory },
             Self {
                 deformation: deformation_rest,
                 stress: stress_rest,
                 pair_stress: pair_stress_rest,
                 state: state_rest,
+                memory: memory_rest,
             },
         )
     }
@@ -139,12 +143,14 @@ impl DeformationPass<'_> {
         }
         run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
         let mut sum = DeformationSum::default();
+        let memory = rows.memory;
         for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
             *sum = term.add(&mut BondRows {
                 deformation: rows.deformation,
                 displacement_gradient: &gradient[..n],
                 modulus,
                 strength: &strength[..n],
+                memory: BondMemory { modulus: &mut *memory.modulus, misfit: &mut *memory.misfit },
                 misfit: &misfit[..n],
                 volume: &volume[..n],
                 pair_stress: PairStressRows(rows.pair_stress),

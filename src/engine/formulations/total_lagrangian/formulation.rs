@@ -21,8 +21,8 @@ use crate::plugin::{BodyPlan, Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
 use crate::world::{
-    BodyId, BodySet, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
-    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
+    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, HourglassMisfit, HourglassModulus, Mass,
+    PhaseId, PiolaStress, Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
 /// Total-Lagrangian solid: neighbours, weights and corrections stay those of the reference configuration.
@@ -51,8 +51,10 @@ impl Default for TotalLagrangian {
 pub struct BodyBondTerm {
     /// Bodies.
     pub bodies: BodySet,
-    /// Account of the energy ledger that holds what the term stores.
-    pub account: String,
+    /// Account of the energy ledger that holds what the term stores; none if it stores nothing.
+    pub account: Option<String>,
+    /// Account of the energy that the term has given up without work; none if it never does.
+    pub released: Option<String>,
     /// The term.
     pub term: Box<dyn BondTerm>,
 }
@@ -61,7 +63,8 @@ impl SimBuilder<'_> {
     /// Adds a force term that is linear in the pair vectors to total-Lagrangian bodies. The energy that it stores goes
     /// to the account of that name.
     pub fn add_bond_term(&mut self, bodies: BodySet, account: &str, term: impl BondTerm) {
-        self.extend(BodyBondTerm { bodies, account: account.to_owned(), term: Box::new(term) });
+        let account = Some(account.to_owned());
+        self.extend(BodyBondTerm { bodies, account, released: None, term: Box::new(term) });
     }
 }
 
@@ -115,7 +118,10 @@ impl Formulation for TotalLagrangian {
         let plane = sim.dimension() == Dimension::Two;
         sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
         let deformation = Deformation::new(phase, plane, laws, terms);
-        let state = deformation.state();
+        let mut state = deformation.state();
+        if sim.columns(phase).get(HourglassModulus::NAME).is_some() {
+            state.add::<HourglassModulus>().add::<HourglassMisfit>();
+        }
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])
             .reads::<Position>()

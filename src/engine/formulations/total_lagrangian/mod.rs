@@ -22,9 +22,9 @@ mod state_tests;
 mod stretches;
 mod support;
 
-pub use bond_terms::{BondRows, BondTerm};
+pub use bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
-pub use formulation::TotalLagrangian;
+pub use formulation::{BodyBondTerm, TotalLagrangian};
 pub use images::Images;
 pub(crate) use images::MirrorPlane;
 pub use rows::{PairStress, PairStressRows, Site};

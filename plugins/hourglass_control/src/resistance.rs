@@ -1,0 +1,43 @@
+//! The modulus that the control resists with.
+
+use meshless_engine::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What the control resists with in a particle that has yielded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
+pub enum AfterYield {
+    /// The present flow stress (Ganzenmueller 2015, section 4.5): an elastic resistance would carry load that the metal
+    /// cannot, and suppress the flow.
+    #[default]
+    YieldStress,
+    /// Young's modulus, as before yield.
+    Young,
+}
+
+impl AfterYield {
+    /// E_i, Pa, of row `k`.
+    #[inline]
+    pub fn modulus(self, rows: &BondRows<'_>, k: usize) -> f64 {
+        match self {
+            Self::YieldStress => rows.modulus[k].min(rows.strength[k]),
+            Self::Young => rows.modulus[k],
+        }
+    }
+}
+
+/// Writes E_i to its column, for pair forces that need that of both particles.
+pub struct Resistance(pub AfterYield);
+
+impl BondTerm for Resistance {
+    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+        for k in 0..rows.memory.modulus.len() {
+            rows.memory.modulus[k] = self.0.modulus(rows, k);
+        }
+        BondEnergy::default()
+    }
+
+    fn stiffness_factor(&self) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,39 @@
+//! The viscous form: a pair force against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
+//!
+//! `f_i = zeta rho_0 sum_j V_i V_j (|e_ij| / |X_ij|) c h (v_ij . x_ij) / |x_ij|^2 |W'_ij| x_ij / |x_ij|` where the error
+//! `e_ij = (F_i + F_j)/2 X_ij - x_ij` grows, (v_ij . x_ij)(e_ij . x_ij) < 0. Printed, the equation lacks the density, its
+//! gradient of the kernel is a vector, and its sign is that of pair vectors from i to j. The force is along the bond and
+//! against the relative motion: momentum and angular momentum are kept, energy is only ever taken out.
+
+use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::world::{DeformationGradient, Velocity};
+
+/// The viscous form for one body.
+pub struct Viscous {
+    /// zeta.
+    pub zeta: f64,
+    /// Speed of bulk waves c = sqrt(K / rho_0), m/s.
+    pub sound_speed: f64,
+    /// Density rho_0, kg/m3.
+    pub density: f64,
+}
+
+impl PairTerm for Viscous {
+    type ReadI = (DeformationGradient, Velocity);
+    type ReadJ = (DeformationGradient, Velocity);
+
+    #[inline]
+    fn pair(&self, pair: &Pair, (f_i, v_i): &Self::ReadI, (f_j, v_j): &Self::ReadJ, rates: &mut Rates) {
+        let error = (f_i.0 + f_j.0) * pair.reference_x_ij * 0.5 - pair.x_ij;
+        let moving = (v_j.0 - v_i.0).dot(pair.x_ij);
+        if moving * error.dot(pair.x_ij) >= 0.0 || pair.distance == 0.0 {
+            return;
+        }
+        let slope = pair.weight * pair.reference_distance;
+        let share = error.length() / pair.reference_distance;
+        let strength = self.zeta * self.sound_speed * pair.smoothing_length() * share * slope * pair.volume_j;
+        let damping = strength / pair.distance;
+        rates.force += pair.x_ij * (self.density * pair.volume_i * damping * moving / pair.distance.powi(2));
+        rates.damping += damping;
+    }
+}
