@@ -13,6 +13,21 @@ fn passes(id: &str) {
 }
 
 #[test]
+fn m2_j2_in_uniaxial_strain() {
+    passes("M2");
+}
+
+#[test]
+fn m3_flow_stress_of_johnson_and_cook() {
+    passes("M3");
+}
+
+#[test]
+fn m4_jaumann_rate_in_simple_shear() {
+    passes("M4");
+}
+
+#[test]
 fn k1_kernels() {
     passes("K1");
 }
@@ -73,6 +88,11 @@ fn s5_rubber_pull() {
 }
 
 #[test]
+fn s6_taylor_bar_in_plane_strain() {
+    passes("S6");
+}
+
+#[test]
 fn s8_oscillating_plate() {
     passes("S8");
 }
@@ -95,6 +115,21 @@ fn s11_bending_column() {
 #[test]
 fn s12_twisting_column() {
     passes("S12");
+}
+
+#[test]
+fn s13_taylor_bar_of_copper() {
+    passes("S13");
+}
+
+#[test]
+fn s14_taylor_bar_of_steel() {
+    passes("S14");
+}
+
+#[test]
+fn s15_taylor_bar_of_aluminium() {
+    passes("S15");
 }
 
 #[test]

@@ -10,7 +10,10 @@ mod case;
 mod check;
 mod cook_membrane;
 mod disorder;
+mod homogeneous;
 mod invariants;
+mod jaumann_shear;
+mod johnson_cook;
 mod kernels;
 mod laws;
 mod measure;
@@ -20,8 +23,12 @@ mod patch;
 mod random;
 mod report;
 mod rubber_pull;
+mod taylor;
+mod taylor_bars;
+mod taylor_plane;
 mod turek_hron;
 mod twisting_column;
+mod uniaxial_strain;
 
 use meshless_engine::plugin::Registry;
 

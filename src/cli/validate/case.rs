@@ -5,8 +5,8 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, invariants, kernels, laws, neighbor_lists,
-    oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
+    bending_column, cantilever, cantilever_large, cook_membrane, invariants, jaumann_shear, johnson_cook, kernels, laws, neighbor_lists,
+    oscillating_plate, patch, rubber_pull, taylor_bars, taylor_plane, turek_hron, twisting_column, uniaxial_strain,
 };
 
 /// A case with a known answer.
@@ -32,14 +32,21 @@ pub const CASES: &[Case] = &[
     neighbor_lists::CASE,
     invariants::THROWN,
     laws::STRETCH,
+    uniaxial_strain::CASE,
+    johnson_cook::CASE,
+    jaumann_shear::CASE,
     laws::CONSISTENCY,
     patch::CASE,
     cantilever::CASE,
     cantilever_large::CASE,
     rubber_pull::CASE,
+    taylor_plane::CASE,
     oscillating_plate::CASE,
     turek_hron::CASE,
     cook_membrane::CASE,
     bending_column::CASE,
     twisting_column::CASE,
+    taylor_bars::COPPER,
+    taylor_bars::STEEL,
+    taylor_bars::ALUMINIUM,
 ];

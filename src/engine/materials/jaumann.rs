@@ -39,8 +39,9 @@ impl HypoelasticJ2 {
     pub fn advance(&self, state: &mut HypoelasticState, gradient: &DMat3, dt: f64) -> f64 {
         let before = (1.5 * state.deviator.double_dot(&state.deviator)).sqrt();
         let rate = Sym3::symmetric_part(*gradient).deviator();
-        let turned = turn(&state.deviator, gradient, dt);
-        let mut deviator = turned + rate * (2.0 * self.shear * dt);
+        // Half of the strain before the turn and half after it: all of it on one side would be of first order.
+        let half = rate * (self.shear * dt);
+        let mut deviator = turn(&(state.deviator + half), gradient, dt) + half;
         let mut work = 0.0;
         if let Some(hardening) = &self.hardening {
             let stress = (1.5 * deviator.double_dot(&deviator)).sqrt();

@@ -1,0 +1,55 @@
+//! A body whose particles all deform alike: what one of them is, if they agree.
+
+use anyhow::{Result, ensure};
+use meshless_engine::glam::DMat3;
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, Column, DeformationGradient, PiolaStress};
+
+/// The value of a column of the first body, which must be that of all its particles to rounding.
+pub fn value<C: Column<Value = f64>>(simulation: &Simulation) -> Result<f64> {
+    let (view, rows) = simulation.world().body_view(BodyId(0));
+    let column = view.read::<C>()?;
+    let first = *column[rows.start].value();
+    let agree = column[rows].iter().all(|row| (row.value() - first).abs() <= 1e-9 * first.abs().max(1e-9));
+    ensure!(agree, "the particles differ in {}", C::NAME);
+    Ok(first)
+}
+
+/// Kirchhoff stress of a particle of the first body, Pa.
+pub fn kirchhoff(simulation: &Simulation) -> Result<DMat3> {
+    let (view, rows) = simulation.world().body_view(BodyId(0));
+    let (stress, gradient) = (view.read::<PiolaStress>()?, view.read::<DeformationGradient>()?);
+    Ok(stress[rows.start].0 * gradient[rows.start].0.transpose())
+}
+
+/// Cauchy stress of a particle of the first body, Pa.
+pub fn cauchy(simulation: &Simulation) -> Result<DMat3> {
+    let (view, rows) = simulation.world().body_view(BodyId(0));
+    let volume = view.read::<DeformationGradient>()?[rows.start].0.determinant();
+    Ok(kirchhoff(simulation)? * (1.0 / volume))
+}
+
+/// Measured and reference value of which the difference is largest, in units of `scale`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Worst {
+    /// Measured value.
+    pub measured: f64,
+    /// Reference value.
+    pub reference: f64,
+    error: f64,
+}
+
+impl Worst {
+    /// Takes in a value; one that is not a number is the worst.
+    pub fn add(&mut self, measured: f64, reference: f64, scale: f64) {
+        let error = (measured - reference).abs() / scale;
+        if error.is_nan() || error > self.error {
+            *self = Self { measured, reference, error };
+        }
+    }
+
+    /// The largest difference in units of the scale.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+}

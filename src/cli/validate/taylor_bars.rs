@@ -1,0 +1,76 @@
+//! S13, S14, S15: cylinders of copper, steel and aluminium that hit a wall.
+
+use anyhow::Result;
+use meshless_engine::glam::DVec3;
+use meshless_engine::plugin::Registry;
+
+use super::case::Case;
+use super::check::{Check, Tolerance};
+use super::taylor::{Shape, impact};
+use super::template::Template;
+
+pub(super) const COPPER: Case = Case {
+    id: "S13",
+    title: "Taylor bar of copper",
+    resolutions: &[8, 12, 16],
+    ci_resolution: 8,
+    run: copper,
+};
+
+pub(super) const STEEL: Case = Case {
+    id: "S14",
+    title: "Taylor bar of 42CrMo4 steel",
+    resolutions: &[8, 12, 16],
+    ci_resolution: 8,
+    run: steel,
+};
+
+pub(super) const ALUMINIUM: Case = Case {
+    id: "S15",
+    title: "Taylor bar of aluminium 6061-T6",
+    resolutions: &[8, 12, 16],
+    ci_resolution: 8,
+    run: aluminium,
+};
+
+fn shape(registry: &Registry, path: &str, text: &str, diameter: f64, across: usize) -> Result<Shape> {
+    let spacing = diameter / across as f64;
+    let template = Template::new(path, text).set("bodies.bar.spacing", spacing)?;
+    impact(&mut template.build(registry)?, DVec3::Z)
+}
+
+fn copper(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let text = include_str!("../../../tests/validation/taylor_copper/scene.ron");
+    let shape = shape(registry, "tests/validation/taylor_copper/scene.ron", text, 6.4e-3, across)?;
+    checks(&shape, (0.0215, 0.02), (0.00715, 0.05), 2.0)
+}
+
+fn steel(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let text = include_str!("../../../tests/validation/taylor_steel/scene.ron");
+    let shape = shape(registry, "tests/validation/taylor_steel/scene.ron", text, 6.4e-3, across)?;
+    checks(&shape, (0.0265, 0.02), (0.005625, 0.04), 1.2)
+}
+
+fn aluminium(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let text = include_str!("../../../tests/validation/taylor_aluminium/scene.ron");
+    let shape = shape(registry, "tests/validation/taylor_aluminium/scene.ron", text, 7.595e-3, across)?;
+    let of_radius = if across < 16 { 0.1 } else { 0.06 };
+    checks(&shape, (0.0263, 0.03), (0.00725, of_radius), 1.5)
+}
+
+const SOURCE: &str = "published spread and finite elements, reference.csv";
+
+fn checks(
+    shape: &Shape,
+    (length, of_length): (f64, f64),
+    (radius, of_radius): (f64, f64),
+    strain: f64,
+) -> Result<Vec<Check>> {
+    Ok(vec![
+        Check::new("length", shape.length, length, Tolerance::Relative(of_length), "m", SOURCE).converging(),
+        Check::new("largest radius", shape.radius, radius, Tolerance::Relative(of_radius), "m", SOURCE)
+            .converging(),
+        Check::above("largest plastic strain", shape.plastic_strain, strain, "finite elements"),
+        Check::below("energy balance error", shape.balance, 0.01, "every joule is booked"),
+    ])
+}
