@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{all_plugins, flow, removal, simulation};
+use common::{all_plugins, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -18,7 +18,8 @@ fn hash_after(source: &Source, threads: usize, steps: u64) -> StateHash {
 
 #[test]
 fn one_two_and_seven_threads_give_the_same_bits() {
-    let scenes = [(2, all_plugins(2)), (3, all_plugins(3)), (2, removal()), (2, flow(2)), (3, flow(3))];
+    let scenes =
+        [(2, all_plugins(2)), (3, all_plugins(3)), (2, removal()), (2, flow(2)), (3, flow(3)), (3, metals())];
     for (dimension, source) in scenes {
         let one = hash_after(&source, 1, 150);
         assert_eq!(one, hash_after(&source, 2, 150), "{dimension} dimensions, two threads");

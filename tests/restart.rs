@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{all_plugins, flow, removal, simulation};
+use common::{all_plugins, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -16,6 +16,7 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (removal(), 300, 14),
         (flow(2), 500, 15),
         (flow(3), 200, 16),
+        (metals(), 200, 17),
     ];
     for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);

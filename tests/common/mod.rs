@@ -84,6 +84,40 @@ pub fn flow(dimension: usize) -> Source {
     Source::new("flow.ron", text)
 }
 
+/// Metals that hit a wall: every law with state, every form of the hourglass control, an equation of state with energy.
+pub fn metals() -> Source {
+    let body = |name: &str, at: f64, control: &str| {
+        format!(
+            r#"(name: "{name}", material: "{name}", shape: Box(min: (0, {at}, 0), max: (6e-3, {}, 3e-3)), spacing: 5e-4,
+                formulation: TotalLagrangian, velocity: (-300, 20, 0), plugins: [hourglass_control({control})])"#,
+            at + 3e-3
+        )
+    };
+    let bodies = [
+        body("hot", 0.0, ""),
+        body("soft", 1e-2, "form: Combined"),
+        body("turned", 2e-2, "form: Ganzenmueller2015"),
+        body("rubber", 3e-2, ""),
+    ];
+    let text = format!(
+        r#"(dimension: Three,
+            materials: {{
+                "hot": Al6061T6(eos: MieGrueneisen(slope: 1.34, gamma: 2.0)),
+                "soft": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Voce(yield_stress: 1e8, saturation: 1e8, rate: 9),
+                           eos: Polynomial(c2: 1e11, c3: 1e11)),
+                "turned": Hypoelastic(density: 2700, young: 70e9, poisson: 0.3, heating: (specific_heat: 885),
+                                      hardening: Power(yield_stress: 1e8, coefficient: 2e8, exponent: 0.4)),
+                "rubber": Rubber,
+            }},
+            bodies: [{}],
+            conditions: [Symmetry(plane: X, at: 0, side: Above)],
+            plugins: [artificial_viscosity()],
+            time: (end: 1e-3))"#,
+        bodies.join(",\n")
+    );
+    Source::new("metals.ron", text)
+}
+
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));

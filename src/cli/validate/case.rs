@@ -5,8 +5,9 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, invariants, jaumann_shear, johnson_cook, kernels, laws, neighbor_lists,
-    oscillating_plate, patch, rubber_pull, taylor_bars, taylor_plane, turek_hron, twisting_column, uniaxial_strain,
+    bending_column, cantilever, cantilever_large, cook_membrane, invariants, jaumann_shear, johnson_cook,
+    kernels, laws, neighbor_lists, oscillating_plate, patch, rubber_pull, taylor_bars, taylor_plane,
+    turek_hron, twisting_column, uniaxial_strain,
 };
 
 /// A case with a known answer.

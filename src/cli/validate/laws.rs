@@ -46,6 +46,7 @@ fn stress_and_energy(material: &Material, deformation: DMat3) -> Result<(DMat3, 
         stress: &mut stress,
         energy: &mut energy,
         modulus: &mut [0.0],
+        strength: &mut [f64::INFINITY],
         plastic_work: &mut [0.0],
         state: StateRows::default(),
     });

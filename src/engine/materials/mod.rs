@@ -16,6 +16,7 @@ mod j2_tests;
 mod jaumann;
 mod johnson_cook;
 mod law;
+mod library;
 mod neo_hookean;
 mod return_mapping;
 #[cfg(test)]
@@ -37,6 +38,7 @@ pub use j2::J2;
 pub use jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
 pub use johnson_cook::{JohnsonCook, JohnsonCookFlow};
 pub use law::{Hyperelastic, Law, Material, MaterialModel, ParameterError, SolidLaw, StressRows};
+pub use library::{Al6061T6, Copper, PMMA, Rubber, Steel, Steel42CrMo4};
 pub use neo_hookean::NeoHookean;
 pub use return_mapping::Trial;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
@@ -54,5 +56,11 @@ pub fn register(registry: &mut Registry) {
         .material::<Fluid>()
         .material::<J2>()
         .material::<JohnsonCook>()
-        .material::<Hypoelastic>();
+        .material::<Hypoelastic>()
+        .material::<Al6061T6>()
+        .material::<PMMA>()
+        .material::<Copper>()
+        .material::<Steel>()
+        .material::<Steel42CrMo4>()
+        .material::<Rubber>();
 }

@@ -118,13 +118,6 @@ impl<'s> SimBuilder<'s> {
         }
     }
 
-    /// Gives all particles of the phases of the bodies a column, zero at the start.
-    pub fn add_column_to<T: Column>(&mut self, bodies: &BodySet) {
-        for phase in self.phases_of(bodies) {
-            self.phases[phase.0].1.add::<T>();
-        }
-    }
-
     /// Adds a system.
     pub fn add_system(&mut self, system: System) {
         self.systems.push(system);

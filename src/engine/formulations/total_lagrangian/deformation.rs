@@ -34,7 +34,7 @@ pub(super) struct DeformationSum {
 impl DeformationSum {
     /// All that the bonds of the body hold, J.
     pub fn stored(&self) -> f64 {
-        self.strain + self.terms.iter().sum::<f64>()
+        self.strain + self.terms.iter().map(|term| term.stored).sum::<f64>()
     }
 }
 
