@@ -192,7 +192,6 @@ impl SolidLaw for FailingLaw {
             own.deformation[k].0 = given[k];
             own.energy[k].0 = rows.energy[k];
         }
-        drop(own);
         rows.state = all;
     }
 }
