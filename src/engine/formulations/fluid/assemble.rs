@@ -18,14 +18,16 @@ use super::start::{StartPressure, start};
 use super::state::EquationOfState;
 use super::wall::{PreviousVelocity, WallBody};
 use super::wall_state::WallState;
+use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
 use crate::neighbors::Periodic;
 use crate::pair::{BodyTerms, add_pair_systems, add_work_systems};
-use crate::plugin::{BodyPlan, SetupError, SimBuilder};
+use crate::plugin::{BodyPlan, Formulation, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::scene::{Dimension, Problem};
 use crate::schedule::{Stage, System};
 use crate::world::{
-    Density, DensityRate, Force, Mass, PhaseId, Position, Pressure, ReferenceVolume, Removed, Velocity,
+    BodyId, Density, DensityRate, Force, Mass, PhaseId, Position, Pressure, ReferenceVolume, Removed,
+    Velocity,
 };
 
 /// Label of the system that keeps the neighbour lists of fluids.
@@ -49,6 +51,15 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     for wall in &walls {
         checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)?;
     }
+    let solids = solids(sim);
+    for &id in &solids {
+        checks::is_fine(sim.body(id), spacing)?;
+        if let Err(SetupError::Problems(problems)) =
+            checks::wall_is_thick(sim.body(id), spacing, support, &periodic)
+        {
+            problems.iter().for_each(|problem| sim.warn(problem.message.clone()));
+        }
+    }
     let mut groups = Vec::new();
     let mut pressures = Vec::new();
     for FluidBody { id, parameters, .. } in fluids {
@@ -65,8 +76,13 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
             no_slip: parameters.slip == super::Slip::No,
             suction: parameters.suction,
             velocity: parameters.surface_velocity.0,
+            moved: false,
         };
         groups.push(group(sim.body(*id), Role::Boundary(surface), &groups));
+    }
+    for id in solids {
+        let surface = Surface { no_slip: true, suction: false, velocity: DVec3::ZERO, moved: true };
+        groups.push(group(sim.body(id), Role::Boundary(surface), &groups));
     }
     let dimension = sim.dimension().count();
     let total = groups.last().map_or(0, |group| group.cloud.end);
@@ -96,7 +112,11 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
 fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
     phases.dedup();
-    let (fluid, walls) = (phases[0], phases.get(1).copied());
+    let bounding = |moved: bool| {
+        let of = |group: &&Group| matches!(&group.role, Role::Boundary(surface) if surface.moved == moved);
+        groups.iter().find(of).map(|group| group.phase)
+    };
+    let (fluid, walls, solids) = (groups[0].phase, bounding(false), bounding(true));
     let account = add_pair_systems(sim, fluid, FLUID_FORCE, FluidPairs)?;
     sim.add_system(
         System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
@@ -128,16 +148,21 @@ fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         .writes::<Pressure>(),
     );
     let gravity = sim.gravity();
-    add_force(sim, groups, fluid, FLUID_FORCE, gravity);
-    if let Some(walls) = walls {
+    add_force(sim, groups, fluid, FLUID_FORCE, Some(gravity));
+    if walls.is_some() || solids.is_some() {
         sim.add_system(
             System::new(Stage::Boundary, "wall_pressure", WallState { gravity, beside: Vec::new() })
-                .on_phases([walls])
+                .on_phases(walls)
                 .reads::<Velocity>()
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );
-        add_force(sim, groups, walls, "fluid_force_on_walls", gravity);
+    }
+    if let Some(walls) = walls {
+        add_force(sim, groups, walls, "fluid_force_on_walls", Some(gravity));
+    }
+    if let Some(solids) = solids {
+        add_force(sim, groups, solids, "fluid_force_on_solids", None);
     }
     Ok(())
 }
@@ -147,7 +172,7 @@ fn add_force(
     groups: &[Group],
     phase: PhaseId,
     label: &'static str,
-    gravity: DVec3,
+    gravity: Option<DVec3>,
 ) {
     let of_phase = groups.iter().filter(|group| group.phase == phase);
     let terms = |group: &Group| BodyTerms {
@@ -156,15 +181,21 @@ fn add_force(
         forces: Vec::new(),
     };
     let parts = Arc::new(Mutex::new(of_phase.map(terms).collect()));
-    let force = FlowForce { phase, gravity: Some(gravity), parts: Arc::clone(&parts) };
-    sim.add_system(
-        System::new(Stage::Rates, label, force)
-            .on_phases([phase])
-            .reads::<Mass>()
-            .reads::<Removed>()
-            .writes::<Force>(),
-    );
+    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts) };
+    let system =
+        System::new(Stage::Rates, label, force).on_phases([phase]).reads::<Mass>().reads::<Removed>();
+    // Solids have got their weight with their internal force.
+    sim.add_system(match gravity {
+        Some(_) => system.writes::<Force>(),
+        None => system.after(INTERNAL_FORCE).adds::<Force>(),
+    });
     add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
+}
+
+/// The bodies that a fluid moves.
+fn solids(sim: &SimBuilder<'_>) -> Vec<BodyId> {
+    let moved = sim.bodies().iter().filter(|body| body.formulation == TotalLagrangian::NAME);
+    moved.map(|body| body.id).collect()
 }
 
 fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {

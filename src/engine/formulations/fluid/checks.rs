@@ -36,6 +36,18 @@ pub(super) fn walls_have_fluid(
     Ok(())
 }
 
+/// An error where a body is coarser than the fluid that it bounds.
+pub(super) fn is_fine(body: &BodyPlan, spacing: f64) -> Result<(), SetupError> {
+    if body.spacing <= spacing * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    let message = format!(
+        "the particles of `{}` are {} m apart, farther than those of the fluid, {spacing} m",
+        body.name, body.spacing
+    );
+    Err(fault(body, "spacing", message, "give the body the spacing of the fluid, or a smaller one"))
+}
+
 /// An error where a wall is so coarse or so thin that the fluid would see through it.
 pub(super) fn wall_is_thick(
     body: &BodyPlan,
@@ -43,18 +55,7 @@ pub(super) fn wall_is_thick(
     support: f64,
     periodic: &Periodic,
 ) -> Result<(), SetupError> {
-    if body.spacing > spacing * (1.0 + 1e-9) {
-        let message = format!(
-            "the particles of wall `{}` are {} m apart, farther than those of the fluid, {spacing} m",
-            body.name, body.spacing
-        );
-        return Err(fault(
-            body,
-            "spacing",
-            message,
-            "give the wall the spacing of the fluid, or a smaller one",
-        ));
-    }
+    is_fine(body, spacing)?;
     let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
     let list = NeighborList::reference(Cloud::uniform(&positions, support), periodic)
         .map_err(|error| SetupError::internal(&error))?;
@@ -80,7 +81,7 @@ pub(super) fn wall_is_thick(
     let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
-        "wall `{}` is {:.0} layers of particles thick at {at}: a fluid of support {support} m sees through it",
+        "`{}` is {:.0} layers of particles thick at {at}: a fluid of support {support} m sees through it",
         body.name,
         least / body.spacing
     );

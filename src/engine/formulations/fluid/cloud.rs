@@ -45,6 +45,8 @@ pub struct Surface {
     pub suction: bool,
     /// Velocity of the surface beside that of the particles, m/s.
     pub velocity: DVec3,
+    /// Whether it is that of a body which the fluid moves.
+    pub moved: bool,
 }
 
 /// The particles of one body.
@@ -155,12 +157,15 @@ impl FlowCloud {
                     }
                 });
             } else {
-                let volume = view.read::<ReferenceVolume>()?;
-                let slices = (records, x, v, &volume[group.rows.clone()]);
-                type Rows<'a> = (&'a mut [Record], &'a [DVec3], &'a [Velocity], &'a [ReferenceVolume]);
-                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, volume): Rows<'_>| {
+                let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
+                let rows = group.rows.clone();
+                let slices = (records, x, v, &volume[rows.clone()], &removed[rows]);
+                type Rows<'a> =
+                    (&'a mut [Record], &'a [DVec3], &'a [Velocity], &'a [ReferenceVolume], &'a [Removed]);
+                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, volume, removed): Rows<'_>| {
                     for (k, out) in out.iter_mut().enumerate() {
-                        out.place = Lanes4::new(x[k], volume[k].0);
+                        let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
+                        out.place = Lanes4::new(x[k], volume);
                         out.motion = Lanes4::new(v[k].0, 0.0);
                     }
                 });

@@ -162,6 +162,36 @@ fn momentum_is_kept_in_a_periodic_box() {
 }
 
 #[test]
+fn momentum_and_energy_of_a_fluid_with_a_solid_in_it_are_kept() {
+    let text = r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
+        materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 2.0),
+                    "rubber": NeoHookean(density: 1200.0, young: 4.0e5, poisson: 0.3)},
+        bodies: [
+            (name: "water", material: "water", spacing: 0.04, formulation: Fluid,
+             shape: Difference(Box(min: (0, 0), max: (1, 1)), Box(min: (0.4, 0.4), max: (0.64, 0.64)))),
+            (name: "block", material: "rubber", spacing: 0.04, formulation: TotalLagrangian,
+             shape: Box(min: (0.4, 0.4), max: (0.64, 0.64))),
+        ],
+        conditions: [InitialVelocity(on: Select(body: "water"), value: ("sin(2*pi*y)", "0.3")),
+                     InitialVelocity(on: Select(body: "block"), value: ("-0.5", "0.5"))],
+        time: (end: 1.0))"#;
+    let mut sim = simulation(text);
+    let momentum = |sim: &Simulation| -> DVec3 {
+        let sum = |body| {
+            let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+            m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum::<DVec3>()
+        };
+        sum(0) + sum(1)
+    };
+    sim.start().expect("a start");
+    let before = momentum(&sim);
+    sim.run(|sim| sim.clock().time < 0.2).expect("a run");
+    assert!((momentum(&sim) - before).length() < 1e-10 * 500.0, "{before} {}", momentum(&sim));
+    assert!(sim.ledger().total_named("strain") > 0.0);
+    assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+}
+
+#[test]
 fn a_dam_break_keeps_its_energy_in_the_books() {
     let mut sim = simulation(&dam(2, "slip: No"));
     sim.run(|sim| sim.clock().time < 0.4).expect("a run");

@@ -28,6 +28,12 @@ impl Run for WallState {
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
+            let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
+            if surface.moved {
+                let rows = (&mut records[group.cloud.clone()], beside);
+                for_each_block(rows, &mut Vec::new(), &|_, rows| apply_to_solid(surface, self.gravity, rows));
+                continue;
+            }
             let view = step.world.phase(group.phase);
             let mut pressure = view.write::<Pressure>()?;
             let mut previous = view.write::<PreviousVelocity>()?;
@@ -38,7 +44,7 @@ impl Run for WallState {
                 &mut pressure[rows.clone()],
                 &mut previous[rows.clone()],
                 &velocity[rows],
-                &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid],
+                beside,
             );
             let (gravity, dt) = (self.gravity, step.clock.dt);
             for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
@@ -65,6 +71,20 @@ fn apply(
         pressure[k] = Pressure(p);
         // Halfway between this velocity and that of the fluid lies the velocity of the surface.
         let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
+        record.motion = Lanes4::new(seen, p);
+    }
+}
+
+/// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a mass that is added
+/// explicitly, and a light body would not stand it. What that lacks falls with the spacing.
+fn apply_to_solid(surface: &Surface, gravity: DVec3, (records, beside): (&mut [Record], &[Beside])) {
+    for (record, fluid) in records.iter_mut().zip(beside) {
+        let v = record.velocity();
+        let mut p = fluid.pressure - gravity.dot(fluid.moment);
+        if !surface.suction {
+            p = p.max(0.0);
+        }
+        let seen = if surface.no_slip { v - fluid.velocity } else { v };
         record.motion = Lanes4::new(seen, p);
     }
 }

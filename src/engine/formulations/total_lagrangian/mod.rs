@@ -24,7 +24,7 @@ mod support;
 
 pub use bond_terms::{BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
-pub use formulation::TotalLagrangian;
+pub use formulation::{INTERNAL_FORCE, TotalLagrangian};
 pub use images::Images;
 pub(crate) use images::MirrorPlane;
 pub use rows::{PairStress, PairStressRows, Site};
