@@ -32,7 +32,7 @@ macro_rules! templates {
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: [Template; 13] = templates![
+const TEMPLATES: [Template; 14] = templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
@@ -44,6 +44,7 @@ const TEMPLATES: [Template; 13] = templates![
     "twisting_column",
     "dam_break",
     "dam_break_3d",
+    "dam_break_obstacle",
     "sloshing",
     "taylor_green",
 ];

@@ -5,8 +5,8 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bending_column, cantilever, cantilever_large, cook_membrane, invariants, kernels, laws, neighbor_lists,
-    oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
+    bending_column, cantilever, cantilever_large, cook_membrane, elliptic_drop, hydrostatic_tank, invariants,
+    kernels, laminar_flows, laws, neighbor_lists, oscillating_plate, patch, rubber_pull, turek_hron, twisting_column,
 };
 
 /// A case with a known answer.
@@ -42,4 +42,7 @@ pub const CASES: &[Case] = &[
     cook_membrane::CASE,
     bending_column::CASE,
     twisting_column::CASE,
+    hydrostatic_tank::CASE,
+    laminar_flows::CASE,
+    elliptic_drop::CASE,
 ];
