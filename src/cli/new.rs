@@ -49,6 +49,7 @@ const TEMPLATES: &[Template] = &templates![
     "brittle_bar",
     "dam_break",
     "dam_break_3d",
+    "dam_break_obstacle",
     "sloshing",
     "taylor_green",
 ];

@@ -65,7 +65,7 @@ pub fn removal() -> Source {
     Source::new("removal.ron", text)
 }
 
-/// A breaking dam between walls, one of which moves, with drops that leave the domain.
+/// A breaking dam between walls that move, with drops that leave the domain; in two dimensions with a rubber plate in its way.
 pub fn flow(dimension: usize) -> Source {
     let (name, water, outer, inner, spacing) = if dimension == 2 {
         ("Two", "(0, 0), max: (0.4, 0.4)", "(-0.1, -0.1), max: (0.7, 0.5)", "(0, 0), max: (0.6, 1)", 0.02)
@@ -78,16 +78,27 @@ pub fn flow(dimension: usize) -> Source {
             0.05,
         )
     };
+    let (plate, clamp) = if dimension == 2 {
+        (
+            r#"(name: "plate", material: "rubber", shape: Box(min: (0.5, 0.0), max: (0.56, 0.2)), spacing: 0.02,
+                formulation: TotalLagrangian, plugins: [hourglass_control()]),"#,
+            r#"Fix(on: Select(body: "plate", face: MinY)),"#,
+        )
+    } else {
+        ("", "")
+    };
     let text = format!(
         r#"(dimension: {name}, gravity: (0.0, -9.81), domain: (min: (-0.2, -0.2, -0.2), max: (0.72, 0.55, 0.6), outside: Remove),
-            materials: {{"water": Fluid(density: 1000.0, viscosity: 0.5, eos: Tait(gamma: 7.0))}},
+            materials: {{"water": Fluid(density: 1000.0, viscosity: 0.5, eos: Tait(gamma: 7.0)),
+                         "rubber": NeoHookean(density: 1100, young: 1e5, poisson: 0.3)}},
             bodies: [
                 (name: "water", material: "water", shape: Box(min: {water}), spacing: {spacing:?}, formulation: Fluid,
-                 velocity: (1.0, 1.0)),
+                 velocity: (1.0, 1.0), plugins: [density_diffusion(), particle_shifting()]),
+                {plate}
                 (name: "tank", material: "wall", shape: Difference(Box(min: {outer}), Box(min: {inner})),
                  spacing: {spacing:?}, formulation: Wall(slip: No)),
             ],
-            conditions: [Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None))],
+            conditions: [{clamp} Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None))],
             plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
             time: (end: 10.0))"#
     );

@@ -5,10 +5,10 @@ use meshless_engine::plugin::Registry;
 
 use super::check::Check;
 use super::{
-    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, hertz, incline, invariants,
-    jaumann_shear, johnson_cook, kernels, laws, neighbor_lists, oscillating_plate, patch, punch, rebound,
-    restitution, rubber_pull, taylor_bars, taylor_plane, tensile_failure, turek_hron, twisting_column,
-    uniaxial_strain,
+    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, elliptic_drop, hertz,
+    hydrostatic_tank, incline, invariants, jaumann_shear, johnson_cook, kernels, laminar_flows, laws,
+    neighbor_lists, oscillating_plate, patch, punch, rebound, restitution, rubber_pull, taylor_bars,
+    taylor_plane, tensile_failure, turek_hron, twisting_column, uniaxial_strain,
 };
 
 /// A case with a known answer.
@@ -58,4 +58,7 @@ pub const CASES: &[Case] = &[
     incline::CASE,
     restitution::CASE,
     rebound::CASE,
+    hydrostatic_tank::CASE,
+    laminar_flows::CASE,
+    elliptic_drop::CASE,
 ];

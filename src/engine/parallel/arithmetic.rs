@@ -22,9 +22,6 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// `a b + c`, lane by lane.
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
 
-    /// `a / b`, lane by lane.
-    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
     /// Square root, lane by lane.
     fn sqrt(self, a: Lanes4) -> Lanes4;
 
@@ -81,11 +78,6 @@ impl Arithmetic for Portable {
             self.mul_add(a.0[2], b.0[2], c.0[2]),
             self.mul_add(a.0[3], b.0[3], c.0[3]),
         ])
-    }
-
-    #[inline(always)]
-    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
-        Lanes4([a.0[0] / b.0[0], a.0[1] / b.0[1], a.0[2] / b.0[2], a.0[3] / b.0[3]])
     }
 
     #[inline(always)]
@@ -147,11 +139,6 @@ mod v3 {
         #[inline(always)]
         fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
-        }
-
-        #[inline(always)]
-        fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
-            cast::<f64x4, Lanes4>(self.div_f64x4(cast(a), cast(b)))
         }
 
         #[inline(always)]

@@ -1,7 +1,8 @@
 //! Second pass over pairs: the force of pressure and viscosity.
 //!
-//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 2 mu_ij w_ij r^2 / (r^2 + 0.01 h^2) v_ij`, with the harmonic mean
-//! mu_ij of the two viscosities (Morris, Fox, Zhu 1997, eq. 22). Swapping i and j turns the sign of every product.
+//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 2 mu_ij w_ij v_ij`, with the harmonic mean mu_ij of the two
+//! viscosities. Swapping i and j turns the sign of every product. The friction is that of Morris, Fox, Zhu 1997, eq. 22, without their
+//! softening r^2 / (r^2 + 0.01 h^2): a finite w_ij needs none, and it takes some 2 % from the viscosity.
 //!
 //! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
 //! that of a compressed fluid, so its work is booked by itself.
@@ -13,8 +14,6 @@ use super::record::{Four, Record, dot, padded, sums};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::world::Force;
 
-/// Softening of the viscous pair force over h^2.
-const SOFTENING: f64 = 0.01;
 /// Forces that are kept apart: viscous, and of the pressure of boundaries.
 pub(super) const PARTS: usize = 2;
 
@@ -72,7 +71,7 @@ struct Sums<const D: usize> {
     gradient: [Lanes4; D],
     /// sum V_j p_j w x_ij.
     pressure: [Lanes4; D],
-    /// sum V_j 2 mu w r^2 / (r^2 + eta^2) v_ij.
+    /// sum V_j 2 mu w v_ij.
     viscous: [Lanes4; D],
 }
 
@@ -160,8 +159,6 @@ impl PairForce<'_> {
         viscosity: f64,
     ) -> Sums<D> {
         let FlowCloud { records, kernel, periods, .. } = self.cloud;
-        let h = kernel.smoothing_length();
-        let softening = Lanes4::splat(SOFTENING * h * h);
         let zero = [Lanes4::default(); D];
         let mut sum = Sums { gradient: zero, pressure: zero, viscous: zero };
         for chunk in row.chunks(4) {
@@ -174,8 +171,7 @@ impl PairForce<'_> {
                 sum.pressure[axis] = a.times_add(pressure, four.x[axis], sum.pressure[axis]);
             }
             if VISCOUS {
-                let share = a.over(square, a.plus(square, softening));
-                let friction = a.scale(viscosity, a.times(weight, share));
+                let friction = a.scale(viscosity, weight);
                 for axis in 0..D {
                     sum.viscous[axis] = a.times_add(friction, four.v[axis], sum.viscous[axis]);
                 }

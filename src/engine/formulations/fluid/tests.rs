@@ -105,7 +105,7 @@ fn pair_force(a: &Particle, b: &Particle, viscosity: f64, kernel: &Kernel, h: f6
     }
     let gradient = -kernel.dw_dr(r, h) * x / r;
     let pressure = -(a.p + b.p) * gradient;
-    let friction = 2.0 * viscosity * gradient.dot(x) / (r * r + 0.01 * h * h) * (b.seen - a.seen);
+    let friction = 2.0 * viscosity * gradient.dot(x) / (r * r) * (b.seen - a.seen);
     a.volume * b.volume * (pressure + friction)
 }
 
