@@ -14,6 +14,8 @@ pub const WIDTH: u32 = 512;
 const HEIGHT: u32 = 18;
 /// Where the values are.
 const TEXT_AT: f32 = 24.0;
+/// Colour of the values: it can be read on the dark and on the light background of the viewer.
+const LABEL: [u8; 3] = [130, 136, 148];
 /// The part of the plane that the view of the bar shows, x and y.
 pub const VISIBLE: [[f64; 2]; 2] = [[-40.0, WIDTH as f64 + 40.0], [-9.0, 58.0]];
 
@@ -57,7 +59,7 @@ impl Legend {
         let points = Points2D::new(at)
             .with_labels(labels)
             .with_show_labels(true)
-            .with_colors([Color::from_rgb(225, 225, 225)])
+            .with_colors([Color::from_rgb(LABEL[0], LABEL[1], LABEL[2])])
             .with_radii([0.01f32]);
         output.log(&part("values"), &points)
     }

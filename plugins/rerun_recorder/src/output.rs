@@ -8,7 +8,8 @@ use meshless_engine::record::{Existing, WriteError};
 use rerun::external::{re_log_types, re_uri};
 use rerun::sink::{FileSink, GrpcSink, GrpcSinkConnectionState};
 use rerun::{
-    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, TimeCell,
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, Scalars,
+    TimeCell, TimeColumn,
 };
 
 use crate::error::RerunError;
@@ -26,6 +27,17 @@ const PATIENCE: Duration = Duration::from_secs(5);
 pub struct Output {
     file: RecordingStream,
     viewer: Option<RecordingStream>,
+}
+
+/// A value of a time series.
+#[derive(Clone, Copy, Debug)]
+pub struct TimedValue {
+    /// Step.
+    pub step: u64,
+    /// Time, s.
+    pub time: f64,
+    /// Value.
+    pub value: f64,
 }
 
 impl Output {
@@ -70,8 +82,22 @@ impl Output {
     pub fn set_time(&self, step: u64, time: f64) {
         for stream in self.streams() {
             stream.set_time_sequence("step", i64::try_from(step).unwrap_or(i64::MAX));
-            stream.set_time(TIMELINE, TimeCell::from_duration_nanos((time * 1e9).round() as i64));
+            stream.set_time(TIMELINE, TimeCell::from_duration_nanos(nanoseconds(time)));
         }
+    }
+
+    /// Sends the values of a time series in one piece.
+    pub fn send_series(&self, path: &EntityPath, values: &[TimedValue]) -> Result<(), RerunError> {
+        for stream in self.streams() {
+            let steps = values.iter().map(|value| i64::try_from(value.step).unwrap_or(i64::MAX));
+            let times = values.iter().map(|value| nanoseconds(value.time));
+            let indexes =
+                [TimeColumn::new_sequence("step", steps), TimeColumn::new_duration_nanos(TIMELINE, times)];
+            let scalars = Scalars::new(values.iter().map(|value| value.value));
+            let columns = scalars.columns_of_unit_batches().map_err(RecordingStreamError::from)?;
+            stream.send_columns(path.clone(), indexes, columns)?;
+        }
+        Ok(())
     }
 
     /// Logs at the time that is set.
@@ -111,6 +137,10 @@ impl Output {
         }
         Ok(self.file.flush_blocking()?)
     }
+}
+
+fn nanoseconds(time: f64) -> i64 {
+    (time * 1e9).round() as i64
 }
 
 /// The address in the form that rerun knows; `127.0.0.1:9876` will do.

@@ -200,17 +200,18 @@ impl Recorder for RerunFile {
 
     fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError> {
         let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
-        open.output.set_time(step, time);
-        Ok(open.series.log(&open.output, samples)?)
+        Ok(open.series.take(&open.output, (step, time), samples)?)
     }
 
     fn flush(&mut self) -> Result<(), RecordError> {
-        let open = self.open.as_ref().ok_or(RerunError::NotOpen)?;
+        let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
+        open.series.send(&open.output)?;
         Ok(open.output.flush()?)
     }
 
     fn finish(&mut self, warnings: &[String]) -> Result<(), RecordError> {
         let mut open = self.open.take().ok_or(RerunError::NotOpen)?;
+        open.series.send(&open.output).map_err(RecordError::from)?;
         open.output.log_static(&paths::notes(), &open.notes.document(warnings)).map_err(RecordError::from)?;
         // In the file the camera now has in view where the particles went; a viewer that is watching keeps its own.
         if open.in_view.is_some_and(|seen| seen != open.bounds) {

@@ -1,15 +1,15 @@
 //! Time series: which plot each is drawn in, and its name and colour there.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use rerun::components::{Color, Name, StrokeWidth};
-use rerun::{EntityPath, Scalars, SeriesLines};
+use rerun::{EntityPath, SeriesLines};
 
 use meshless_engine::record::Sample;
 use meshless_engine::scene::Dimension;
 
 use crate::error::RerunError;
-use crate::output::Output;
+use crate::output::{Output, TimedValue};
 use crate::paths;
 
 /// A plot of time series.
@@ -29,8 +29,12 @@ pub struct SeriesTable {
     bodies: Vec<String>,
     dimension: Dimension,
     known: Vec<(String, String)>,
-    styled: BTreeSet<String>,
+    /// What has come since the last time that it was sent, series by series: one piece costs little more than one value.
+    pending: BTreeMap<String, Vec<TimedValue>>,
 }
+
+/// Values of a series that are held back at most.
+const MOST_PENDING: usize = 1000;
 
 /// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008).
 const COLORS: [[u8; 3]; 7] = [
@@ -46,21 +50,39 @@ const COLORS: [[u8; 3]; 7] = [
 impl SeriesTable {
     /// The series known at the start, with their units, of a run with these bodies.
     pub fn new(bodies: Vec<String>, dimension: Dimension, known: Vec<(String, String)>) -> Self {
-        Self { bodies, dimension, known, styled: BTreeSet::new() }
+        Self { bodies, dimension, known, pending: BTreeMap::new() }
     }
 
-    /// Logs values at the time that is set.
-    pub fn log(&mut self, output: &Output, samples: &[Sample<'_>]) -> Result<(), RerunError> {
+    /// Takes values of a step and time, s, to be sent with the others of their series.
+    pub fn take(
+        &mut self,
+        output: &Output,
+        (step, time): (u64, f64),
+        samples: &[Sample<'_>],
+    ) -> Result<(), RerunError> {
+        let mut most = 0;
         for sample in samples {
-            let path = paths::series(sample.name);
-            if self.styled.insert(sample.name.to_owned()) {
-                let known = self.known.iter().any(|(name, _)| name == sample.name);
-                if !known {
-                    self.known.push((sample.name.to_owned(), sample.unit.to_owned()));
-                }
-                output.log_static(&path, &self.style(sample.name))?;
+            let value = TimedValue { step, time, value: sample.value };
+            if let Some(values) = self.pending.get_mut(sample.name) {
+                values.push(value);
+                most = most.max(values.len());
+                continue;
             }
-            output.log(&path, &Scalars::single(sample.value))?;
+            let known = self.known.iter().any(|(name, _)| name == sample.name);
+            if !known {
+                self.known.push((sample.name.to_owned(), sample.unit.to_owned()));
+            }
+            output.log_static(&paths::series(sample.name), &self.style(sample.name))?;
+            self.pending.insert(sample.name.to_owned(), vec![value]);
+        }
+        if most < MOST_PENDING { Ok(()) } else { self.send(output) }
+    }
+
+    /// Sends what has been taken.
+    pub fn send(&mut self, output: &Output) -> Result<(), RerunError> {
+        for (name, values) in self.pending.iter_mut().filter(|(_, values)| !values.is_empty()) {
+            output.send_series(&paths::series(name), values)?;
+            values.clear();
         }
         Ok(())
     }
