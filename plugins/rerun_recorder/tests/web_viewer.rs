@@ -2,6 +2,7 @@
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
+use std::time::Duration;
 
 use rerun_recorder::{WebViewer, WebViewerError};
 
@@ -41,7 +42,12 @@ fn page_viewer_and_recording_come_over_http_until_the_end() {
     assert!(get(address, "/../two.rrd").0.starts_with("HTTP/1.0 404"));
 
     drop(viewer);
-    assert!(TcpStream::connect(address).is_err(), "the port is free again");
+    // The thread of the server that accepts connections ends a moment later.
+    let closed = (0..500).any(|_| {
+        std::thread::sleep(Duration::from_millis(20));
+        TcpStream::connect(address).is_err()
+    });
+    assert!(closed, "the port is not free again");
 }
 
 #[test]
