@@ -1,7 +1,7 @@
 //! What programs that add to `meshless` or build scenes in Rust use most: `use meshless::prelude::*;`.
 
 pub use meshless_engine::column;
-pub use meshless_engine::formulations::total_lagrangian::{BondRows, BondTerm};
+pub use meshless_engine::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
 pub use meshless_engine::glam::{DMat3, DVec3};
 pub use meshless_engine::materials::{
     ElasticConstants, Hyperelastic, Material, MaterialModel, ParameterError,

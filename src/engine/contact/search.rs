@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::memory::PairKey;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::shapes::Aabb;
 use crate::world::Position;
 
@@ -141,7 +141,7 @@ impl Search {
 
 /// The box around particles.
 fn around(position: &[Position]) -> Aabb {
-    let bounds = for_each_block(position, &mut Vec::new(), &|_, rows: &[Position]| {
+    let bounds = sum_over_blocks(position, &|_, rows: &[Position]| {
         rows.iter().fold(Bounds::default(), |bounds, x| Bounds(bounds.0.min(x.0), bounds.1.max(x.0)))
     });
     Aabb { min: bounds.0, max: bounds.1 }

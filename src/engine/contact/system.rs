@@ -5,7 +5,7 @@ use super::particles::ParticleContact;
 use super::start;
 use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
@@ -101,7 +101,7 @@ fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {
     }
     let (view, rows) = step.world.body_view(body);
     let velocity = view.read::<Velocity>()?;
-    let squared = for_each_block(&velocity[rows], &mut Vec::new(), &|_, rows: &[Velocity]| {
+    let squared = sum_over_blocks(&velocity[rows], &|_, rows: &[Velocity]| {
         Largest(rows.iter().map(|v| v.0.length_squared()).fold(0.0, f64::max))
     });
     Ok(squared.0.sqrt())

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::parallel::for_each_block;
+use crate::parallel::sum_over_blocks;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Position, Removed};
 
@@ -23,7 +23,7 @@ pub fn displace(
     let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
     let slices = (&mut position[rows.clone()], moves, &mass[rows.clone()], &removed[rows]);
     type Rows<'a> = (&'a mut [Position], &'a [DVec3], &'a [Mass], &'a [Removed]);
-    let work = for_each_block(slices, &mut Vec::new(), &|_, (x, moves, m, removed): Rows<'_>| {
+    let work = sum_over_blocks(slices, &|_, (x, moves, m, removed): Rows<'_>| {
         let mut work = 0.0;
         for k in (0..x.len()).filter(|&k| removed[k] == Removed::NO) {
             x[k].0 += moves[k];
