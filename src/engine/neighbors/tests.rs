@@ -160,14 +160,12 @@ fn degenerate_clouds() {
     assert_eq!(list.counts().collect::<Vec<_>>(), [0, 0, 1, 1]);
 }
 
-/// A diagonal wire in a box of 10^17 cells: work must stay in proportion to the particles.
+/// A diagonal wire in a box of 10^17 cells: were work and memory in proportion to those, this would not end.
 #[test]
 fn a_long_wire_is_as_cheap_as_a_block() {
     let count = 1_000_000;
     let wire: Vec<DVec3> = (0..count).map(|i| DVec3::splat(0.5 * i as f64)).collect();
-    let start = std::time::Instant::now();
     let list = NeighborList::reference(Cloud::uniform(&wire, 1.0), &Periodic::NONE).unwrap();
-    assert!(start.elapsed().as_secs_f64() < 5.0);
     assert_eq!(list.pairs(), 2 * (count - 1));
 }
 
