@@ -75,6 +75,8 @@ impl PairTerm for Friction {
     type ReadI = (Velocity,);
     type ReadJ = (Velocity,);
 
+    const READS_KERNEL: bool = false;
+
     #[inline]
     fn pair(&self, pair: &Pair, (v_i,): &Self::ReadI, (v_j,): &Self::ReadJ, rates: &mut Rates) {
         let h = pair.smoothing_length();

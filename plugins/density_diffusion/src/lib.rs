@@ -83,6 +83,7 @@ impl PairTerm for Molteni {
     type ReadI = (Density,);
     type ReadJ = (Density,);
     const CHANGES_DENSITY: bool = true;
+    const READS_KERNEL: bool = false;
 
     #[inline]
     fn pair(&self, pair: &Pair, (rho_i,): &Self::ReadI, (rho_j,): &Self::ReadJ, rates: &mut Rates) {
@@ -101,6 +102,7 @@ impl PairTerm for Antuono {
     type ReadI = (Density, DensityGradient);
     type ReadJ = (Density, DensityGradient);
     const CHANGES_DENSITY: bool = true;
+    const READS_KERNEL: bool = false;
 
     #[inline]
     fn pair(&self, pair: &Pair, (rho_i, g_i): &Self::ReadI, (rho_j, g_j): &Self::ReadJ, rates: &mut Rates) {

@@ -22,6 +22,8 @@ impl PairTerm for Viscous {
     type ReadI = (DeformationGradient, Velocity);
     type ReadJ = (DeformationGradient, Velocity);
 
+    const READS_KERNEL: bool = false;
+
     #[inline]
     fn pair(&self, pair: &Pair, (f_i, v_i): &Self::ReadI, (f_j, v_j): &Self::ReadJ, rates: &mut Rates) {
         let error = (f_i.0 + f_j.0) * pair.reference_x_ij * 0.5 - pair.x_ij;

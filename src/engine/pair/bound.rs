@@ -2,6 +2,7 @@
 
 use super::read::ReadSet;
 use super::term::{Pair, PairTerm, Rates};
+use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::schedule::Access;
 use crate::world::{MissingColumn, PhaseView};
 
@@ -19,12 +20,30 @@ struct Bound<'a, T: PairTerm> {
 
 impl<T: PairTerm> RowTerm for Bound<'_, T> {
     fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates) {
-        let i = T::ReadI::at(self.of_i, i);
-        for pair in pairs {
-            let j = T::ReadJ::at(self.of_j, pair.row_j as usize);
+        run_hot(Row { bound: self, i, pairs, rates });
+    }
+}
+
+/// The neighbours of one particle, with the pair function inlined.
+struct Row<'r, 'a, T: PairTerm> {
+    bound: &'r Bound<'a, T>,
+    i: usize,
+    pairs: &'r [Pair],
+    rates: &'r mut Rates,
+}
+
+impl<T: PairTerm> HotLoop for Row<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let Bound { term, of_i, of_j } = *self.bound;
+        let i = T::ReadI::at(of_i, self.i);
+        for pair in self.pairs {
+            let j = T::ReadJ::at(of_j, pair.row_j as usize);
             match pair.mirror {
-                None => self.term.pair(pair, &i, &j, rates),
-                Some(signs) => self.term.pair(pair, &i, &j.mirrored(signs), rates),
+                None => term.pair(pair, &i, &j, self.rates),
+                Some(signs) => term.pair(pair, &i, &j.mirrored(signs), self.rates),
             }
         }
     }
@@ -55,6 +74,8 @@ type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 pub(super) trait ErasedTerm: Send + Sync {
     /// Columns it reads.
     fn access(&self) -> Vec<Access>;
+    /// Whether it reads the kernel value of a pair.
+    fn reads_kernel(&self) -> bool;
     /// Whether it gives density rates.
     fn changes_density(&self) -> bool;
     /// Borrows the columns, adds the term to the chain and goes on with it.
@@ -71,6 +92,10 @@ impl<T: PairTerm> ErasedTerm for T {
         let mut access = T::ReadI::access();
         access.extend(T::ReadJ::access());
         access
+    }
+
+    fn reads_kernel(&self) -> bool {
+        T::READS_KERNEL
     }
 
     fn changes_density(&self) -> bool {

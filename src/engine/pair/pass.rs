@@ -28,8 +28,9 @@ thread_local! {
 
 /// The pairs of one body.
 pub trait PairRows: Sync {
-    /// Puts the pairs of row i into `pairs`, in the order of its neighbour list.
-    fn row(&self, i: usize, pairs: &mut Vec<Pair>);
+    /// Puts the pairs of row i into `pairs`, in the order of its neighbour list; with their kernel values where a term
+    /// reads them.
+    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>);
 }
 
 /// Where a formulation keeps its pairs.
@@ -164,6 +165,7 @@ impl<S: PairSource> Run for PairPass<S> {
             slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k]);
             let terms = &slots[..indices.len()];
             forces.resize(rows.len() * terms.len(), DVec3::ZERO);
+            let with_kernel = terms.iter().any(|term| term.reads_kernel());
             let mut fastest = Fastest::default();
             let sums = &mut self.sums;
             self.source.with_rows(step, *id, &mut |pairs| {
@@ -175,7 +177,7 @@ impl<S: PairSource> Run for PairPass<S> {
                         density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
                     };
                     fastest = for_each_block(written, sums, &|first, block| {
-                        run_block(chain, pairs, rows.start + first, block)
+                        run_block(chain, pairs, with_kernel, rows.start + first, block)
                     });
                 })?;
                 Ok(())
@@ -193,11 +195,17 @@ impl<S: PairSource> Run for PairPass<S> {
     }
 }
 
-fn run_block(chain: &Chain<'_>, pairs: &dyn PairRows, first: usize, block: ForceRows<'_>) -> Fastest {
+fn run_block(
+    chain: &Chain<'_>,
+    pairs: &dyn PairRows,
+    with_kernel: bool,
+    first: usize,
+    block: ForceRows<'_>,
+) -> Fastest {
     let mut fastest = Fastest::default();
     ROW.with_borrow_mut(|row| {
         for (k, total) in block.total.iter_mut().enumerate() {
-            pairs.row(first + k, row);
+            pairs.row(first + k, with_kernel, row);
             let mut rates = [Rates::default(); MAX_TERMS];
             let rates = &mut rates[..block.terms];
             chain.row(first + k, row, rates);

@@ -21,7 +21,7 @@ pub struct Pair {
     pub reference_distance: f64,
     /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, so that grad_i W = w_ij x_ij.
     pub weight: f64,
-    /// Kernel value W_ij.
+    /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the body reads it ([`PairTerm::READS_KERNEL`]).
     pub kernel: f64,
     /// Mean support radius of the two particles, m.
     pub support: f64,
@@ -62,6 +62,9 @@ pub trait PairTerm: Send + Sync + 'static {
     type ReadI: ReadSet;
     /// Columns it needs of j.
     type ReadJ: ReadSet;
+
+    /// Whether it reads [`Pair::kernel`]. A term that does not saves the kernel of every pair by saying so.
+    const READS_KERNEL: bool = true;
     /// Whether the term gives density rates.
     const CHANGES_DENSITY: bool = false;
 

@@ -27,7 +27,7 @@ struct BodyPairs<'a> {
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, pairs: &mut Vec<Pair>) {
+    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>) {
         let FlowCloud { records, kernel, pairs: lists, .. } = self.cloud;
         let Group { rows, cloud, .. } = self.group;
         let row_of = |j: usize| j - cloud.start + rows.start;
@@ -53,7 +53,7 @@ impl PairRows for BodyPairs<'_> {
                 reference_x_ij: x_ij,
                 reference_distance: distance,
                 weight: kernel.weight(distance),
-                kernel: kernel.value(distance),
+                kernel: if with_kernel { kernel.value(distance) } else { f64::NAN },
                 support: kernel.support,
                 volume_i: own.volume(),
                 volume_j: other.volume(),

@@ -38,7 +38,7 @@ struct BodyPairs<'a> {
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, pairs: &mut Vec<Pair>) {
+    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>) {
         let site = self.sites[i];
         let volume_i = site.reference.0[3];
         pairs.clear();
@@ -52,13 +52,18 @@ impl PairRows for BodyPairs<'_> {
             let x_ij = reference_x_ij + other.displacement.minus(site.displacement).xyz();
             let reference_distance = reference_x_ij.length();
             let support = 0.5 * (self.support[i].0 + self.support[j].0);
+            let kernel = if with_kernel {
+                self.kernel.w(reference_distance, self.kernel.smoothing_length(support))
+            } else {
+                f64::NAN
+            };
             Pair {
                 x_ij,
                 distance: x_ij.length(),
                 reference_x_ij,
                 reference_distance,
                 weight: f64::from(weight),
-                kernel: self.kernel.w(reference_distance, self.kernel.smoothing_length(support)),
+                kernel,
                 support,
                 volume_i,
                 volume_j: other.reference.0[3],
