@@ -1,34 +1,18 @@
 //! The displacement against a naive second implementation, and off as if it were not there.
 
+#[path = "../../../tests/common/periodic_flow.rs"]
+mod periodic_flow;
+
 use meshless_engine::glam::DVec3;
 use meshless_engine::kernels::{Kernel, KernelName};
-use meshless_engine::plugin::{Registry, build};
-use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, Column, Position};
+use meshless_engine::world::Position;
 use meshless_engine::world::{Density, Mass, Velocity};
+use periodic_flow::{VORTICES, column};
 
 fn simulation(plugins: &str, lattice: &str, velocity: &str) -> Simulation {
-    let text = format!(
-        r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
-            materials: {{"m": Fluid(density: 1.0, sound_speed: 10.0, viscosity: 0.01)}},
-            bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1, 1)), spacing: 0.05, lattice: {lattice},
-                      formulation: Fluid(pressure: "-0.2"), plugins: [{plugins}])],
-            conditions: [InitialVelocity(on: Select(), value: {velocity})],
-            time: (end: 1.0))"#
-    );
-    let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|error| panic!("{error}"));
-    let mut registry = Registry::standard();
-    xsph::register(&mut registry);
-    build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"))
+    periodic_flow::simulation(xsph::register, plugins, lattice, velocity)
 }
-
-fn column<C: Column + Copy>(sim: &Simulation) -> Vec<C> {
-    let (view, _) = sim.world().body_view(BodyId(0));
-    view.read::<C>().expect("a column").to_vec()
-}
-
-const VORTICES: &str = r#"("-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)")"#;
 
 #[test]
 fn particles_move_with_the_mean_velocity_around_them() {
