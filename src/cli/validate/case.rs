@@ -1,15 +1,9 @@
-//! What a case is, and the list of all cases.
+//! What a case is, and the one list of all cases.
 
 use anyhow::Result;
 use meshless_engine::plugin::Registry;
 
 use super::check::Check;
-use super::{
-    bar_impact, bending_column, cantilever, cantilever_large, cook_membrane, elliptic_drop, hertz,
-    hydrostatic_tank, incline, invariants, jaumann_shear, johnson_cook, kernels, laminar_flows, laws,
-    neighbor_lists, oscillating_plate, patch, punch, rebound, restitution, rubber_pull, taylor_bars,
-    taylor_plane, tensile_failure, turek_hron, twisting_column, uniaxial_strain,
-};
 
 /// A case with a known answer.
 pub struct Case {
@@ -25,40 +19,54 @@ pub struct Case {
     pub run: fn(&Registry, usize) -> Result<Vec<Check>>,
 }
 
-/// All cases.
-pub const CASES: &[Case] = &[
-    kernels::CASE,
-    invariants::AFFINE,
-    invariants::GRADIENT,
-    invariants::PAIR_TERM,
-    neighbor_lists::CASE,
-    invariants::THROWN,
-    laws::STRETCH,
-    laws::CONSISTENCY,
-    uniaxial_strain::CASE,
-    johnson_cook::CASE,
-    jaumann_shear::CASE,
-    patch::CASE,
-    cantilever::CASE,
-    cantilever_large::CASE,
-    rubber_pull::CASE,
-    taylor_plane::CASE,
-    tensile_failure::CASE,
-    oscillating_plate::CASE,
-    turek_hron::CASE,
-    cook_membrane::CASE,
-    bending_column::CASE,
-    twisting_column::CASE,
-    taylor_bars::COPPER,
-    taylor_bars::STEEL,
-    taylor_bars::ALUMINIUM,
-    punch::CASE,
-    bar_impact::CASE,
-    hertz::CASE,
-    incline::CASE,
-    restitution::CASE,
-    rebound::CASE,
-    hydrostatic_tank::CASE,
-    laminar_flows::CASE,
-    elliptic_drop::CASE,
-];
+/// Hands the list of all cases, `<id> <file>::<constant>;`, to the macro of that name: [`CASES`] and the tests are made of it.
+#[macro_export]
+macro_rules! for_each_case {
+    ($then:ident) => {
+        $then! {
+            K1 kernels::CASE;
+            K2 invariants::AFFINE;
+            K3 invariants::GRADIENT;
+            K4 invariants::PAIR_TERM;
+            K5 neighbor_lists::CASE;
+            K6 invariants::THROWN;
+            M1 laws::STRETCH;
+            M5 laws::CONSISTENCY;
+            M2 uniaxial_strain::CASE;
+            M3 johnson_cook::CASE;
+            M4 jaumann_shear::CASE;
+            S1 patch::CASE;
+            S2 cantilever::CASE;
+            S3 cantilever_large::CASE;
+            S5 rubber_pull::CASE;
+            S6 taylor_plane::CASE;
+            S7 tensile_failure::CASE;
+            S8 oscillating_plate::CASE;
+            S9 turek_hron::CASE;
+            S10 cook_membrane::CASE;
+            S11 bending_column::CASE;
+            S12 twisting_column::CASE;
+            S13 taylor_bars::COPPER;
+            S14 taylor_bars::STEEL;
+            S15 taylor_bars::ALUMINIUM;
+            S4 punch::CASE;
+            S22 bar_impact::CASE;
+            C1 hertz::CASE;
+            C2 incline::CASE;
+            C3 restitution::CASE;
+            C4 rebound::CASE;
+            F1 hydrostatic_tank::CASE;
+            F2 laminar_flows::CASE;
+            F3 elliptic_drop::CASE;
+        }
+    };
+}
+
+macro_rules! list {
+    ($($id:ident $file:ident::$case:ident;)*) => {
+        /// All cases.
+        pub const CASES: &[Case] = &[$(super::$file::$case),*];
+    };
+}
+
+for_each_case!(list);
