@@ -43,10 +43,17 @@ impl PairTerm for Dashpots {
     type ReadI = (Velocity,);
     type ReadJ = (Velocity,);
 
-    fn pair(&self, pair: &Pair, (v_i,): &Self::ReadI, (v_j,): &Self::ReadJ, rates: &mut Rates) {
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (v_i,): (Vector<A>,),
+        (v_j,): (Vector<A>,),
+        rates: &mut Rates<A>,
+    ) {
         let strength = self.factor * pair.volume_j * pair.weight;
-        let e = pair.x_ij / pair.distance.max(f64::MIN_POSITIVE);
-        rates.force += strength * pair.volume_i * (v_j.0 - v_i.0).dot(e) * e;
+        let e = pair.x_ij / pair.distance;
+        rates.force += e * (strength * pair.volume_i * (v_j - v_i).dot(e));
         rates.damping += strength / self.density;
     }
 }

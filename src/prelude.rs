@@ -7,6 +7,7 @@ pub use meshless_engine::materials::{
     ElasticConstants, Hyperelastic, Material, MaterialModel, ParameterError,
 };
 pub use meshless_engine::pair::{Pair, PairTerm, Rates};
+pub use meshless_engine::parallel::{Arithmetic, Matrix, Number, Vector};
 pub use meshless_engine::plugin::{
     BuildOptions, Formulation, Plugin, Registry, SetupError, SimBuilder, build, build_with,
 };

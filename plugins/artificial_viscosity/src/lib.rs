@@ -7,6 +7,7 @@
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Velocity};
 use schemars::JsonSchema;
@@ -77,22 +78,26 @@ impl PairTerm for Friction {
 
     const READS_KERNEL: bool = false;
 
-    #[inline]
-    fn pair(&self, pair: &Pair, (v_i,): &Self::ReadI, (v_j,): &Self::ReadJ, rates: &mut Rates) {
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (v_i,): (Vector<A>,),
+        (v_j,): (Vector<A>,),
+        rates: &mut Rates<A>,
+    ) {
         let h = pair.smoothing_length();
-        let approach = (v_j.0 - v_i.0).dot(pair.x_ij);
-        if (approach >= 0.0 && !self.parting) || pair.distance == 0.0 {
-            return;
-        }
-        let mu = h * approach / (pair.distance.powi(2) + 0.01 * h * h);
-        let slope = pair.weight * pair.reference_distance;
-        let strength = self.density * pair.volume_j * slope;
-        let push = mu.min(0.0);
-        let pressure = strength * (self.alpha * self.sound_speed * mu - self.beta * push * push);
-        rates.force += pair.x_ij * (pair.volume_i * pressure / pair.distance);
+        let approach = (v_j - v_i).dot(pair.x_ij);
+        let per_length = h / (pair.distance.squared() + 0.01 * h * h);
+        let push = approach.min(0.0) * per_length;
+        let mu = if self.parting { approach * per_length } else { push };
+        let slope = pair.volume_j * pair.weight * pair.reference_distance;
+        let linear = self.alpha * self.sound_speed;
+        let pressure = mu * linear - self.beta * push * push;
+        let strength = self.density * pair.volume_i * slope / pair.distance;
+        rates.force += pair.x_ij * (strength * pressure);
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
-        let per_speed = h * pair.distance / (pair.distance.powi(2) + 0.01 * h * h);
-        let slope_of_mu = self.alpha * self.sound_speed - 2.0 * self.beta * push;
-        rates.damping += pair.volume_j * slope * slope_of_mu * per_speed;
+        let damping = slope * (linear - 2.0 * self.beta * push) * (pair.distance * per_length);
+        rates.damping += if self.parting { damping } else { approach.if_below(0.0, damping) };
     }
 }

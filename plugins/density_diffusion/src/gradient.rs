@@ -1,9 +1,11 @@
 //! The renormalised gradient of the density: exact for a linear field, at a surface as well.
 
-use meshless_engine::correction::MomentMatrix;
-use meshless_engine::formulations::fluid::FlowCloud;
+use std::ops::Range;
+
+use meshless_engine::correction::FourMoments;
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Density};
@@ -31,32 +33,39 @@ struct Gradient {
 
 impl Run for Gradient {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let resources = step.resources;
-        let cloud = resources.get::<FlowCloud>();
-        let cloud: &FlowCloud = &cloud;
-        let dimension = step.world.dimension().count();
+        let cloud = step.resources.get::<FlowCloud>();
         for id in self.bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let density = view.read::<Density>()?;
-            let density: &[Density] = &density;
             let mut gradient = view.write::<DensityGradient>()?;
-            for_each_block(&mut gradient[rows.clone()], &mut Vec::new(), &|first, block: &mut [_]| {
-                for (k, gradient) in block.iter_mut().enumerate() {
-                    let i = rows.start + first + k;
-                    let mut moment = MomentMatrix::new(dimension);
-                    let mut sum = DVec3::ZERO;
-                    cloud.for_each_neighbor(i, |near| {
-                        if rows.contains(&near.row) {
-                            let weight = near.volume * near.weight;
-                            moment.add(weight, near.x_ij);
-                            sum += near.x_ij * (weight * (density[near.row].0 - density[i].0));
-                        }
-                    });
-                    *gradient =
-                        DensityGradient(moment.inverse().map_or(DVec3::ZERO, |inverse| inverse * sum));
-                }
-            });
+            let pass = GradientPass { cloud: &cloud, rows: rows.clone(), density: &density };
+            cloud.for_each_row(rows.start, &mut gradient[rows], &pass);
         }
         Ok(())
+    }
+}
+
+/// The pass over the particles of one body.
+struct GradientPass<'a> {
+    cloud: &'a FlowCloud,
+    rows: Range<usize>,
+    density: &'a [Density],
+}
+
+impl RowPass for GradientPass<'_> {
+    type Output = DensityGradient;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DensityGradient {
+        let own = self.density[i].0;
+        let mut moment = FourMoments::new(a);
+        let mut sum = Vector::zero(a);
+        for near in self.cloud.fours(a, i, &self.rows) {
+            let weight = near.volume * near.weight;
+            moment.add(weight, near.x_ij);
+            sum = near.x_ij.mul_add(weight * (near.number(|j| self.density[j].0) - own), sum);
+        }
+        let inverse = moment.sum().inverse();
+        DensityGradient(inverse.map_or(DVec3::ZERO, |inverse| inverse * sum.sum()))
     }
 }

@@ -7,6 +7,7 @@ mod gradient;
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::parallel::{Arithmetic, Number, Vector};
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Density};
 use schemars::JsonSchema;
@@ -85,10 +86,16 @@ impl PairTerm for Molteni {
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
 
-    #[inline]
-    fn pair(&self, pair: &Pair, (rho_i,): &Self::ReadI, (rho_j,): &Self::ReadJ, rates: &mut Rates) {
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (rho_i,): (Number<A>,),
+        (rho_j,): (Number<A>,),
+        rates: &mut Rates<A>,
+    ) {
         let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
-        rates.density += rate * (rho_j.0 - rho_i.0);
+        rates.density += rate * (rho_j - rho_i);
         rates.damping += LIMIT * rate;
     }
 }
@@ -104,10 +111,16 @@ impl PairTerm for Antuono {
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
 
-    #[inline]
-    fn pair(&self, pair: &Pair, (rho_i, g_i): &Self::ReadI, (rho_j, g_j): &Self::ReadJ, rates: &mut Rates) {
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (rho_i, g_i): (Number<A>, Vector<A>),
+        (rho_j, g_j): (Number<A>, Vector<A>),
+        rates: &mut Rates<A>,
+    ) {
         let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
-        rates.density += rate * (rho_j.0 - rho_i.0 - 0.5 * (g_i.0 + g_j.0).dot(pair.x_ij));
+        rates.density += rate * (rho_j - rho_i - 0.5 * (g_i + g_j).dot(pair.x_ij));
         rates.damping += LIMIT * rate;
     }
 }

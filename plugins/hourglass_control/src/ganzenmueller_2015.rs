@@ -5,6 +5,7 @@
 //! not the gradient of an energy: its work is booked as dissipated, and may be negative.
 
 use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::parallel::{Arithmetic, Matrix, Number};
 use meshless_engine::world::{DeformationGradient, HourglassModulus};
 
 /// The form of the paper for one body.
@@ -19,15 +20,21 @@ impl PairTerm for Ganzenmueller2015 {
     type ReadI = (DeformationGradient, HourglassModulus);
     type ReadJ = (DeformationGradient, HourglassModulus);
 
-    #[inline]
-    fn pair(&self, pair: &Pair, (f_i, e_i): &Self::ReadI, (f_j, e_j): &Self::ReadJ, rates: &mut Rates) {
-        let weight = 0.5 * self.alpha * pair.volume_j * pair.kernel / pair.reference_distance.powi(2);
-        rates.stiffness += weight * (e_i.0 + e_j.0) / self.density;
-        // A bond of no length has no direction; the variational form has no such gap.
-        if pair.distance > 0.0 {
-            let along = |f: &DeformationGradient| (f.0 * pair.reference_x_ij - pair.x_ij).dot(pair.x_ij);
-            let error = e_i.0 * along(f_i) + e_j.0 * along(f_j);
-            rates.force -= pair.x_ij * (weight * pair.volume_i * error / pair.distance.powi(2));
-        }
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (f_i, e_i): (Matrix<A>, Number<A>),
+        (f_j, e_j): (Matrix<A>, Number<A>),
+        rates: &mut Rates<A>,
+    ) {
+        let weight = 0.5 * self.alpha * pair.volume_j * pair.kernel / pair.reference_distance.squared();
+        rates.stiffness += weight * (e_i + e_j) / self.density;
+        let (image_i, image_j) = (f_i * pair.reference_x_ij, f_j * pair.reference_x_ij);
+        let along_i = (image_i - pair.x_ij).dot(pair.x_ij);
+        let along_j = (image_j - pair.x_ij).dot(pair.x_ij);
+        // A bond of no length has no direction, and no force; the variational form has no such gap.
+        let error = (e_i * along_i + e_j * along_j) / pair.distance.squared();
+        rates.force -= pair.x_ij * (weight * pair.volume_i * error);
     }
 }

@@ -6,6 +6,7 @@
 //! against the relative motion: momentum and angular momentum are kept, energy is only ever taken out.
 
 use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::parallel::{Arithmetic, Matrix, Vector};
 use meshless_engine::world::{DeformationGradient, Velocity};
 
 /// The viscous form for one body.
@@ -24,18 +25,23 @@ impl PairTerm for Viscous {
 
     const READS_KERNEL: bool = false;
 
-    #[inline]
-    fn pair(&self, pair: &Pair, (f_i, v_i): &Self::ReadI, (f_j, v_j): &Self::ReadJ, rates: &mut Rates) {
-        let error = (f_i.0 + f_j.0) * pair.reference_x_ij * 0.5 - pair.x_ij;
-        let moving = (v_j.0 - v_i.0).dot(pair.x_ij);
-        if moving * error.dot(pair.x_ij) >= 0.0 || pair.distance == 0.0 {
-            return;
-        }
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (f_i, v_i): (Matrix<A>, Vector<A>),
+        (f_j, v_j): (Matrix<A>, Vector<A>),
+        rates: &mut Rates<A>,
+    ) {
+        let error = (f_i + f_j) * pair.reference_x_ij * 0.5 - pair.x_ij;
+        let moving = (v_j - v_i).dot(pair.x_ij);
         let slope = pair.weight * pair.reference_distance;
-        let share = error.length() / pair.reference_distance;
+        let share = error.length_squared().sqrt() / pair.reference_distance;
         let strength = self.zeta * self.sound_speed * pair.smoothing_length() * share * slope * pair.volume_j;
-        let damping = strength / pair.distance;
-        rates.force += pair.x_ij * (self.density * pair.volume_i * damping * moving / pair.distance.powi(2));
+        let growing = moving * error.dot(pair.x_ij);
+        let damping = growing.if_below(0.0, strength / pair.distance);
+        rates.force +=
+            pair.x_ij * (self.density * pair.volume_i * damping * moving / pair.distance.squared());
         rates.damping += damping;
     }
 }

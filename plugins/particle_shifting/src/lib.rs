@@ -6,10 +6,10 @@
 
 mod surface;
 
-use meshless_engine::formulations::fluid::{FlowCloud, displace};
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodyId, BodySet, Mass, Position, Velocity};
@@ -66,8 +66,8 @@ impl Plugin for ParticleShifting {
 
 /// Largest displacement of a step over the spacing.
 const LARGEST: f64 = 0.05;
-/// Strength and power of the part that keeps close particles apart.
-const CLOSE: (f64, i32) = (0.2, 4);
+/// Strength of the part that keeps close particles apart, with the fourth power of their kernel.
+const CLOSE: f64 = 0.2;
 
 struct Shifting {
     strength: f64,
@@ -83,13 +83,8 @@ impl Run for Shifting {
         let resources = step.resources;
         let cloud = resources.get::<FlowCloud>();
         let cloud: &FlowCloud = &cloud;
-        let dimension = step.world.dimension().count();
         self.lambda.resize(cloud.fluid, 0.0);
-        for_each_block(&mut self.lambda[..], &mut Vec::new(), &|first, out: &mut [f64]| {
-            for (k, lambda) in out.iter_mut().enumerate() {
-                *lambda = surface::smallest_eigenvalue(cloud, first + k, dimension);
-            }
-        });
+        cloud.for_each_row(0, &mut self.lambda, &surface::SmallestEigenvalue(cloud));
         for id in self.bodies.clone().iter() {
             self.shift(step, cloud, id)?;
             displace(step, id, &self.moves, self.gravity, ParticleShifting::NAME)?;
@@ -105,29 +100,48 @@ impl Shifting {
         let velocity = view.read::<Velocity>()?;
         let fastest = velocity[rows.clone()].iter().map(|v| v.0.length_squared()).fold(0.0, f64::max).sqrt();
         let factor = -2.0 * self.strength * cloud.kernel.smoothing_length() * fastest * step.clock.dt;
-        let usual = 1.0 / cloud.kernel.value(spacing);
-        let lambda = &self.lambda;
         self.moves.resize(rows.len(), DVec3::ZERO);
-        for_each_block(&mut self.moves[..], &mut Vec::new(), &|first, moves: &mut [DVec3]| {
-            for (k, out) in moves.iter_mut().enumerate() {
-                let i = rows.start + first + k;
-                *out = DVec3::ZERO;
-                if lambda[i] < surface::AT_SURFACE {
-                    continue;
-                }
-                let mut sum = DVec3::ZERO;
-                cloud.for_each_neighbor(i, |near| {
-                    let close = 1.0 + CLOSE.0 * (near.kernel * usual).powi(CLOSE.1);
-                    sum += near.x_ij * (near.volume * near.weight * close);
-                });
-                let mut shift = sum * factor;
-                if lambda[i] < surface::INSIDE {
-                    let normal = surface::normal(cloud, lambda, i);
-                    shift -= normal * normal.dot(shift);
-                }
-                *out = shift.clamp_length_max(LARGEST * spacing);
-            }
-        });
+        let pass = Moves {
+            cloud,
+            lambda: &self.lambda,
+            factor,
+            usual: 1.0 / cloud.kernel.value(spacing),
+            largest: LARGEST * spacing,
+        };
+        cloud.for_each_row(rows.start, &mut self.moves, &pass);
         Ok(())
+    }
+}
+
+/// The displacements of the particles of one body.
+struct Moves<'a> {
+    cloud: &'a FlowCloud,
+    lambda: &'a [f64],
+    factor: f64,
+    /// One over the kernel at the spacing.
+    usual: f64,
+    /// Largest displacement, m.
+    largest: f64,
+}
+
+impl RowPass for Moves<'_> {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+        if self.lambda[i] < surface::AT_SURFACE {
+            return DVec3::ZERO;
+        }
+        let mut sum = Vector::zero(a);
+        for near in self.cloud.fours(a, i, &self.cloud.everything()) {
+            let close = 1.0 + CLOSE * (near.kernel * self.usual).squared().squared();
+            sum = near.x_ij.mul_add(near.volume * near.weight * close, sum);
+        }
+        let mut shift = sum.sum() * self.factor;
+        if self.lambda[i] < surface::INSIDE {
+            let normal = surface::normal(a, self.cloud, self.lambda, i);
+            shift -= normal * normal.dot(shift);
+        }
+        shift.clamp_length_max(self.largest)
     }
 }

@@ -4,10 +4,10 @@
 //! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
 //! no better than particles are evenly spread.
 
-use meshless_engine::formulations::fluid::{FLUID_FORCE, FlowCloud};
+use meshless_engine::correction::FourMoments;
+use meshless_engine::formulations::fluid::{FLUID_FORCE, FlowCloud, RowPass};
 use meshless_engine::glam::DVec3;
-use meshless_engine::linalg::Sym3;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Force, Pressure, Velocity};
@@ -35,7 +35,7 @@ impl Plugin for TensileControl {
         }
         let phases = sim.phases_of(&bodies);
         sim.add_system(
-            System::new(Stage::Rates, Self::NAME, Control { bodies, sums: Vec::new() })
+            System::new(Stage::Rates, Self::NAME, Control { bodies, changes: Vec::new() })
                 .on_phases(phases)
                 .after(FLUID_FORCE)
                 .reads::<Pressure>()
@@ -51,46 +51,61 @@ const INSIDE: f64 = 0.85;
 
 struct Control {
     bodies: BodySet,
-    sums: Vec<f64>,
+    changes: Vec<DVec3>,
 }
 
 impl Run for Control {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let resources = step.resources;
-        let cloud = resources.get::<FlowCloud>();
-        let cloud: &FlowCloud = &cloud;
-        let whole = step.world.dimension().count() as f64;
+        let cloud = step.resources.get::<FlowCloud>();
         let account = step.ledger.account(TensileControl::NAME, AccountKind::Dissipated);
         for id in self.bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let (pressure, velocity) = (view.read::<Pressure>()?, view.read::<Velocity>()?);
-            let (pressure, velocity): (&[Pressure], &[Velocity]) = (&pressure, &velocity);
             let mut force = view.write::<Force>()?;
-            let power =
-                for_each_block(&mut force[rows.clone()], &mut self.sums, &|first, block: &mut [Force]| {
-                    let mut power = 0.0;
-                    for (k, force) in block.iter_mut().enumerate() {
-                        let i = rows.start + first + k;
-                        let p = pressure[i].0;
-                        if p >= 0.0 {
-                            continue;
-                        }
-                        let (mut sum, mut moment) = (DVec3::ZERO, Sym3::ZERO);
-                        cloud.for_each_neighbor(i, |near| {
-                            let weight = near.volume * near.weight;
-                            sum += near.x_ij * weight;
-                            moment += Sym3::dyad(near.x_ij) * weight;
-                        });
-                        if moment.trace() > INSIDE * whole {
-                            let change = sum * (2.0 * p * cloud.volume(i));
-                            force.0 += change;
-                            power += change.dot(velocity[i].0);
-                        }
-                    }
-                    power
-                });
+            self.changes.resize(rows.len(), DVec3::ZERO);
+            cloud.for_each_row(
+                rows.start,
+                &mut self.changes,
+                &Changes { cloud: &cloud, pressure: &pressure },
+            );
+            let slices = (&mut force[rows.clone()], &velocity[rows], &self.changes[..]);
+            type Rows<'a> = (&'a mut [Force], &'a [Velocity], &'a [DVec3]);
+            let power = sum_over_blocks(slices, &|_, (force, velocity, changes): Rows<'_>| {
+                let mut power = 0.0;
+                for ((force, v), change) in force.iter_mut().zip(velocity).zip(changes) {
+                    force.0 += change;
+                    power += change.dot(v.0);
+                }
+                power
+            });
             step.ledger.add(account, id, -power * step.clock.dt);
         }
         Ok(())
+    }
+}
+
+/// What is added to the forces.
+struct Changes<'a> {
+    cloud: &'a FlowCloud,
+    pressure: &'a [Pressure],
+}
+
+impl RowPass for Changes<'_> {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+        let p = self.pressure[i].0;
+        if p >= 0.0 {
+            return DVec3::ZERO;
+        }
+        let (mut sum, mut moment) = (Vector::zero(a), FourMoments::new(a));
+        for near in self.cloud.fours(a, i, &self.cloud.everything()) {
+            let weight = near.volume * near.weight;
+            sum = near.x_ij.mul_add(weight, sum);
+            moment.add(weight, near.x_ij);
+        }
+        let inside = moment.sum().matrix().trace() > INSIDE * A::AXES as f64;
+        if inside { sum.sum() * (2.0 * p * self.cloud.volume(i)) } else { DVec3::ZERO }
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! `dx_i/dt = v_i + epsilon sum_j V_j W_ij v_ij` over the neighbours of the same body. Velocities and forces stay what they are.
 
-use meshless_engine::formulations::fluid::{FlowCloud, displace};
+use std::ops::Range;
+
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Mass, Position, Velocity};
@@ -76,21 +78,33 @@ impl Run for Smoothing {
             let (view, rows) = step.world.body_view(id);
             self.moves.resize(rows.len(), DVec3::ZERO);
             let velocity = view.read::<Velocity>()?;
-            let velocity: &[Velocity] = &velocity;
-            for_each_block(&mut self.moves[..], &mut Vec::new(), &|first, moves: &mut [DVec3]| {
-                for (k, out) in moves.iter_mut().enumerate() {
-                    let i = rows.start + first + k;
-                    let mut sum = DVec3::ZERO;
-                    cloud.for_each_neighbor(i, |near| {
-                        if rows.contains(&near.row) {
-                            sum += (velocity[near.row].0 - velocity[i].0) * (near.volume * near.kernel);
-                        }
-                    });
-                    *out = sum * factor;
-                }
-            });
+            let pass = Mean { cloud, rows: rows.clone(), velocity: &velocity, factor };
+            cloud.for_each_row(rows.start, &mut self.moves, &pass);
             displace(step, id, &self.moves, self.gravity, Xsph::NAME)?;
         }
         Ok(())
+    }
+}
+
+/// The pass over the particles of one body.
+struct Mean<'a> {
+    cloud: &'a FlowCloud,
+    rows: Range<usize>,
+    velocity: &'a [Velocity],
+    factor: f64,
+}
+
+impl RowPass for Mean<'_> {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+        let own = Vector::splat(a, self.velocity[i].0);
+        let mut sum = Vector::zero(a);
+        for near in self.cloud.fours(a, i, &self.rows) {
+            let v = near.vector(|j| self.velocity[j].0);
+            sum = (v - own).mul_add(near.volume * near.kernel, sum);
+        }
+        sum.sum() * self.factor
     }
 }

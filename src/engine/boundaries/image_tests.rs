@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use crate::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
 use crate::pair::{Pair, PairTerm, Rates};
+use crate::parallel::{Arithmetic, Matrix, Vector};
 use crate::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
@@ -41,9 +42,16 @@ impl PairTerm for Friction {
     type ReadI = (Velocity, DeformationGradient);
     type ReadJ = (Velocity, DeformationGradient);
 
-    fn pair(&self, pair: &Pair, (v_i, f_i): &Self::ReadI, (v_j, f_j): &Self::ReadJ, rates: &mut Rates) {
-        let slip = (f_i.0 + f_j.0) * (v_j.0 - v_i.0);
-        rates.force += 100.0 * pair.volume_i * pair.volume_j * pair.weight * slip;
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (v_i, f_i): (Vector<A>, Matrix<A>),
+        (v_j, f_j): (Vector<A>, Matrix<A>),
+        rates: &mut Rates<A>,
+    ) {
+        let slip = (f_i + f_j) * (v_j - v_i);
+        rates.force += slip * (100.0 * pair.volume_i * pair.volume_j * pair.weight);
     }
 }
 

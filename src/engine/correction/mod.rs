@@ -6,7 +6,9 @@
 //! Engineering 180, 97-115; Ganzenmueller 2015, eq. 9-11, where both signs are the opposite and cancel).
 
 mod moment;
+mod moments;
 #[cfg(test)]
 mod tests;
 
 pub use moment::{MomentMatrix, SINGULAR};
+pub use moments::FourMoments;

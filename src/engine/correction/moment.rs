@@ -21,6 +21,12 @@ impl MomentMatrix {
         Self { matrix: Sym3::ZERO, dimension }
     }
 
+    /// The matrix with that sum.
+    #[inline]
+    pub const fn of(matrix: Sym3, dimension: usize) -> Self {
+        Self { matrix, dimension }
+    }
+
     /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their row.
     #[inline]
     pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {

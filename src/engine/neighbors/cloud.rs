@@ -34,6 +34,15 @@ impl<'a> Cloud<'a> {
         Self { positions, support: Support::PerParticle(support_radii) }
     }
 
+    /// The first `count` particles.
+    pub(super) fn first(&self, count: usize) -> Self {
+        let support = match self.support {
+            Support::PerParticle(radii) => Support::PerParticle(radii.get(..count).unwrap_or(radii)),
+            uniform @ Support::Uniform(_) => uniform,
+        };
+        Self { positions: &self.positions[..count], support }
+    }
+
     #[inline]
     pub(super) fn support_of(&self, index: usize) -> f64 {
         match self.support {

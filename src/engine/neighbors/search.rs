@@ -28,6 +28,21 @@ impl NeighborSearch {
         self.build(cloud, cloud, true, skin, periodic, list)
     }
 
+    /// Lists the neighbours of the first `targets` particles of `cloud` in `cloud`: otherwise as [`NeighborSearch::within`].
+    ///
+    /// # Errors
+    /// See [`NeighborError`]; `list` is then unchanged.
+    pub fn of_first(
+        &mut self,
+        targets: usize,
+        cloud: Cloud<'_>,
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        self.build(cloud.first(targets), cloud, true, skin, periodic, list)
+    }
+
     /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are not
     /// the same particle. Otherwise as [`NeighborSearch::within`].
     ///
@@ -56,9 +71,9 @@ impl NeighborSearch {
         if !(skin >= 0.0 && skin.is_finite()) {
             return Err(NeighborError::Skin(skin));
         }
-        targets.check("target")?;
+        sources.check(if same_set { "target" } else { "source" })?;
         if !same_set {
-            sources.check("source")?;
+            targets.check("target")?;
         }
         let radius = 0.5 * (targets.largest_support() + sources.largest_support()) + skin;
         for a in (0..3).filter(|&a| periodic.axes()[a]) {

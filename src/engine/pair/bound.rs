@@ -1,15 +1,16 @@
 //! Terms bound to the columns of a phase for the length of a pass: a chain on the stack, without allocation.
 
 use super::read::ReadSet;
-use super::term::{Pair, PairTerm, Rates};
-use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use super::row::PairRow;
+use super::term::{PairTerm, Rates, RowRates};
+use crate::parallel::{Arithmetic, HotLoop, run_hot_on};
 use crate::schedule::Access;
 use crate::world::{MissingColumn, PhaseView};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
-    /// Adds the contributions of all neighbours of row i.
-    fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates);
+    /// The contributions of all neighbours of row i.
+    fn row(&self, i: usize, row: &PairRow, plane: bool) -> RowRates;
 }
 
 struct Bound<'a, T: PairTerm> {
@@ -19,8 +20,8 @@ struct Bound<'a, T: PairTerm> {
 }
 
 impl<T: PairTerm> RowTerm for Bound<'_, T> {
-    fn row(&self, i: usize, pairs: &[Pair], rates: &mut Rates) {
-        run_hot(Row { bound: self, i, pairs, rates });
+    fn row(&self, i: usize, row: &PairRow, plane: bool) -> RowRates {
+        run_hot_on(plane, Row { bound: self, i, row })
     }
 }
 
@@ -28,24 +29,23 @@ impl<T: PairTerm> RowTerm for Bound<'_, T> {
 struct Row<'r, 'a, T: PairTerm> {
     bound: &'r Bound<'a, T>,
     i: usize,
-    pairs: &'r [Pair],
-    rates: &'r mut Rates,
+    row: &'r PairRow,
 }
 
 impl<T: PairTerm> HotLoop for Row<'_, '_, T> {
-    type Output = ();
+    type Output = RowRates;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: Arithmetic>(self, a: A) -> RowRates {
         let Bound { term, of_i, of_j } = *self.bound;
-        let i = T::ReadI::at(of_i, self.i);
-        for pair in self.pairs {
-            let j = T::ReadJ::at(of_j, pair.row_j as usize);
-            match pair.mirror {
-                None => term.pair(pair, &i, &j, self.rates),
-                Some(signs) => term.pair(pair, &i, &j.mirrored(signs), self.rates),
-            }
+        let i = T::ReadI::four(a, of_i, [self.i as u32; 4], None);
+        let mut rates = Rates::zero(a);
+        for k in 0..self.row.fours() {
+            let (rows, signs) = self.row.rows(k);
+            let j = T::ReadJ::four(a, of_j, rows, signs);
+            term.pair(&self.row.pair(a, k), i, j, &mut rates);
         }
+        rates.sum()
     }
 }
 
@@ -58,12 +58,12 @@ pub(super) struct Chain<'c> {
 
 impl Chain<'_> {
     /// Calls every term once with the row; `rates` has one entry a term.
-    pub fn row(&self, i: usize, pairs: &[Pair], rates: &mut [Rates]) {
+    pub fn row(&self, i: usize, row: &PairRow, plane: bool, rates: &mut [RowRates]) {
         let Some((own, rest)) = rates.split_last_mut() else { return };
         if let Some(before) = self.before {
-            before.row(i, pairs, rest);
+            before.row(i, row, plane, rest);
         }
-        self.term.row(i, pairs, own);
+        *own = self.term.row(i, row, plane);
     }
 }
 

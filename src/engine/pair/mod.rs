@@ -1,16 +1,19 @@
 //! Pair terms: forces that third parties write as a function of one pair, run in one pass over all pairs.
 //!
 //! The pass builds the geometry of a row once, then calls each term once per row through a vtable, with the pair
-//! function inlined in the row loop: no dispatch per pair, one pass over memory for all terms.
+//! function inlined in the row loop and compiled for four neighbours at a time: no dispatch per pair, one pass over memory for
+//! all terms.
 
 mod bound;
 mod pass;
 mod read;
+mod row;
 mod term;
 mod work;
 
 pub(crate) use pass::BodyTerms;
 pub use pass::{PairRows, PairSource, add_pair_systems};
-pub use read::ReadSet;
+pub use read::{FourOf, ReadSet};
+pub use row::{FourPairs, FourVectors, PairRow, Room};
 pub use term::{BodyPairTerm, Pair, PairTerm, Rates};
 pub(crate) use work::add_work_systems;

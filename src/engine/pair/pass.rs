@@ -7,10 +7,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::bound::{Chain, ErasedTerm, bind_all};
-use super::term::{BodyPairTerm, Pair, Rates};
+use super::row::PairRow;
+use super::term::{BodyPairTerm, RowRates};
 use super::work;
 use crate::parallel::{BlockSum, Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
+use crate::scene::Dimension;
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Column, DensityRate, Force, PhaseId};
 
@@ -23,14 +25,14 @@ const DAMPING_SAFETY: f64 = 0.5;
 
 thread_local! {
     /// The geometry of one row; kept, so that a step does not allocate.
-    static ROW: RefCell<Vec<Pair>> = const { RefCell::new(Vec::new()) };
+    static ROW: RefCell<PairRow> = RefCell::default();
 }
 
 /// The pairs of one body.
 pub trait PairRows: Sync {
-    /// Puts the pairs of row i into `pairs`, in the order of its neighbour list; with their kernel values where a term
+    /// Puts the neighbours of particle i into `row`, in the order of its neighbour list; with their kernel values where a term
     /// reads them.
-    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>);
+    fn row(&self, i: usize, with_kernel: bool, row: &mut PairRow);
 }
 
 /// Where a formulation keeps its pairs.
@@ -166,6 +168,7 @@ impl<S: PairSource> Run for PairPass<S> {
             let terms = &slots[..indices.len()];
             forces.resize(rows.len() * terms.len(), DVec3::ZERO);
             let with_kernel = terms.iter().any(|term| term.reads_kernel());
+            let plane = step.world.dimension() == Dimension::Two;
             let mut fastest = Fastest::default();
             let sums = &mut self.sums;
             self.source.with_rows(step, *id, &mut |pairs| {
@@ -177,7 +180,7 @@ impl<S: PairSource> Run for PairPass<S> {
                         density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
                     };
                     fastest = for_each_block(written, sums, &|first, block| {
-                        run_block(chain, pairs, with_kernel, rows.start + first, block)
+                        run_block(chain, pairs, (with_kernel, plane), rows.start + first, block)
                     });
                 })?;
                 Ok(())
@@ -198,7 +201,7 @@ impl<S: PairSource> Run for PairPass<S> {
 fn run_block(
     chain: &Chain<'_>,
     pairs: &dyn PairRows,
-    with_kernel: bool,
+    (with_kernel, plane): (bool, bool),
     first: usize,
     block: ForceRows<'_>,
 ) -> Fastest {
@@ -206,9 +209,9 @@ fn run_block(
     ROW.with_borrow_mut(|row| {
         for (k, total) in block.total.iter_mut().enumerate() {
             pairs.row(first + k, with_kernel, row);
-            let mut rates = [Rates::default(); MAX_TERMS];
+            let mut rates = [RowRates::default(); MAX_TERMS];
             let rates = &mut rates[..block.terms];
-            chain.row(first + k, row, rates);
+            chain.row(first + k, row, plane, rates);
             let mut sum = Fastest::default();
             if let Some(density) = block.density.get_mut(k) {
                 density.0 = rates.iter().map(|rates| rates.density).sum();

@@ -3,60 +3,86 @@
 use glam::DVec3;
 
 use super::bound::ErasedTerm;
-use super::read::ReadSet;
+use super::read::{FourOf, ReadSet};
+use crate::parallel::{Arithmetic, Number, Vector};
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
-/// Geometry of one pair, from particle i to its neighbour j. In formulations without a reference configuration the
-/// reference vector is the current one.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Pair {
+/// Geometry of the pairs of particle i with four neighbours j, one a lane. In formulations without a reference configuration the
+/// reference vector is the current one. Lanes that hold no neighbour have `volume_j`, `weight` and `kernel` zero: what a term
+/// adds carries the volume of j, as sums over neighbours do.
+#[derive(Clone, Copy)]
+pub struct Pair<A> {
     /// Current pair vector x_ij = x_j - x_i, m.
-    pub x_ij: DVec3,
-    /// Its length, m.
-    pub distance: f64,
+    pub x_ij: Vector<A>,
+    /// Its length, m; a tiny number in place of zero, so that one may divide by it.
+    pub distance: Number<A>,
     /// Reference pair vector X_ij, m.
-    pub reference_x_ij: DVec3,
+    pub reference_x_ij: Vector<A>,
     /// Its length, m.
-    pub reference_distance: f64,
+    pub reference_distance: Number<A>,
     /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, so that grad_i W = w_ij x_ij.
-    pub weight: f64,
+    pub weight: Number<A>,
     /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the body reads it ([`PairTerm::READS_KERNEL`]).
-    pub kernel: f64,
+    pub kernel: Number<A>,
     /// Mean support radius of the two particles, m.
-    pub support: f64,
+    pub support: Number<A>,
     /// Volume of i in the formulation's sums, m3.
-    pub volume_i: f64,
+    pub volume_i: Number<A>,
     /// Volume of j, m3.
-    pub volume_j: f64,
-    /// Row of j in the phase; where j is an image, that of its source.
-    pub row_j: u32,
-    /// Where j is a mirror image across symmetry planes: the signs of the axes. The columns of j that a term gets are
-    /// mirrored already.
-    pub mirror: Option<DVec3>,
+    pub volume_j: Number<A>,
 }
 
-impl Pair {
+impl<A: Arithmetic> Pair<A> {
     /// Smoothing length h that artificial viscosity and its kin are scaled with: half the support radius, m.
-    pub fn smoothing_length(&self) -> f64 {
+    #[inline(always)]
+    pub fn smoothing_length(&self) -> Number<A> {
         0.5 * self.support
     }
 }
 
-/// What a term adds to particle i.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Rates {
+/// What a term adds to particle i, lane by lane; the lanes are added up once the row is done.
+#[derive(Clone, Copy)]
+pub struct Rates<A> {
     /// Force on i, N. The force on j must be its exact opposite when the roles are swapped.
-    pub force: DVec3,
+    pub force: Vector<A>,
     /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with [`PairTerm::CHANGES_DENSITY`].
-    pub density: f64,
+    pub density: Number<A>,
     /// Rate at which the term damps the velocity of i against fixed neighbours, 1/s: limits the time step.
-    pub damping: f64,
+    pub damping: Number<A>,
     /// Stiffness per mass that the term gives i against fixed neighbours, 1/s2: limits the time step.
+    pub stiffness: Number<A>,
+}
+
+/// Rates of a whole row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RowRates {
+    pub force: DVec3,
+    pub density: f64,
+    pub damping: f64,
     pub stiffness: f64,
 }
 
-/// Contribution of neighbour j to particle i, written as a function of one pair.
+impl<A: Arithmetic> Rates<A> {
+    #[inline(always)]
+    pub(super) fn zero(a: A) -> Self {
+        let zero = Number::zero(a);
+        Self { force: Vector::zero(a), density: zero, damping: zero, stiffness: zero }
+    }
+
+    #[inline(always)]
+    pub(super) fn sum(self) -> RowRates {
+        RowRates {
+            force: self.force.sum(),
+            density: self.density.sum(),
+            damping: self.damping.sum(),
+            stiffness: self.stiffness.sum(),
+        }
+    }
+}
+
+/// Contribution of neighbours j to particle i, written as a function of one pair that runs for four neighbours at a time: numbers
+/// and vectors have their usual operators, and a branch is [`Number::if_below`], [`Number::min`] or [`Number::max`].
 pub trait PairTerm: Send + Sync + 'static {
     /// Columns it needs of i: a tuple of columns.
     type ReadI: ReadSet;
@@ -68,8 +94,15 @@ pub trait PairTerm: Send + Sync + 'static {
     /// Whether the term gives density rates.
     const CHANGES_DENSITY: bool = false;
 
-    /// Adds the contribution of j to the rates of i.
-    fn pair(&self, pair: &Pair, i: &Self::ReadI, j: &Self::ReadJ, rates: &mut Rates);
+    /// Adds the contribution of j to the rates of i. Mark it `#[inline(always)]`: it is then compiled for the instruction path of
+    /// the loop around it.
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        i: FourOf<Self::ReadI, A>,
+        j: FourOf<Self::ReadJ, A>,
+        rates: &mut Rates<A>,
+    );
 }
 
 /// A pair term with the bodies it acts on.

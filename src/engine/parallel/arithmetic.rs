@@ -7,6 +7,9 @@ use super::lanes::Lanes4;
 
 /// Operations of an instruction path; a hot loop gets the one it is compiled for.
 pub trait Arithmetic: Copy + Send + Sync {
+    /// Number of axes of vectors; the components of those beyond it are zero, and no instruction is spent on them.
+    const AXES: usize = 3;
+
     /// `a b + c`.
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
@@ -18,6 +21,18 @@ pub trait Arithmetic: Copy + Send + Sync {
 
     /// `a b`, lane by lane.
     fn times(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// `a / b`, lane by lane.
+    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// The smaller one, lane by lane; `b` where one is not a number.
+    fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// The larger one, lane by lane; `b` where one is not a number.
+    fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4;
+
+    /// `c` in lanes where `a < b`, zero in the others.
+    fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
 
     /// `a b + c`, lane by lane.
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
@@ -68,6 +83,41 @@ impl Arithmetic for Portable {
     #[inline(always)]
     fn times(self, a: Lanes4, b: Lanes4) -> Lanes4 {
         Lanes4([a.0[0] * b.0[0], a.0[1] * b.0[1], a.0[2] * b.0[2], a.0[3] * b.0[3]])
+    }
+
+    #[inline(always)]
+    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([a.0[0] / b.0[0], a.0[1] / b.0[1], a.0[2] / b.0[2], a.0[3] / b.0[3]])
+    }
+
+    #[inline(always)]
+    fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([
+            if a.0[0] < b.0[0] { a.0[0] } else { b.0[0] },
+            if a.0[1] < b.0[1] { a.0[1] } else { b.0[1] },
+            if a.0[2] < b.0[2] { a.0[2] } else { b.0[2] },
+            if a.0[3] < b.0[3] { a.0[3] } else { b.0[3] },
+        ])
+    }
+
+    #[inline(always)]
+    fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+        Lanes4([
+            if a.0[0] > b.0[0] { a.0[0] } else { b.0[0] },
+            if a.0[1] > b.0[1] { a.0[1] } else { b.0[1] },
+            if a.0[2] > b.0[2] { a.0[2] } else { b.0[2] },
+            if a.0[3] > b.0[3] { a.0[3] } else { b.0[3] },
+        ])
+    }
+
+    #[inline(always)]
+    fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+        Lanes4([
+            if a.0[0] < b.0[0] { c.0[0] } else { 0.0 },
+            if a.0[1] < b.0[1] { c.0[1] } else { 0.0 },
+            if a.0[2] < b.0[2] { c.0[2] } else { 0.0 },
+            if a.0[3] < b.0[3] { c.0[3] } else { 0.0 },
+        ])
     }
 
     #[inline(always)]
@@ -137,6 +187,27 @@ mod v3 {
         }
 
         #[inline(always)]
+        fn over(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast(self.avx._mm256_div_pd(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast(self.avx._mm256_min_pd(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4 {
+            cast(self.avx._mm256_max_pd(cast(a), cast(b)))
+        }
+
+        #[inline(always)]
+        fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
+            let mask = self.cmp_lt_f64x4(cast(a), cast(b));
+            cast::<f64x4, Lanes4>(self.select_f64x4(mask, cast(c), cast(Lanes4::ZERO)))
+        }
+
+        #[inline(always)]
         fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
         }
@@ -149,7 +220,7 @@ mod v3 {
         #[inline(always)]
         fn or_zero(self, a: Lanes4) -> Lanes4 {
             // Where an operand is not a number the instruction gives the second one, zero.
-            cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::default())))
+            cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::ZERO)))
         }
 
         #[inline(always)]

@@ -12,6 +12,9 @@ use glam::DVec3;
 pub struct Lanes4(pub [f64; 4]);
 
 impl Lanes4 {
+    /// Zero in all lanes.
+    pub const ZERO: Self = Self([0.0; 4]);
+
     /// A vector, and a number in the last lane.
     #[inline(always)]
     pub fn new(v: DVec3, last: f64) -> Self {

@@ -4,6 +4,7 @@ use bytemuck::Pod;
 use glam::{DMat3, DVec3};
 
 use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, Lanes4, Matrix, Number, Vector};
 
 /// What one row of a column holds: a number, a vector, a tensor, seen as a fixed list of components.
 pub trait Value: Pod + Send + Sync + 'static {
@@ -12,6 +13,12 @@ pub trait Value: Pod + Send + Sync + 'static {
 
     /// The component `k` as a number, `k < COMPONENTS.len()`.
     fn component(&self, k: usize) -> f64;
+
+    /// Four values as hot loops see them: [`Number`], [`Vector`], [`Matrix`].
+    type Four<A: Arithmetic>: Copy;
+
+    /// Four values, one a lane.
+    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Self::Four<A>;
 
     /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a number as it
     /// is.
@@ -23,6 +30,12 @@ pub trait Value: Pod + Send + Sync + 'static {
 
 impl Value for f64 {
     const COMPONENTS: &'static [&'static str] = &[""];
+    type Four<A: Arithmetic> = Number<A>;
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+        Number::new(a, Lanes4(values))
+    }
 
     fn component(&self, _: usize) -> f64 {
         *self
@@ -31,6 +44,13 @@ impl Value for f64 {
 
 impl Value for u32 {
     const COMPONENTS: &'static [&'static str] = &[""];
+    type Four<A: Arithmetic> = Number<A>;
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+        let [j, k, l, m] = values;
+        Number::new(a, Lanes4([f64::from(j), f64::from(k), f64::from(l), f64::from(m)]))
+    }
 
     fn component(&self, _: usize) -> f64 {
         f64::from(*self)
@@ -39,6 +59,13 @@ impl Value for u32 {
 
 impl Value for u64 {
     const COMPONENTS: &'static [&'static str] = &[""];
+    type Four<A: Arithmetic> = Number<A>;
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+        let [j, k, l, m] = values;
+        Number::new(a, Lanes4([j as f64, k as f64, l as f64, m as f64]))
+    }
 
     fn component(&self, _: usize) -> f64 {
         *self as f64
@@ -47,6 +74,12 @@ impl Value for u64 {
 
 impl Value for DVec3 {
     const COMPONENTS: &'static [&'static str] = &["x", "y", "z"];
+    type Four<A: Arithmetic> = Vector<A>;
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Vector<A> {
+        Vector::from_rows(a, values)
+    }
 
     fn component(&self, k: usize) -> f64 {
         self[k]
@@ -59,6 +92,16 @@ impl Value for DVec3 {
 
 impl Value for DMat3 {
     const COMPONENTS: &'static [&'static str] = &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
+    type Four<A: Arithmetic> = Matrix<A>;
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, [j, k, l, m]: [Self; 4]) -> Matrix<A> {
+        Matrix([
+            Vector::from_rows(a, [j.x_axis, k.x_axis, l.x_axis, m.x_axis]),
+            Vector::from_rows(a, [j.y_axis, k.y_axis, l.y_axis, m.y_axis]),
+            Vector::from_rows(a, [j.z_axis, k.z_axis, l.z_axis, m.z_axis]),
+        ])
+    }
 
     fn component(&self, k: usize) -> f64 {
         self.col(k % 3)[k / 3]
@@ -72,6 +115,19 @@ impl Value for DMat3 {
 
 impl Value for Sym3 {
     const COMPONENTS: &'static [&'static str] = &["xx", "yy", "zz", "xy", "xz", "yz"];
+    type Four<A: Arithmetic> = [Number<A>; 6];
+
+    #[inline(always)]
+    fn four<A: Arithmetic>(a: A, [j, k, l, m]: [Self; 4]) -> [Number<A>; 6] {
+        [
+            Number::new(a, Lanes4([j.xx, k.xx, l.xx, m.xx])),
+            Number::new(a, Lanes4([j.yy, k.yy, l.yy, m.yy])),
+            Number::new(a, Lanes4([j.zz, k.zz, l.zz, m.zz])),
+            Number::new(a, Lanes4([j.xy, k.xy, l.xy, m.xy])),
+            Number::new(a, Lanes4([j.xz, k.xz, l.xz, m.xz])),
+            Number::new(a, Lanes4([j.yz, k.yz, l.yz, m.yz])),
+        ]
+    }
 
     fn component(&self, k: usize) -> f64 {
         [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz][k]

@@ -44,7 +44,7 @@ impl Rows<'_> {
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = &records[i];
-            let mut sum = Lanes4::default();
+            let mut sum = Lanes4::ZERO;
             for chunk in pairs.fluid.row(i).chunks(4) {
                 let four = Four::<D>::gather::<A, P>(a, records, own, padded(chunk, i), periods);
                 let mut x = four.x;

@@ -3,6 +3,9 @@
 use crate::kernels::{Kernel, KernelName};
 use crate::parallel::{Arithmetic, Lanes4};
 
+/// Square of the distance of particles in one place, over that of the support.
+const NO_LENGTH: f64 = 1e-24;
+
 /// Wendland C2 of one smoothing length: functions of the distance r, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidKernel {
@@ -49,6 +52,22 @@ impl FluidKernel {
         let square = a.times(s, s);
         let slope = a.scale_add(4.0 * self.inverse_support, r, Lanes4::splat(1.0));
         a.scale(self.value_scale, a.times(a.times(square, square), slope))
+    }
+
+    /// Squared distances above zero, and beyond the support where there is no neighbour; volumes of the neighbours within the
+    /// support.
+    #[inline(always)]
+    pub(super) fn within<A: Arithmetic>(
+        &self,
+        a: A,
+        square: Lanes4,
+        fill: Lanes4,
+        volume: Lanes4,
+    ) -> (Lanes4, Lanes4) {
+        let limit = self.support * self.support;
+        let square = a.scale_add(limit, fill, square);
+        let volume = a.where_below(square, Lanes4::splat(limit), volume);
+        (a.larger(square, Lanes4::splat(NO_LENGTH * limit)), volume)
     }
 
     /// Pair weight of one neighbour.

@@ -159,7 +159,7 @@ impl PairForce<'_> {
         viscosity: f64,
     ) -> Sums<D> {
         let FlowCloud { records, kernel, periods, .. } = self.cloud;
-        let zero = [Lanes4::default(); D];
+        let zero = [Lanes4::ZERO; D];
         let mut sum = Sums { gradient: zero, pressure: zero, viscous: zero };
         for chunk in row.chunks(4) {
             let four = Four::<D>::gather::<A, P>(a, records, own, padded(chunk, i), periods);

@@ -1,7 +1,10 @@
 //! The pairs within a fluid body as pairs for pair terms.
 
 use super::cloud::{FlowCloud, Group};
-use crate::pair::{Pair, PairRows, PairSource};
+use super::near::part;
+use super::record::{FILLS, Places, padded};
+use crate::pair::{FourVectors, PairRow, PairRows, PairSource};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Step, StepError};
 use crate::world::BodyId;
 
@@ -27,39 +30,52 @@ struct BodyPairs<'a> {
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>) {
-        let FlowCloud { records, kernel, pairs: lists, .. } = self.cloud;
-        let Group { rows, cloud, .. } = self.group;
-        let row_of = |j: usize| j - cloud.start + rows.start;
-        let i = i - rows.start + cloud.start;
+    fn row(&self, i: usize, with_kernel: bool, row: &mut PairRow) {
+        run_hot_on(self.cloud.plane, Fill { pairs: self, i, with_kernel, row });
+    }
+}
+
+/// Fills the row of one particle.
+struct Fill<'a> {
+    pairs: &'a BodyPairs<'a>,
+    i: usize,
+    with_kernel: bool,
+    row: &'a mut PairRow,
+}
+
+impl HotLoop for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        let Self { pairs: &BodyPairs { cloud, group }, i, with_kernel, row } = self;
+        let FlowCloud { records, kernel, pairs: lists, periods, .. } = cloud;
+        let before = group.cloud.start - group.rows.start;
+        let i = i + before;
         let own = &records[i];
-        let limit = kernel.support * kernel.support;
-        pairs.clear();
-        for &j in lists.fluid.row(i) {
-            let j = j as usize;
-            if j == i || !cloud.contains(&j) {
-                continue;
+        let list = if own.volume() > 0.0 { part(lists.fluid.row(i), &group.cloud) } else { &[] };
+        row.volume_i = own.volume();
+        let room = row.room(list.len(), false, false);
+        for ((chunk, pairs), rows) in list.chunks(4).zip(room.pairs).zip(room.rows) {
+            let four = padded(chunk, i);
+            let Places { x, volume } = Places::gather(a, records, own, four, periods);
+            let x_ij = Vector::new(a, x);
+            let square = x_ij.length_squared().lanes();
+            let (square, volume) = kernel.within(a, square, FILLS[chunk.len()], volume);
+            let distance = a.sqrt(square);
+            pairs.current = FourVectors { vector: x, length: distance };
+            pairs.weight = kernel.weights(a, distance);
+            pairs.support = Lanes4::splat(kernel.support);
+            pairs.volume_j = volume;
+            if with_kernel {
+                pairs.kernel = kernel.values(a, distance);
             }
-            let other = &records[j];
-            let x_ij = lists.periodic().minimal_image(other.position() - own.position());
-            let square = x_ij.length_squared();
-            if square >= limit || own.volume() == 0.0 || other.volume() == 0.0 {
-                continue;
-            }
-            let distance = square.sqrt();
-            pairs.push(Pair {
-                x_ij,
-                distance,
-                reference_x_ij: x_ij,
-                reference_distance: distance,
-                weight: kernel.weight(distance),
-                kernel: if with_kernel { kernel.value(distance) } else { f64::NAN },
-                support: kernel.support,
-                volume_i: own.volume(),
-                volume_j: other.volume(),
-                row_j: row_of(j) as u32,
-                mirror: None,
-            });
+            *rows = [
+                (four[0] - before) as u32,
+                (four[1] - before) as u32,
+                (four[2] - before) as u32,
+                (four[3] - before) as u32,
+            ];
         }
     }
 }

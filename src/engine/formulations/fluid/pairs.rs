@@ -13,7 +13,7 @@ pub(super) struct FlowPairs {
     skin: f64,
     periodic: Periodic,
     search: NeighborSearch,
-    /// Neighbours of each fluid particle, itself included, as rows of the cloud.
+    /// Neighbours of each fluid particle as rows of the cloud.
     pub fluid: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,
@@ -37,6 +37,7 @@ impl FlowPairs {
         }
     }
 
+    #[inline]
     pub fn periodic(&self) -> &Periodic {
         &self.periodic
     }
@@ -57,7 +58,7 @@ impl FlowPairs {
         self.built.clear();
         let cloud = |positions| Cloud::uniform(positions, self.support);
         let (all, wet, dry) = (cloud(positions), cloud(&positions[..fluid]), cloud(&positions[fluid..]));
-        self.search.between(wet, all, self.skin, &self.periodic, &mut self.fluid)?;
+        self.search.of_first(fluid, all, self.skin, &self.periodic, &mut self.fluid)?;
         self.search.between(dry, wet, self.skin, &self.periodic, &mut self.boundary)?;
         self.built.extend_from_slice(positions);
         self.builds += 1;

@@ -49,8 +49,17 @@ pub(super) struct Periods {
 }
 
 impl Periods {
+    #[inline(always)]
     pub fn any(&self) -> bool {
         self.length != [0.0; 3]
+    }
+
+    /// Differences along an axis to the nearest image.
+    #[inline(always)]
+    fn nearest<A: Arithmetic>(&self, a: A, axis: usize, x: Lanes4) -> Lanes4 {
+        let shift = Lanes4::splat(SHIFT);
+        let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
+        a.scale_add(-self.length[axis], turns, x)
     }
 }
 
@@ -83,6 +92,48 @@ pub(super) fn padded(chunk: &[u32], i: usize) -> [usize; 4] {
     j
 }
 
+/// Beyond the support in the lanes that hold no neighbour, by the number of those that do.
+pub(super) const FILLS: [Lanes4; 5] = [
+    Lanes4([4.0, 4.0, 4.0, 4.0]),
+    Lanes4([0.0, 4.0, 4.0, 4.0]),
+    Lanes4([0.0, 0.0, 4.0, 4.0]),
+    Lanes4([0.0, 0.0, 0.0, 4.0]),
+    Lanes4([0.0, 0.0, 0.0, 0.0]),
+];
+
+/// Where four neighbours of a particle are.
+#[derive(Clone, Copy)]
+pub(super) struct Places {
+    /// x_ij per axis.
+    pub x: [Lanes4; 3],
+    /// V_j.
+    pub volume: Lanes4,
+}
+
+impl Places {
+    /// Reads four neighbours.
+    #[inline(always)]
+    pub fn gather<A: Arithmetic>(
+        a: A,
+        records: &[Record],
+        own: &Record,
+        [j, k, l, m]: [usize; 4],
+        periods: &Periods,
+    ) -> Self {
+        let place = a.transpose([records[j].place, records[k].place, records[l].place, records[m].place]);
+        let mut x = [Lanes4::ZERO; 3];
+        for axis in 0..A::AXES {
+            x[axis] = a.minus(place[axis], Lanes4::splat(own.place.0[axis]));
+        }
+        if periods.any() {
+            for axis in 0..A::AXES {
+                x[axis] = periods.nearest(a, axis, x[axis]);
+            }
+        }
+        Self { x, volume: place[3] }
+    }
+}
+
 impl<const D: usize> Four<D> {
     /// Reads four neighbours.
     #[inline(always)]
@@ -96,15 +147,13 @@ impl<const D: usize> Four<D> {
         let r = [&records[j], &records[k], &records[l], &records[m]];
         let place = a.transpose([r[0].place, r[1].place, r[2].place, r[3].place]);
         let motion = a.transpose([r[0].motion, r[1].motion, r[2].motion, r[3].motion]);
-        let mut x = [Lanes4::default(); D];
-        let mut v = [Lanes4::default(); D];
+        let mut x = [Lanes4::ZERO; D];
+        let mut v = [Lanes4::ZERO; D];
         for axis in 0..D {
             x[axis] = a.minus(place[axis], Lanes4::splat(own.place.0[axis]));
             v[axis] = a.minus(motion[axis], Lanes4::splat(own.motion.0[axis]));
             if P {
-                let shift = Lanes4::splat(SHIFT);
-                let turns = a.minus(a.scale_add(periods.inverse[axis], x[axis], shift), shift);
-                x[axis] = a.scale_add(-periods.length[axis], turns, x[axis]);
+                x[axis] = periods.nearest(a, axis, x[axis]);
             }
         }
         Self { x, v, volume: place[3], pressure: motion[3] }

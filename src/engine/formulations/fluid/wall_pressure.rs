@@ -67,8 +67,8 @@ impl Rows<'_> {
             let i = cloud.fluid + self.first + k;
             let own = &cloud.records[i];
             let mut rest = cloud.pairs.boundary.row(self.first + k);
-            let (mut total, mut pressure) = (Lanes4::default(), Lanes4::default());
-            let (mut moment, mut velocity) = ([Lanes4::default(); D], [Lanes4::default(); D]);
+            let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
+            let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
             for group in &cloud.groups {
                 let Some(state) = group.fluid() else { break };
                 let end = group.cloud.end as u32;

@@ -187,8 +187,8 @@ impl PlaneOrSolid for Gather<'_> {
             let site = sites[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
             // Columns of sum_j V_j w_ij u_ij (x) X_ij, and the sum of V_j w_ij u_ij^2 per component.
-            let mut spread = [Lanes4::default(); D];
-            let mut square = Lanes4::default();
+            let mut spread = [Lanes4::ZERO; D];
+            let mut square = Lanes4::ZERO;
             for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
                 let other = &sites[j as usize];
                 let reference = a.minus(other.reference, site.reference);
@@ -216,7 +216,7 @@ impl PlaneOrSolid for Gather<'_> {
 fn fit<A: Arithmetic, const D: usize>(a: A, spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
     let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut f = [Lanes4::default(); 3];
+    let mut f = [Lanes4::ZERO; 3];
     for c in 0..D {
         for axis in 0..D {
             f[c] = a.scale_add(rows[axis][c], spread[axis], f[c]);

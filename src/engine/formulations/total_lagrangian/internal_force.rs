@@ -49,7 +49,7 @@ impl PlaneOrSolid for ForceRows<'_> {
             let site = sites[i];
             let own = pair_stress[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let mut sum = Lanes4::default();
+            let mut sum = Lanes4::ZERO;
             for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
                 let other = &sites[j as usize];
                 let stress = &pair_stress[j as usize];

@@ -1,11 +1,15 @@
 //! The bonds of a total-Lagrangian body as pairs for pair terms.
 
+use glam::DVec3;
+
 use super::bonds::Bonds;
 use super::formulation::PackedRows;
 use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{Pair, PairRows, PairSource};
+use crate::pair::{FourVectors, PairRow, PairRows, PairSource};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
+use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, PhaseId, SupportRadius};
 
@@ -25,7 +29,8 @@ impl PairSource for BondPairs {
         let support = step.world.phase(self.phase).read::<SupportRadius>()?;
         let Some((_, kernel)) = packed.kernels.iter().find(|(id, _)| *id == body) else { return Ok(()) };
         let PackedRows { bonds, images, sites, .. } = &*packed;
-        run(&BodyPairs { bonds, images, sites, support: &support, kernel })
+        let plane = step.world.dimension() == Dimension::Two;
+        run(&BodyPairs { bonds, images, sites, support: &support, kernel, plane })
     }
 }
 
@@ -35,41 +40,92 @@ struct BodyPairs<'a> {
     sites: &'a [Site],
     support: &'a [SupportRadius],
     kernel: &'a Kernel,
+    plane: bool,
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, with_kernel: bool, pairs: &mut Vec<Pair>) {
-        let site = self.sites[i];
-        let volume_i = site.reference.0[3];
-        pairs.clear();
-        // Removed particles have no volume, and no pairs.
-        let present = |(j, _): &(usize, f32)| site.is_present() && self.sites[*j].is_present();
-        pairs.extend(self.bonds.row(i).filter(present).map(|(j, weight)| {
-            let other = self.sites[j];
-            let mirror = self.images.mirror(j);
-            let j = self.images.source(j);
-            let reference_x_ij = other.reference.minus(site.reference).xyz();
-            let x_ij = reference_x_ij + other.displacement.minus(site.displacement).xyz();
-            let reference_distance = reference_x_ij.length();
-            let support = 0.5 * (self.support[i].0 + self.support[j].0);
-            let kernel = if with_kernel {
-                self.kernel.w(reference_distance, self.kernel.smoothing_length(support))
-            } else {
-                f64::NAN
-            };
-            Pair {
-                x_ij,
-                distance: x_ij.length(),
-                reference_x_ij,
-                reference_distance,
-                weight: f64::from(weight),
-                kernel,
-                support,
-                volume_i,
-                volume_j: other.reference.0[3],
-                row_j: j as u32,
-                mirror,
-            }
-        }));
+    fn row(&self, i: usize, with_kernel: bool, row: &mut PairRow) {
+        run_hot_on(self.plane, Fill { pairs: self, i, with_kernel, row });
     }
+}
+
+/// Fills the row of one particle.
+struct Fill<'a> {
+    pairs: &'a BodyPairs<'a>,
+    i: usize,
+    with_kernel: bool,
+    row: &'a mut PairRow,
+}
+
+impl HotLoop for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        let Self { pairs: &BodyPairs { bonds, images, sites, support, kernel, .. }, i, with_kernel, row } =
+            self;
+        let site = &sites[i];
+        row.volume_i = site.reference.0[3];
+        let list =
+            if site.is_present() { bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize } else { 0..0 };
+        let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
+        let imaged = !images.is_empty();
+        let room = row.room(neighbors.len(), true, imaged);
+        let mut mirrors = room.mirrors.iter_mut();
+        let chunks = neighbors.chunks(4).zip(weights.chunks(4));
+        for (((js, weights), pairs), (rows, reference)) in
+            chunks.zip(room.pairs).zip(room.rows.iter_mut().zip(room.reference))
+        {
+            let mut four = [i; 4];
+            let mut weight = Lanes4::ZERO;
+            for lane in 0..js.len().min(4) {
+                four[lane] = js[lane] as usize;
+                weight.0[lane] = f64::from(weights[lane]);
+            }
+            let [j, k, l, m] = four;
+            let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
+            let place = a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
+            let moved =
+                a.transpose([of[0].displacement, of[1].displacement, of[2].displacement, of[3].displacement]);
+            let (mut x, mut then) = ([Lanes4::ZERO; 3], [Lanes4::ZERO; 3]);
+            for axis in 0..A::AXES {
+                then[axis] = a.minus(place[axis], Lanes4::splat(site.reference.0[axis]));
+                let u = a.minus(moved[axis], Lanes4::splat(site.displacement.0[axis]));
+                x[axis] = a.plus(then[axis], u);
+            }
+            if imaged {
+                four = four.map(|j| images.source(j));
+                if let Some(signs) = mirrors.next() {
+                    *signs = [j, k, l, m].map(|j| images.mirror(j).unwrap_or(DVec3::ONE));
+                }
+            }
+            let [j, k, l, m] = four;
+            let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
+            let radius = a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other));
+            // Removed particles, and lanes without a neighbour, have neither weight nor volume.
+            let present = a.where_below(Lanes4::ZERO, weight, place[3]);
+            let weight = a.where_below(Lanes4::ZERO, present, weight);
+            reference.vector = then;
+            reference.length = length(a, then);
+            pairs.current = FourVectors { vector: x, length: length(a, x) };
+            pairs.weight = weight;
+            pairs.support = radius;
+            pairs.volume_j = present;
+            if with_kernel {
+                for lane in 0..4 {
+                    let h = kernel.smoothing_length(radius.0[lane]);
+                    let value = kernel.w(reference.length.0[lane], h);
+                    pairs.kernel.0[lane] = if present.0[lane] > 0.0 { value } else { 0.0 };
+                }
+            }
+            *rows = [four[0] as u32, four[1] as u32, four[2] as u32, four[3] as u32];
+        }
+    }
+}
+
+/// Lengths of four vectors, above zero.
+#[inline(always)]
+fn length<A: Arithmetic>(a: A, vector: [Lanes4; 3]) -> Lanes4 {
+    let square = Vector::new(a, vector).length_squared().lanes();
+    a.sqrt(a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)))
 }

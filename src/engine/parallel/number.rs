@@ -1,0 +1,155 @@
+//! Numbers and vectors of four neighbours at once, with operators: what pair functions are written in.
+//!
+//! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in the plane and in space. Mark
+//! it `#[inline(always)]`: a call would leave the instruction path.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use super::arithmetic::Arithmetic;
+use super::lanes::Lanes4;
+
+/// A number for each of four neighbours.
+#[derive(Clone, Copy)]
+pub struct Number<A> {
+    lanes: Lanes4,
+    arithmetic: A,
+}
+
+impl<A: Arithmetic> Number<A> {
+    /// These four numbers.
+    #[inline(always)]
+    pub fn new(arithmetic: A, lanes: Lanes4) -> Self {
+        Self { lanes, arithmetic }
+    }
+
+    /// The same number four times.
+    #[inline(always)]
+    pub fn splat(arithmetic: A, value: f64) -> Self {
+        Self { lanes: Lanes4::splat(value), arithmetic }
+    }
+
+    /// Zero four times.
+    #[inline(always)]
+    pub fn zero(arithmetic: A) -> Self {
+        Self { lanes: Lanes4::ZERO, arithmetic }
+    }
+
+    /// The four numbers.
+    #[inline(always)]
+    pub fn lanes(self) -> Lanes4 {
+        self.lanes
+    }
+
+    /// The instruction path.
+    #[inline(always)]
+    pub fn arithmetic(self) -> A {
+        self.arithmetic
+    }
+
+    /// Sum of the four, in a fixed order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        self.lanes.sum()
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        self.with(self.arithmetic.sqrt(self.lanes))
+    }
+
+    /// Squares.
+    #[inline(always)]
+    pub fn squared(self) -> Self {
+        self * self
+    }
+
+    /// The smaller of each number and `limit`.
+    #[inline(always)]
+    pub fn min(self, limit: f64) -> Self {
+        self.with(self.arithmetic.smaller(self.lanes, Lanes4::splat(limit)))
+    }
+
+    /// The larger of each number and `limit`.
+    #[inline(always)]
+    pub fn max(self, limit: f64) -> Self {
+        self.with(self.arithmetic.larger(self.lanes, Lanes4::splat(limit)))
+    }
+
+    /// `value` where the number is below `limit`, zero elsewhere: what a branch would be.
+    #[inline(always)]
+    pub fn if_below(self, limit: f64, value: Self) -> Self {
+        self.with(self.arithmetic.where_below(self.lanes, Lanes4::splat(limit), value.lanes))
+    }
+
+    /// `self b + c`, rounded once where the processor can.
+    #[inline(always)]
+    pub fn mul_add(self, b: Self, c: Self) -> Self {
+        self.with(self.arithmetic.times_add(self.lanes, b.lanes, c.lanes))
+    }
+
+    #[inline(always)]
+    fn with(self, lanes: Lanes4) -> Self {
+        Self { lanes, arithmetic: self.arithmetic }
+    }
+
+    #[inline(always)]
+    fn like(self, value: f64) -> Self {
+        self.with(Lanes4::splat(value))
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $function:ident $operation:ident),+) => {$(
+        impl<A: Arithmetic> $operator for Number<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                self.with(self.arithmetic.$operation(self.lanes, other.lanes))
+            }
+        }
+
+        impl<A: Arithmetic> $operator<f64> for Number<A> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: f64) -> Self {
+                $operator::$function(self, self.like(other))
+            }
+        }
+
+        impl<A: Arithmetic> $operator<Number<A>> for f64 {
+            type Output = Number<A>;
+
+            #[inline(always)]
+            fn $function(self, other: Number<A>) -> Number<A> {
+                $operator::$function(other.like(self), other)
+            }
+        }
+    )+};
+}
+operators!(Add add plus, Sub sub minus, Mul mul times, Div div over);
+
+impl<A: Arithmetic> Neg for Number<A> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        0.0 - self
+    }
+}
+
+impl<A: Arithmetic> AddAssign for Number<A> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<A: Arithmetic> SubAssign for Number<A> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
