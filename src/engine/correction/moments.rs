@@ -34,7 +34,8 @@ impl<A: Arithmetic> FourMoments<A> {
     /// The moment matrix, of the dimension that the instruction path has.
     #[inline(always)]
     pub fn sum(self) -> MomentMatrix {
-        let [x, y, z] = self.products.map(Vector::sum);
+        let [x, y, z] = self.products;
+        let (x, y, z) = (x.sum(), y.sum(), z.sum());
         MomentMatrix::of(Sym3 { xx: x.x, yy: y.y, zz: z.z, xy: x.y, xz: x.z, yz: y.z }, A::AXES)
     }
 }

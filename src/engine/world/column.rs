@@ -23,6 +23,7 @@ pub trait Value: Pod + Send + Sync + 'static {
     /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a number as it
     /// is.
     #[must_use]
+    #[inline]
     fn mirrored(self, _signs: DVec3) -> Self {
         self
     }
@@ -85,6 +86,7 @@ impl Value for DVec3 {
         self[k]
     }
 
+    #[inline]
     fn mirrored(self, signs: DVec3) -> Self {
         signs * self
     }
@@ -107,6 +109,7 @@ impl Value for DMat3 {
         self.col(k % 3)[k / 3]
     }
 
+    #[inline]
     fn mirrored(self, signs: DVec3) -> Self {
         let column = |axis: usize| self.col(axis) * signs * signs[axis];
         DMat3::from_cols(column(0), column(1), column(2))
@@ -133,6 +136,7 @@ impl Value for Sym3 {
         [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz][k]
     }
 
+    #[inline]
     fn mirrored(self, signs: DVec3) -> Self {
         let DVec3 { x, y, z } = signs;
         Self { xy: x * y * self.xy, xz: x * z * self.xz, yz: y * z * self.yz, ..self }
@@ -187,10 +191,12 @@ macro_rules! column {
             const SYMBOL: &'static str = $symbol;
             const UNIT: &'static str = $unit;
 
+            #[inline(always)]
             fn value(&self) -> &$value {
                 &self.0
             }
 
+            #[inline]
             fn mirrored(self, signs: $crate::glam::DVec3) -> Self {
                 Self($crate::world::Value::mirrored(self.0, signs))
             }

@@ -86,16 +86,12 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     }
     let dimension = sim.dimension().count();
     let total = groups.last().map_or(0, |group| group.cloud.end);
-    let lengths = periodic.lengths();
     let cloud = FlowCloud {
         groups: groups.clone(),
         fluid,
         kernel: FluidKernel::new(support, dimension),
         plane: sim.dimension() == Dimension::Two,
-        periods: Periods {
-            length: lengths.to_array(),
-            inverse: lengths.to_array().map(|length| if length > 0.0 { 1.0 / length } else { 0.0 }),
-        },
+        periods: Periods::new(&periodic),
         positions: vec![DVec3::ZERO; total],
         records: vec![Record::default(); total],
         pairs: FlowPairs::new(support, SKIN * spacing, periodic),

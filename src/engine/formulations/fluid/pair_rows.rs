@@ -56,7 +56,8 @@ impl HotLoop for Fill<'_> {
         let list = if own.volume() > 0.0 { part(lists.fluid.row(i), &group.cloud) } else { &[] };
         row.volume_i = own.volume();
         let room = row.room(list.len(), false, false);
-        for ((chunk, pairs), rows) in list.chunks(4).zip(room.pairs).zip(room.rows) {
+        for (k, pairs) in room.pairs.iter_mut().enumerate() {
+            let chunk = &list[4 * k..(4 * k + 4).min(list.len())];
             let four = padded(chunk, i);
             let Places { x, volume } = Places::gather(a, records, own, four, periods);
             let x_ij = Vector::new(a, x);
@@ -70,7 +71,7 @@ impl HotLoop for Fill<'_> {
             if with_kernel {
                 pairs.kernel = kernel.values(a, distance);
             }
-            *rows = [
+            room.rows[k] = [
                 (four[0] - before) as u32,
                 (four[1] - before) as u32,
                 (four[2] - before) as u32,

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
+use crate::neighbors::Periodic;
 use crate::parallel::{Arithmetic, Lanes4};
 
 /// A particle as its neighbours see it.
@@ -44,14 +45,23 @@ impl Record {
 /// Periods of the domain, zero along axes that do not repeat.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Periods {
-    pub length: [f64; 3],
-    pub inverse: [f64; 3],
+    length: [f64; 3],
+    inverse: [f64; 3],
+    any: bool,
 }
 
 impl Periods {
+    /// The periods of a domain.
+    pub fn new(periodic: &Periodic) -> Self {
+        let length = periodic.lengths().to_array();
+        let inverse = length.map(|length| if length > 0.0 { 1.0 / length } else { 0.0 });
+        Self { length, inverse, any: periodic.any() }
+    }
+
+    /// Whether any axis repeats.
     #[inline(always)]
     pub fn any(&self) -> bool {
-        self.length != [0.0; 3]
+        self.any
     }
 
     /// Differences along an axis to the nearest image.

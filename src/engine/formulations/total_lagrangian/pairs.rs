@@ -71,16 +71,13 @@ impl HotLoop for Fill<'_> {
         let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
         let imaged = !images.is_empty();
         let room = row.room(neighbors.len(), true, imaged);
-        let mut mirrors = room.mirrors.iter_mut();
-        let chunks = neighbors.chunks(4).zip(weights.chunks(4));
-        for (((js, weights), pairs), (rows, reference)) in
-            chunks.zip(room.pairs).zip(room.rows.iter_mut().zip(room.reference))
-        {
+        for (n, pairs) in room.pairs.iter_mut().enumerate() {
+            let lanes = 4 * n..(4 * n + 4).min(neighbors.len());
             let mut four = [i; 4];
             let mut weight = Lanes4::ZERO;
-            for lane in 0..js.len().min(4) {
-                four[lane] = js[lane] as usize;
-                weight.0[lane] = f64::from(weights[lane]);
+            for (lane, bond) in lanes.enumerate() {
+                four[lane] = neighbors[bond] as usize;
+                weight.0[lane] = f64::from(weights[bond]);
             }
             let [j, k, l, m] = four;
             let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
@@ -95,9 +92,7 @@ impl HotLoop for Fill<'_> {
             }
             if imaged {
                 four = four.map(|j| images.source(j));
-                if let Some(signs) = mirrors.next() {
-                    *signs = [j, k, l, m].map(|j| images.mirror(j).unwrap_or(DVec3::ONE));
-                }
+                room.mirrors[n] = [j, k, l, m].map(|j| images.mirror(j).unwrap_or(DVec3::ONE));
             }
             let [j, k, l, m] = four;
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
@@ -105,8 +100,8 @@ impl HotLoop for Fill<'_> {
             // Removed particles, and lanes without a neighbour, have neither weight nor volume.
             let present = a.where_below(Lanes4::ZERO, weight, place[3]);
             let weight = a.where_below(Lanes4::ZERO, present, weight);
-            reference.vector = then;
-            reference.length = length(a, then);
+            let reference = FourVectors { vector: then, length: length(a, then) };
+            room.reference[n] = reference;
             pairs.current = FourVectors { vector: x, length: length(a, x) };
             pairs.weight = weight;
             pairs.support = radius;
@@ -118,7 +113,7 @@ impl HotLoop for Fill<'_> {
                     pairs.kernel.0[lane] = if present.0[lane] > 0.0 { value } else { 0.0 };
                 }
             }
-            *rows = [four[0] as u32, four[1] as u32, four[2] as u32, four[3] as u32];
+            room.rows[n] = [four[0] as u32, four[1] as u32, four[2] as u32, four[3] as u32];
         }
     }
 }
