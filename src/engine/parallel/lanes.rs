@@ -7,9 +7,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 /// Four numbers in one vector register.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct Lanes4(pub [f64; 4]);
+
+impl Default for Lanes4 {
+    /// Zero. A derived implementation would call that of arrays, which does not end up inside of hot loops.
+    #[inline(always)]
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
 
 impl Lanes4 {
     /// Zero in all lanes.

@@ -41,6 +41,8 @@ pub struct Bonds {
     pub(super) weights: Vec<f32>,
     /// Inverse of M_i = sum_j V_j w_ij X_ij (x) X_ij; zero for a free particle.
     pub(super) inverse_moment: Vec<Sym3>,
+    /// `sum_j V_j w_ij X_ij`.
+    pub(super) reach: Vec<DVec3>,
     /// `sum_j V_j w_ij`, 1/m2.
     weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
@@ -158,28 +160,32 @@ impl Bonds {
         volume: &[f64],
         images: &Images,
     ) {
-        let corrected: Vec<(Option<Sym3>, f64)> = rows
+        let corrected: Vec<(Option<Sym3>, DVec3, f64)> = rows
             .clone()
             .into_par_iter()
             .map(|i| {
                 let mut moment = MomentMatrix::new(dimension);
-                let mut weight_sum = 0.0;
+                let (mut reach, mut weight_sum) = (DVec3::ZERO, 0.0);
                 for (j, weight) in self.row(i) {
                     let volume_weight = volume[images.source(j)] * f64::from(weight);
-                    moment.add(volume_weight, images.pair(position, i, j));
+                    let x_ij = images.pair(position, i, j);
+                    moment.add(volume_weight, x_ij);
+                    reach += x_ij * volume_weight;
                     weight_sum += volume_weight;
                 }
-                (moment.inverse().filter(|_| volume[i] > 0.0), weight_sum)
+                (moment.inverse().filter(|_| volume[i] > 0.0), reach, weight_sum)
             })
             .collect();
         self.inverse_moment.resize(self.inverse_moment.len().max(rows.end), Sym3::ZERO);
+        self.reach.resize(self.inverse_moment.len(), DVec3::ZERO);
         self.weight_sum.resize(self.inverse_moment.len(), 0.0);
         self.free.retain(|&row| !rows.contains(&(row as usize)));
-        for (i, (inverse, weight_sum)) in rows.zip(corrected) {
+        for (i, (inverse, reach, weight_sum)) in rows.zip(corrected) {
             if inverse.is_none() {
                 self.free.push(u32::try_from(i).unwrap_or(u32::MAX));
             }
             self.inverse_moment[i] = inverse.unwrap_or_default();
+            self.reach[i] = reach;
             self.weight_sum[i] = weight_sum;
         }
     }
@@ -211,6 +217,6 @@ impl Bonds {
     pub fn bytes(&self) -> usize {
         self.offsets.len() * 4
             + self.neighbors.len() * 8
-            + self.inverse_moment.len() * (size_of::<Sym3>() + size_of::<f64>())
+            + self.inverse_moment.len() * (size_of::<Sym3>() + size_of::<DVec3>() + size_of::<f64>())
     }
 }

@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
@@ -92,9 +94,9 @@ impl Deformation {
     /// Runs the pass over all bodies; states of laws advance by `dt`, s.
     pub(super) fn pass(&mut self, world: &World, packed: &mut PackedRows, dt: f64) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        let PackedRows { bonds, images, sites, pair_stress, .. } = packed;
-        pack(&view, self.removed.rows(), &mut sites[..view.len()])?;
-        images.fill_sites(sites);
+        let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, .. } = packed;
+        pack(&view, *origin, self.removed.rows(), &mut sites[..view.len()])?;
+        images.fill_sites(*origin, sites);
         let mut gradient = view.write::<DeformationGradient>()?;
         let mut stress = view.write::<PiolaStress>()?;
         let mut modulus = view.write::<HourglassModulus>().ok();
@@ -122,6 +124,7 @@ impl Deformation {
                     deformation: bytemuck::cast_slice_mut(&mut gradient[rows.clone()]),
                     stress: bytemuck::cast_slice_mut(&mut stress[rows.clone()]),
                     pair_stress: &mut pair_stress[rows.clone()],
+                    own_pull: &mut own_pull[rows.clone()],
                     state: state.split(rows.len()).0,
                     memory: BondMemory {
                         modulus: modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
@@ -132,7 +135,7 @@ impl Deformation {
             });
             self.found.push(sum);
         }
-        images.fill_pair_stress(pair_stress);
+        images.fill_pair_stress(sites, pair_stress);
         Ok(())
     }
 
@@ -247,7 +250,7 @@ fn rows_of<'a, C: Column<Value = f64>>(column: &'a mut [C], rows: &Range<usize>)
 }
 
 /// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.
-fn pack(view: &PhaseView<'_>, removed: &[u32], sites: &mut [Site]) -> Result<(), StepError> {
+fn pack(view: &PhaseView<'_>, origin: DVec3, removed: &[u32], sites: &mut [Site]) -> Result<(), StepError> {
     let position = view.read::<Position>()?;
     let reference = view.read::<ReferencePosition>()?;
     let volume = view.read::<ReferenceVolume>()?;
@@ -255,7 +258,8 @@ fn pack(view: &PhaseView<'_>, removed: &[u32], sites: &mut [Site]) -> Result<(),
     type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
     for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
         for (k, site) in sites.iter_mut().enumerate() {
-            *site = Site::new(reference[k].0, x[k].0, volume[k].0);
+            let reference = reference[k].0;
+            *site = Site::new(reference - origin, x[k].0 - reference, volume[k].0);
         }
     });
     for &row in removed {

@@ -4,7 +4,7 @@
 //! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements keep the digits of
 //! small strains). In plane strain the third row and column are those of the identity.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
@@ -57,6 +57,8 @@ pub(super) struct DeformationRows<'a> {
     pub deformation: &'a mut [DMat3],
     pub stress: &'a mut [DMat3],
     pub pair_stress: &'a mut [PairStress],
+    /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`, the part of the force that knows no stress but its own.
+    pub own_pull: &'a mut [DVec3],
     pub state: StateRows<'a>,
     pub memory: BondMemory<'a>,
 }
@@ -70,14 +72,16 @@ impl Split for DeformationRows<'_> {
         let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
         let (stress, stress_rest) = self.stress.split_at_mut(at);
         let (pair_stress, pair_stress_rest) = self.pair_stress.split_at_mut(at);
+        let (own_pull, own_pull_rest) = self.own_pull.split_at_mut(at);
         let (state, state_rest) = self.state.split(at);
         let (memory, memory_rest) = self.memory.split(at);
         (
-            Self { deformation, stress, pair_stress, state, memory },
+            Self { deformation, stress, pair_stress, own_pull, state, memory },
             Self {
                 deformation: deformation_rest,
                 stress: stress_rest,
                 pair_stress: pair_stress_rest,
+                own_pull: own_pull_rest,
                 state: state_rest,
                 memory: memory_rest,
             },
@@ -109,6 +113,7 @@ impl DeformationPass<'_> {
         let n = rows.deformation.len();
         let mut gradient = [DMat3::ZERO; BLOCK];
         let mut misfit = [0.0; BLOCK];
+        let mut stretch = [DVec3::ZERO; BLOCK];
         let mut volume = [0.0; BLOCK];
         let mut energy = [0.0; BLOCK];
         let mut modulus = [0.0; BLOCK];
@@ -122,6 +127,7 @@ impl DeformationPass<'_> {
             deformation: rows.deformation,
             gradient: &mut gradient,
             misfit: &mut misfit,
+            stretch: &mut stretch,
             volume: &mut volume,
         };
         run_hot_in(self.plane, gather);
@@ -156,6 +162,11 @@ impl DeformationPass<'_> {
                 pair_stress: PairStressRows(rows.pair_stress),
             });
         }
+        let completed = rows.pair_stress.iter_mut().zip(rows.own_pull);
+        for (k, (pair_stress, own_pull)) in completed.enumerate() {
+            pair_stress.complete(&sites[first + k]);
+            *own_pull = pair_stress.times(bonds.reach[first + k], stretch[k]);
+        }
         for k in 0..n {
             sum.strain += energy[k] * volume[k];
             sum.plastic_work += plastic_work[k] * volume[k];
@@ -175,39 +186,80 @@ struct Gather<'a> {
     deformation: &'a mut [DMat3],
     gradient: &'a mut [DMat3; BLOCK],
     misfit: &'a mut [f64; BLOCK],
+    /// `sum_j V_j w_ij u_ij`.
+    stretch: &'a mut [DVec3; BLOCK],
     volume: &'a mut [f64; BLOCK],
 }
 
 impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, sites, first, deformation, gradient, misfit, volume } = self;
+        let Self { bonds, sites, first, deformation, gradient, misfit, stretch, volume } = self;
         for (k, f_i) in deformation.iter_mut().enumerate() {
             let i = first + k;
             let site = sites[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            // Columns of sum_j V_j w_ij u_ij (x) X_ij, and the sum of V_j w_ij u_ij^2 per component.
-            let mut spread = [Lanes4::ZERO; D];
-            let mut square = Lanes4::ZERO;
-            for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
-                let other = &sites[j as usize];
-                let reference = a.minus(other.reference, site.reference);
-                let displacement = a.minus(other.displacement, site.displacement);
-                let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
-                for (axis, column) in spread.iter_mut().enumerate() {
-                    *column = a.scale_add(reference.0[axis], weighted, *column);
-                }
-                square = a.times_add(displacement, weighted, square);
+            let (mut even, mut odd) = (Spread::<D>::ZERO, Spread::<D>::ZERO);
+            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+            for (j, weight) in pairs.iter().zip(weights) {
+                even.add(a, site.displacement, &sites[j[0] as usize], weight[0]);
+                odd.add(a, site.displacement, &sites[j[1] as usize], weight[1]);
+            }
+            for (&j, &weight) in last.iter().zip(last_weight) {
+                even.add(a, site.displacement, &sites[j as usize], weight);
+            }
+            let Spread { mut spread, stretched, square } = even.plus(a, &odd);
+            for axis in 0..D {
+                spread[axis] = a.scale_add(-site.reference.0[axis], stretched, spread[axis]);
             }
             // A free particle has a zero inverse, and so F = I.
             let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
             let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
             misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
+            stretch[k] = stretched.xyz();
             volume[k] = site.reference.0[3];
             gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
             *f_i = DMat3::IDENTITY + gradient[k];
         }
+    }
+}
+
+/// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
+/// wait for each other.
+struct Spread<const D: usize> {
+    /// Columns of `sum_j V_j w_ij u_ij (x) X_j`: X_i is taken off behind the loop. u_ij is made first, so that a body that
+    /// has moved as a whole has no gradient, to the bit.
+    spread: [Lanes4; D],
+    /// `sum_j V_j w_ij u_ij`.
+    stretched: Lanes4,
+    /// `sum_j V_j w_ij u_ij^2` per component.
+    square: Lanes4,
+}
+
+impl<const D: usize> Spread<D> {
+    const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
+        let displacement = a.minus(other.displacement, displacement);
+        let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
+        for axis in 0..D {
+            self.spread[axis] = a.scale_add(other.reference.0[axis], weighted, self.spread[axis]);
+        }
+        self.stretched = a.plus(self.stretched, weighted);
+        self.square = a.times_add(displacement, weighted, self.square);
+    }
+
+    #[inline(always)]
+    fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
+        for axis in 0..D {
+            self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
+        }
+        self.stretched = a.plus(self.stretched, other.stretched);
+        self.square = a.plus(self.square, other.square);
+        self
     }
 }
 
@@ -237,8 +289,9 @@ impl HotLoop for MakePairStress<'_> {
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
         for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
-            let columns = [p.x_axis, p.y_axis, p.z_axis].map(|column| Lanes4::new(column, 0.0));
-            out.0 = fit::<A, 3>(a, &columns, inverse);
+            let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
+            let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
+            out.columns = fit::<A, 3>(a, &columns, inverse);
         }
     }
 }

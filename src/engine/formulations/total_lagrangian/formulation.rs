@@ -77,8 +77,12 @@ pub const INTERNAL_FORCE: &str = "total_lagrangian_force";
 pub(super) struct PackedRows {
     pub(super) bonds: Bonds,
     pub(super) images: Images,
+    /// Where the reference positions of sites are measured from, m.
+    pub(super) origin: DVec3,
     pub(super) sites: Vec<Site>,
     pub(super) pair_stress: Vec<PairStress>,
+    /// The part of the force on each particle that comes from its own pair stress, over its volume.
+    pub(super) own_pull: Vec<DVec3>,
     /// Kernel of each body.
     pub(super) kernels: Vec<(BodyId, Kernel)>,
     /// Stable step of each body in its reference configuration, s.
@@ -251,6 +255,20 @@ fn set_up(
     }
     let sites = vec![Site::default(); view.len() + images.len()];
     let pair_stress = vec![PairStress::default(); view.len() + images.len()];
-    setup.resources.insert(PackedRows { bonds, images, sites, pair_stress, kernels, stable_step });
+    let own_pull = vec![DVec3::ZERO; view.len()];
+    let (low, high) = position
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let origin = 0.5 * (low + high);
+    setup.resources.insert(PackedRows {
+        bonds,
+        images,
+        origin,
+        sites,
+        pair_stress,
+        own_pull,
+        kernels,
+        stable_step,
+    });
     Ok(())
 }

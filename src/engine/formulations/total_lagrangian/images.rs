@@ -160,27 +160,28 @@ impl Images {
         u32::try_from(k).unwrap_or(u32::MAX)
     }
 
-    /// Fills the sites of the images.
-    pub(super) fn fill_sites(&self, sites: &mut [Site]) {
+    /// Fills the sites of the images; `origin` is where reference positions of sites are measured from, m.
+    pub(super) fn fill_sites(&self, origin: DVec3, sites: &mut [Site]) {
         let (real, images) = sites.split_at_mut(self.rows);
         for (image, (&source, &which)) in images.iter_mut().zip(self.sources.iter().zip(&self.which)) {
             let (site, map) = (&real[source as usize], &self.maps[which as usize]);
-            *image = Site {
-                reference: Lanes4::new(map.apply(site.reference.xyz()), site.reference.0[3]),
-                displacement: Lanes4::new(map.signs * site.displacement.xyz(), 0.0),
-            };
+            let reference = map.apply(site.reference.xyz() + origin) - origin;
+            *image = Site::new(reference, map.signs * site.displacement.xyz(), site.reference.0[3]);
         }
     }
 
-    /// Fills the pair stresses of the images.
-    pub(super) fn fill_pair_stress(&self, pair_stress: &mut [PairStress]) {
+    /// Fills the pair stresses of the images, which have their sites.
+    pub(super) fn fill_pair_stress(&self, sites: &[Site], pair_stress: &mut [PairStress]) {
         let (real, images) = pair_stress.split_at_mut(self.rows);
-        for (image, (&source, &which)) in images.iter_mut().zip(self.sources.iter().zip(&self.which)) {
+        let sources = self.sources.iter().zip(&self.which);
+        for ((image, site), (&source, &which)) in images.iter_mut().zip(&sites[self.rows..]).zip(sources) {
             let (own, signs) = (&real[source as usize], self.maps[which as usize].signs);
-            for (axis, column) in image.0.iter_mut().enumerate() {
+            for (axis, column) in image.columns.iter_mut().enumerate() {
+                let own = own.columns[axis];
                 // The last lane is no component of A: the bond stiffness keeps its sign.
-                *column = Lanes4::new(own.0[axis].xyz() * signs * signs[axis], own.0[axis].0[3]);
+                *column = Lanes4::new(own.xyz() * signs * signs[axis], own.0[3]);
             }
+            image.complete(site);
         }
     }
 }

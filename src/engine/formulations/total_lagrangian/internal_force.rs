@@ -1,7 +1,14 @@
 //! Second pass over pairs: the force of stress and bond terms on every particle.
 //!
 //! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]` (see [`PairStress`]): swapping i and j turns the sign
-//! of every product, so momentum is kept to round-off.
+//! of the bracket, so momentum is kept to round-off. The sum is taken as
+//!
+//! ```text
+//! A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij          known from the first pass
+//!   + sum_j V_j w_ij q_j - (sum_j V_j w_ij A_j) X_i - (sum_j V_j w_ij k_j) u_i,      q_j = A_j X_j + k_j u_j
+//! ```
+//!
+//! so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
 
 use glam::DVec3;
 
@@ -17,6 +24,7 @@ pub(super) struct InternalForce<'a> {
     pub bonds: &'a Bonds,
     pub sites: &'a [Site],
     pub pair_stress: &'a [PairStress],
+    pub own_pull: &'a [DVec3],
     /// Mass of every particle, kg.
     pub mass: &'a [f64],
     /// Acceleration of gravity, m/s2.
@@ -43,30 +51,60 @@ struct ForceRows<'a> {
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let InternalForce { bonds, sites, pair_stress, mass, gravity, .. } = *self.pass;
+        let InternalForce { bonds, sites, pair_stress, own_pull, mass, gravity, .. } = *self.pass;
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let site = sites[i];
-            let own = pair_stress[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let mut sum = Lanes4::ZERO;
-            for (&j, &weight) in bonds.neighbors[row.clone()].iter().zip(&bonds.weights[row]) {
-                let other = &sites[j as usize];
-                let stress = &pair_stress[j as usize];
-                let reference = a.minus(other.reference, site.reference);
-                let displacement = a.minus(other.displacement, site.displacement);
-                let mut pull = a.scale(own.stiffness() + stress.stiffness(), displacement);
-                for axis in 0..D {
-                    let column = a.plus(own.0[axis], stress.0[axis]);
-                    pull = a.scale_add(reference.0[axis], column, pull);
-                }
-                sum = a.scale_add(f64::from(weight) * other.reference.0[3], pull, sum);
+            let (mut even, mut odd) = (Pull::<D>::ZERO, Pull::<D>::ZERO);
+            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+            for (j, weight) in pairs.iter().zip(weights) {
+                even.add(a, &pair_stress[j[0] as usize], weight[0]);
+                odd.add(a, &pair_stress[j[1] as usize], weight[1]);
+            }
+            for (&j, &weight) in last.iter().zip(last_weight) {
+                even.add(a, &pair_stress[j as usize], weight);
+            }
+            let sum = even.plus(a, &odd);
+            let mut pull = a.scale_add(-sum.columns[0].0[3], site.displacement, sum.pull);
+            for axis in 0..D {
+                pull = a.scale_add(-site.reference.0[axis], sum.columns[axis], pull);
             }
             let volume = site.reference.0[3];
             // A removed particle has no volume here: nothing acts on it, not even gravity.
             let weight = if site.is_present() { gravity * mass[i] } else { DVec3::ZERO };
-            *force = Force(sum.xyz() * volume + weight);
+            *force = Force((pull.xyz() + own_pull[i]) * volume + weight);
         }
+    }
+}
+
+/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for every other
+/// bond, so that additions need not wait for each other.
+struct Pull<const D: usize> {
+    columns: [Lanes4; D],
+    pull: Lanes4,
+}
+
+impl<const D: usize> Pull<D> {
+    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], pull: Lanes4::ZERO };
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(&mut self, a: A, other: &PairStress, weight: f32) {
+        let weight = f64::from(weight) * other.pull.0[3];
+        for axis in 0..D {
+            self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
+        }
+        self.pull = a.scale_add(weight, other.pull, self.pull);
+    }
+
+    #[inline(always)]
+    fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
+        for axis in 0..D {
+            self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
+        }
+        self.pull = a.plus(self.pull, other.pull);
+        self
     }
 }
 
@@ -80,6 +118,7 @@ pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bo
         bonds: &packed.bonds,
         sites: &packed.sites,
         pair_stress: &packed.pair_stress,
+        own_pull: &packed.own_pull,
         mass: bytemuck::cast_slice(&mass),
         gravity,
         plane,

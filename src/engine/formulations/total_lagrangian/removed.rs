@@ -79,6 +79,7 @@ impl Deformation {
             bonds: &packed.bonds,
             sites: &packed.sites,
             pair_stress: &packed.pair_stress,
+            own_pull: &packed.own_pull,
             mass: bytemuck::cast_slice(&mass),
             gravity: glam::DVec3::ZERO,
             plane: self.plane,

@@ -7,7 +7,8 @@ use crate::parallel::Lanes4;
 
 /// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x - X.
 ///
-/// The passes work with displacements: differences of current positions would lose the digits of a small strain.
+/// The passes work with displacements: differences of current positions would lose the digits of a small strain. X is
+/// measured from the middle of the bodies, because sums are taken over X_j before X_i is subtracted.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct Site {
@@ -18,12 +19,9 @@ pub struct Site {
 }
 
 impl Site {
-    /// Packs a particle: X and x in m, V_0 in m3.
-    pub fn new(reference: DVec3, current: DVec3, volume: f64) -> Self {
-        Self {
-            reference: Lanes4::new(reference, volume),
-            displacement: Lanes4::new(current - reference, 0.0),
-        }
+    /// Packs a particle: X and u in m, V_0 in m3.
+    pub fn new(reference: DVec3, displacement: DVec3, volume: f64) -> Self {
+        Self { reference: Lanes4::new(reference, volume), displacement: Lanes4::new(displacement, 0.0) }
     }
 
     /// Whether it counts in sums over neighbours: a removed particle has no volume here.
@@ -32,19 +30,39 @@ impl Site {
     }
 }
 
-/// The pair stress of a particle, the columns of A_i, and the bond stiffness k_i in the last lane of the first column.
+/// The pair stress of a particle, and all that its neighbours need to know of it.
 ///
 /// The force on particle i is `V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]`. The stress alone gives
 /// A_i = P_i M_i^-1 and k_i = 0: then this is sum_j V_i V_j (P_i g_ij - P_j g_ji) with g_ij = M_i^-1 w_ij X_ij.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C, align(32))]
-pub struct PairStress(pub [Lanes4; 3]);
+#[repr(C, align(64))]
+pub struct PairStress {
+    /// The columns of A_i, and the bond stiffness k_i in the last lane of the first column.
+    pub columns: [Lanes4; 3],
+    /// q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane.
+    pub pull: Lanes4,
+}
 
 impl PairStress {
     /// The bond stiffness k_i, Pa/m2 times m2: a force per volume squared, weight and length.
     #[inline(always)]
     pub fn stiffness(&self) -> f64 {
-        self.0[0].0[3]
+        self.columns[0].0[3]
+    }
+
+    /// `A X + k u` for any X and u.
+    #[inline(always)]
+    pub fn times(&self, reference: DVec3, displacement: DVec3) -> DVec3 {
+        let [x, y, z] = &self.columns;
+        let stress = x.xyz() * reference.x + y.xyz() * reference.y + z.xyz() * reference.z;
+        stress + displacement * self.stiffness()
+    }
+
+    /// Makes q_i from A_i and k_i.
+    #[inline(always)]
+    pub fn complete(&mut self, site: &Site) {
+        let pull = self.times(site.reference.xyz(), site.displacement.xyz());
+        self.pull = Lanes4::new(pull, site.reference.0[3]);
     }
 }
 
@@ -55,7 +73,7 @@ impl PairStressRows<'_> {
     /// Adds `s M` to A of row `k`.
     #[inline(always)]
     pub fn add_scaled(&mut self, k: usize, s: f64, m: &DMat3) {
-        let columns = &mut self.0[k].0;
+        let columns = &mut self.0[k].columns;
         for (column, add) in columns.iter_mut().zip([m.x_axis, m.y_axis, m.z_axis]) {
             column.0[0] += s * add.x;
             column.0[1] += s * add.y;
@@ -66,6 +84,6 @@ impl PairStressRows<'_> {
     /// Adds to the bond stiffness k of row `k`.
     #[inline(always)]
     pub fn add_stiffness(&mut self, k: usize, stiffness: f64) {
-        self.0[k].0[0].0[3] += stiffness;
+        self.0[k].columns[0].0[3] += stiffness;
     }
 }
