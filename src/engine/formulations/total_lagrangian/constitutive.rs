@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
+use super::frame::Frame;
 use super::removed::RemovedRows;
 use super::rows::Site;
 use super::stable_step::StepEstimate;
@@ -94,7 +95,7 @@ impl Deformation {
     /// Runs the pass over all bodies; states of laws advance by `dt`, s.
     pub(super) fn pass(&mut self, world: &World, packed: &mut PackedRows, dt: f64) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, .. } = packed;
+        let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, frames, .. } = packed;
         pack(&view, *origin, self.removed.rows(), &mut sites[..view.len()])?;
         images.fill_sites(*origin, sites);
         let mut gradient = view.write::<DeformationGradient>()?;
@@ -102,17 +103,22 @@ impl Deformation {
         let mut modulus = view.write::<HourglassModulus>().ok();
         let mut misfit = view.write::<HourglassMisfit>().ok();
         self.found.clear();
+        frames.clear();
         for law in &self.laws {
             let rows = world.body(law.id).rows.clone();
             let mut terms: [&dyn BondTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
             for (slot, &k) in terms.iter_mut().zip(&law.terms) {
                 *slot = &*self.terms[k].term;
             }
+            let middle = rows.start + rows.len() / 2;
+            let frame = Frame::of(rows.end, &gradient[middle].0, &sites[middle]);
+            frames.push(frame);
             let pass = DeformationPass {
                 bonds,
                 sites,
                 law: &*law.law,
                 terms: &terms[..law.terms.len()],
+                frame: &frame,
                 first_row: rows.start,
                 plane: self.plane,
                 dt,
@@ -135,7 +141,7 @@ impl Deformation {
             });
             self.found.push(sum);
         }
-        images.fill_pair_stress(sites, pair_stress);
+        images.fill_pair_stress(frames, sites, pair_stress);
         Ok(())
     }
 

@@ -8,6 +8,7 @@ use glam::{DMat3, DVec3};
 
 use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
+use super::frame::Frame;
 use super::rows::{PairStress, PairStressRows, Site};
 use crate::linalg::Sym3;
 use crate::materials::{SolidLaw, StateRows, StressRows};
@@ -95,6 +96,7 @@ pub(super) struct DeformationPass<'a> {
     pub sites: &'a [Site],
     pub law: &'a dyn SolidLaw,
     pub terms: &'a [&'a dyn BondTerm],
+    pub frame: &'a Frame,
     /// First row of the body in the phase.
     pub first_row: usize,
     /// Plane strain.
@@ -164,8 +166,9 @@ impl DeformationPass<'_> {
         }
         let completed = rows.pair_stress.iter_mut().zip(rows.own_pull);
         for (k, (pair_stress, own_pull)) in completed.enumerate() {
-            pair_stress.complete(&sites[first + k]);
-            *own_pull = pair_stress.times(bonds.reach[first + k], stretch[k]);
+            pair_stress.complete(self.frame, &sites[first + k]);
+            let reach = bonds.reach[first + k];
+            *own_pull = pair_stress.times(reach, stretch[k] - self.frame.gradient * reach);
         }
         for k in 0..n {
             sum.strain += energy[k] * volume[k];

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::constitutive::{Deformation, body_law};
+use super::frame::Frame;
 use super::images::{Images, MirrorPlane, Repeat};
 use super::internal_force;
 use super::pairs::BondPairs;
@@ -83,6 +84,8 @@ pub(super) struct PackedRows {
     pub(super) pair_stress: Vec<PairStress>,
     /// The part of the force on each particle that comes from its own pair stress, over its volume.
     pub(super) own_pull: Vec<DVec3>,
+    /// Of every body, in the order of rows.
+    pub(super) frames: Vec<Frame>,
     /// Kernel of each body.
     pub(super) kernels: Vec<(BodyId, Kernel)>,
     /// Stable step of each body in its reference configuration, s.
@@ -267,6 +270,7 @@ fn set_up(
         sites,
         pair_stress,
         own_pull,
+        frames: Vec::with_capacity(bodies.len()),
         kernels,
         stable_step,
     });

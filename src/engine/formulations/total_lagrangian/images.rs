@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::frame::{Frame, frame_of};
 use super::rows::{PairStress, Site};
 use crate::parallel::Lanes4;
 use crate::world::BodySet;
@@ -171,17 +172,21 @@ impl Images {
     }
 
     /// Fills the pair stresses of the images, which have their sites.
-    pub(super) fn fill_pair_stress(&self, sites: &[Site], pair_stress: &mut [PairStress]) {
+    pub(super) fn fill_pair_stress(&self, frames: &[Frame], sites: &[Site], pair_stress: &mut [PairStress]) {
         let (real, images) = pair_stress.split_at_mut(self.rows);
         let sources = self.sources.iter().zip(&self.which);
         for ((image, site), (&source, &which)) in images.iter_mut().zip(&sites[self.rows..]).zip(sources) {
             let (own, signs) = (&real[source as usize], self.maps[which as usize].signs);
+            // A of the source is in the frame already; that of the image needs its mirror image, and then the frame.
+            let frame = &frames[frame_of(frames, source as usize)];
+            let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
             for (axis, column) in image.columns.iter_mut().enumerate() {
-                let own = own.columns[axis];
+                let last = own.columns[axis].0[3];
+                let plain = own.columns[axis].xyz() - own.stiffness() * moved[axis];
                 // The last lane is no component of A: the bond stiffness keeps its sign.
-                *column = Lanes4::new(own.xyz() * signs * signs[axis], own.0[3]);
+                *column = Lanes4::new(plain * signs * signs[axis], last);
             }
-            image.complete(site);
+            image.complete(frame, site);
         }
     }
 }

@@ -8,12 +8,13 @@
 //!   + sum_j V_j w_ij q_j - (sum_j V_j w_ij A_j) X_i - (sum_j V_j w_ij k_j) u_i,      q_j = A_j X_j + k_j u_j
 //! ```
 //!
-//! so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
+//! with A and u in the [`Frame`] of the body, so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
 
 use glam::DVec3;
 
 use super::bonds::Bonds;
 use super::formulation::PackedRows;
+use super::frame::{Frame, frame_of};
 use super::rows::{PairStress, Site};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
@@ -25,6 +26,8 @@ pub(super) struct InternalForce<'a> {
     pub sites: &'a [Site],
     pub pair_stress: &'a [PairStress],
     pub own_pull: &'a [DVec3],
+    /// Of every body.
+    pub frames: &'a [Frame],
     /// Mass of every particle, kg.
     pub mass: &'a [f64],
     /// Acceleration of gravity, m/s2.
@@ -51,7 +54,8 @@ struct ForceRows<'a> {
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let InternalForce { bonds, sites, pair_stress, own_pull, mass, gravity, .. } = *self.pass;
+        let InternalForce { bonds, sites, pair_stress, own_pull, frames, mass, gravity, .. } = *self.pass;
+        let mut frame = frame_of(frames, self.first);
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let site = sites[i];
@@ -67,7 +71,11 @@ impl PlaneOrSolid for ForceRows<'_> {
                 even.add(a, &pair_stress[j as usize], weight);
             }
             let sum = even.plus(a, &odd);
-            let mut pull = a.scale_add(-sum.columns[0].0[3], site.displacement, sum.pull);
+            if frames[frame].end <= i {
+                frame = frame_of(frames, i);
+            }
+            let rest = Lanes4::new(frames[frame].rest(&site), 0.0);
+            let mut pull = a.scale_add(-sum.columns[0].0[3], rest, sum.pull);
             for axis in 0..D {
                 pull = a.scale_add(-site.reference.0[axis], sum.columns[axis], pull);
             }
@@ -119,6 +127,7 @@ pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bo
         sites: &packed.sites,
         pair_stress: &packed.pair_stress,
         own_pull: &packed.own_pull,
+        frames: &packed.frames,
         mass: bytemuck::cast_slice(&mass),
         gravity,
         plane,

@@ -10,6 +10,7 @@ mod constitutive;
 mod deformation;
 mod fields;
 mod formulation;
+mod frame;
 mod images;
 mod internal_force;
 mod pairs;

@@ -80,6 +80,7 @@ impl Deformation {
             sites: &packed.sites,
             pair_stress: &packed.pair_stress,
             own_pull: &packed.own_pull,
+            frames: &packed.frames,
             mass: bytemuck::cast_slice(&mass),
             gravity: glam::DVec3::ZERO,
             plane: self.plane,

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 
+use super::frame::Frame;
 use crate::parallel::Lanes4;
 
 /// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x - X.
@@ -39,7 +40,7 @@ impl Site {
 pub struct PairStress {
     /// The columns of A_i, and the bond stiffness k_i in the last lane of the first column.
     pub columns: [Lanes4; 3],
-    /// q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane.
+    /// q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane. A_i and u_i are those of the [`Frame`] of the body.
     pub pull: Lanes4,
 }
 
@@ -58,11 +59,18 @@ impl PairStress {
         stress + displacement * self.stiffness()
     }
 
-    /// Makes q_i from A_i and k_i.
+    /// Takes A_i into the frame of the body, and makes q_i.
     #[inline(always)]
-    pub fn complete(&mut self, site: &Site) {
-        let pull = self.times(site.reference.xyz(), site.displacement.xyz());
-        self.pull = Lanes4::new(pull, site.reference.0[3]);
+    pub(super) fn complete(&mut self, frame: &Frame, site: &Site) {
+        let stiffness = self.stiffness();
+        let Frame { gradient, .. } = frame;
+        for (column, add) in self.columns.iter_mut().zip([gradient.x_axis, gradient.y_axis, gradient.z_axis])
+        {
+            column.0[0] += stiffness * add.x;
+            column.0[1] += stiffness * add.y;
+            column.0[2] += stiffness * add.z;
+        }
+        self.pull = Lanes4::new(self.times(site.reference.xyz(), frame.rest(site)), site.reference.0[3]);
     }
 }
 

@@ -1,0 +1,40 @@
+//! The motion of a body as a whole, which the second pass leaves out of its sums.
+
+use glam::{DMat3, DVec3};
+
+use super::rows::Site;
+
+/// An affine motion near that of the body, u = u_0 + H X: what its middle particle did in the last step.
+///
+/// The force between two particles does not change if k H is added to A and this motion is taken off u. What is left
+/// of both is as small as the strains are, and so is what rounding makes of the sums: momentum stays exact for a
+/// body that has gone far and turned.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// First row behind the body.
+    pub end: usize,
+    /// H.
+    pub gradient: DMat3,
+    /// u_0, m.
+    pub displacement: DVec3,
+}
+
+impl Frame {
+    /// The motion of a particle and its neighbourhood, for the body that ends before row `end`.
+    pub fn of(end: usize, deformation: &DMat3, site: &Site) -> Self {
+        let gradient = *deformation - DMat3::IDENTITY;
+        let displacement = site.displacement.xyz() - gradient * site.reference.xyz();
+        Self { end, gradient, displacement }
+    }
+
+    /// The displacement of a particle without this motion, m.
+    #[inline(always)]
+    pub fn rest(&self, site: &Site) -> DVec3 {
+        site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
+    }
+}
+
+/// Index of the frame of a row.
+pub(super) fn frame_of(frames: &[Frame], row: usize) -> usize {
+    frames.partition_point(|frame| frame.end <= row)
+}
