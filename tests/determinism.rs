@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{all_plugins, failing, flow, metals, removal, simulation};
+use common::{all_plugins, coupled, failing, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -23,6 +23,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (3, all_plugins(3)),
         (2, removal()),
         (2, flow(2)),
+        (2, coupled()),
         (3, flow(3)),
         (3, metals()),
         (2, failing()),

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{all_plugins, failing, flow, metals, removal, simulation};
+use common::{all_plugins, coupled, failing, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -15,6 +15,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (all_plugins(3), 200, 13),
         (removal(), 300, 14),
         (flow(2), 500, 15),
+        (coupled(), 400, 20),
+        (coupled(), 700, 21),
         (flow(3), 200, 16),
         (metals(), 200, 17),
         (failing(), 300, 18),

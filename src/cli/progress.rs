@@ -106,10 +106,14 @@ impl Progress {
     fn state(&self, sim: &Simulation) -> String {
         let clock = sim.clock();
         let limiter = sim.limit().map(|limit| format!(" ({})", limit.by)).unwrap_or_default();
+        let short = match (sim.sub_steps(), sim.short_limit()) {
+            (Some((count, _)), Some(limit)) => format!(" = {count} short steps ({})", limit.by),
+            _ => String::new(),
+        };
         let done = clock.time - self.start.0;
         let rest = self.elapsed() * (sim.end() - clock.time) / done;
         format!(
-            "t {:.4e} s  step {}  dt {:.2e} s{limiter}  {}  {} left",
+            "t {:.4e} s  step {}  dt {:.2e} s{limiter}{short}  {}  {} left",
             clock.time,
             clock.step,
             clock.dt,

@@ -31,6 +31,13 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
         counted(summary.particle_steps_per_second, "particle-steps/s"),
         summary.threads
     );
+    if let Some(short) = summary.short_steps {
+        let per_step = short as f64 / summary.steps.max(1) as f64;
+        let _ = writeln!(
+            text,
+            "solids and rigid bodies: {short} short steps, {per_step:.1} in a step of the fluid"
+        );
+    }
     for (body, count) in &summary.removed_of {
         let of = summary.particles_of.get(body).copied().unwrap_or_default();
         let _ = writeln!(text, "{count} of {of} particles of `{body}` have been removed");

@@ -4,15 +4,20 @@ use thiserror::Error;
 
 use crate::record::{OutputHandle, StateHash};
 use crate::scene::{self, Scene, Source};
-use crate::schedule::{Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits};
-use crate::world::World;
+use crate::schedule::{
+    Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits, Turn,
+};
+use crate::world::{PhaseId, World};
 
 mod checkpoint;
 mod closing;
+mod sub_steps;
 mod summary;
 
 pub use checkpoint::{Checkpoint, RestoreError, SaveError};
 pub use summary::{Outcome, Summary};
+
+use sub_steps::SubSteps;
 
 /// A simulation that is ready to run.
 pub struct Simulation {
@@ -25,6 +30,7 @@ pub struct Simulation {
     ledger: Ledger,
     limits: TimeStepLimits,
     next_limit: Option<Limit>,
+    sub_steps: SubSteps,
     stop: Option<String>,
     warnings: Vec<String>,
     references: Vec<String>,
@@ -42,6 +48,8 @@ pub(crate) struct SimulationParts {
     pub world: World,
     pub resources: Resources,
     pub schedule: Schedule,
+    /// Phases that take short steps in the steps of the rest.
+    pub sub_cycled: Vec<PhaseId>,
     /// What it writes; none if it writes nothing.
     pub output: Option<OutputHandle>,
     /// The text of its scene.
@@ -80,7 +88,8 @@ const LEAST_STEP: f64 = 1e-12;
 
 impl Simulation {
     pub(crate) fn new(parts: SimulationParts, scene: &Scene) -> Self {
-        let SimulationParts { world, resources, schedule, output, source, warnings, references } = parts;
+        let SimulationParts { world, resources, schedule, sub_cycled, output, source, warnings, references } =
+            parts;
         Self {
             ledger: Ledger::new(world.bodies().len()),
             world,
@@ -91,6 +100,7 @@ impl Simulation {
             step_rule: scene.time.step.clone(),
             limits: TimeStepLimits::default(),
             next_limit: None,
+            sub_steps: SubSteps::new(sub_cycled, &scene.time),
             stop: None,
             warnings,
             references,
@@ -168,6 +178,7 @@ impl Simulation {
         self.started = true;
         self.pace.begin(self.clock.step);
         // With dt = 0 the last kick only sets prescribed velocities and takes the energies.
+        self.start_short_steps()?;
         self.run_stages(|stage| stage.is_right_hand_side() || stage == Stage::FinalIntegrate)?;
         self.ledger.open();
         self.take_limit();
@@ -188,7 +199,9 @@ impl Simulation {
     fn try_step(&mut self) -> Result<(), RunError> {
         self.start()?;
         self.clock.dt = self.choose_step()?;
-        self.run_stages(|stage| stage != Stage::Record)?;
+        self.run_stages(|stage| stage <= Stage::InitialIntegrate)?;
+        self.run_short_steps()?;
+        self.run_stages(|stage| stage > Stage::InitialIntegrate && stage != Stage::Record)?;
         self.clock.time = if self.ends_here() { self.end } else { self.clock.end() };
         self.clock.step += 1;
         self.ledger.close_step();
@@ -219,6 +232,22 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut self.limits,
             warnings: &mut self.warnings,
+            turn: Turn::long(&self.sub_steps.phases),
+            stop: &mut self.stop,
+        };
+        self.schedule.run(&mut step, wanted)
+    }
+
+    fn run_short_stages(&mut self, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
+        let SubSteps { phases, state, .. } = &mut self.sub_steps;
+        let mut step = Step {
+            world: &self.world,
+            resources: &self.resources,
+            clock: self.clock,
+            ledger: &mut self.ledger,
+            limits: &mut state.limits,
+            warnings: &mut self.warnings,
+            turn: Turn::short(phases),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
@@ -226,6 +255,9 @@ impl Simulation {
 
     /// Takes the limit of the next step; in place, so that a step does not allocate.
     fn take_limit(&mut self) {
+        if let Some((dt, limit)) = self.sub_steps.limit() {
+            self.limits.propose(dt, || limit.by.clone());
+        }
         match (self.limits.take(), &mut self.next_limit) {
             (Some(limit), Some(next)) => next.clone_from(limit),
             (limit, next) => *next = limit.cloned(),

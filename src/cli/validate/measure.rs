@@ -3,7 +3,9 @@
 use anyhow::{Context, Result, ensure};
 use meshless_engine::glam::DVec3;
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, DeformationGradient, Force, Position, ReferencePosition};
+use meshless_engine::world::{
+    BodyId, DeformationGradient, Force, Mass, Position, ReferencePosition, Velocity,
+};
 
 /// The body of that name.
 pub fn body(simulation: &Simulation, name: &str) -> Result<BodyId> {
@@ -52,6 +54,17 @@ impl MaterialPoint {
     pub fn displacement(&self, simulation: &Simulation) -> Result<DVec3> {
         Ok(self.position(simulation)? - self.point)
     }
+}
+
+/// Momentum of the particles of some bodies, kg m/s.
+pub fn momentum(simulation: &Simulation, bodies: impl IntoIterator<Item = BodyId>) -> Result<DVec3> {
+    let mut total = DVec3::ZERO;
+    for body in bodies {
+        let (view, rows) = simulation.world().body_view(body);
+        let (mass, velocity) = (view.read::<Mass>()?, view.read::<Velocity>()?);
+        total += rows.map(|row| mass[row].0 * velocity[row].0).sum::<DVec3>();
+    }
+    Ok(total)
 }
 
 /// Values at times, ascending.

@@ -53,7 +53,7 @@ pub(super) fn apply(
     let phases = phases_of(selection, sim);
     let forces = vec![Vec::new(); parts.len()];
     let load = Load { label, law: Box::new(law), parts, forces, next: Vec::new() };
-    let system = System::new(Stage::External, label, load).on_phases(phases);
+    let system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     let system = system.reads::<Velocity>().reads::<Removed>().adds::<Force>();
     sim.add_system(declare(system));
 }
@@ -71,6 +71,9 @@ impl Run for Load {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let account = step.ledger.account(self.label, AccountKind::Supplied);
         for (k, (part, last)) in self.parts.iter().zip(&mut self.forces).enumerate() {
+            if !step.turn.is_due(step.world, part.body) {
+                continue;
+            }
             let first = last.is_empty();
             if first || !self.law.is_constant() {
                 self.law.forces(k, part, step, &mut self.next)?;

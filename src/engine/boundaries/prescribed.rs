@@ -67,7 +67,8 @@ pub(super) fn prescribe(
             .reads::<Position>()
             .reads::<Mass>()
             .reads::<Removed>()
-            .touches(Velocity::NAME, Mode::Adds),
+            .touches(Velocity::NAME, Mode::Adds)
+            .by_body(),
     );
     sim.add_system(
         System::new(Stage::FinalIntegrate, label, at_end)
@@ -75,7 +76,8 @@ pub(super) fn prescribe(
             .reads::<Mass>()
             .reads::<Removed>()
             .touches(Velocity::NAME, Mode::Adds)
-            .after(KICK),
+            .after(KICK)
+            .by_body(),
     );
     Ok(())
 }
@@ -155,6 +157,9 @@ impl Run for SetVelocity {
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let axes = self.motion.field.axes();
         for part in &self.motion.parts {
+            if !step.turn.is_due(step.world, part.body) {
+                continue;
+            }
             self.motion.velocities(part, self.end_of_step, step, &mut self.values)?;
             let (view, _) = step.world.body_view(part.body);
             let mass = view.read::<Mass>()?;

@@ -38,7 +38,8 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) {
         .reads::<Mobility>()
         .reads::<Mass>()
         .touches(<Velocity as crate::world::Column>::NAME, Mode::Writes)
-        .writes::<Position>(),
+        .writes::<Position>()
+        .by_body(),
     );
     sim.add_system(
         System::new(Stage::FinalIntegrate, KICK, Kick { bodies, sums: Vec::new() })
@@ -46,13 +47,14 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) {
             .reads::<Force>()
             .reads::<Mobility>()
             .reads::<Mass>()
-            .writes::<Velocity>(),
+            .writes::<Velocity>()
+            .by_body(),
     );
 }
 
 /// One where the mobility is zero, zero elsewhere.
 #[inline(always)]
-fn constrained(mobility: DVec3) -> DVec3 {
+pub(crate) fn constrained(mobility: DVec3) -> DVec3 {
     DVec3::select(mobility.cmpeq(DVec3::ZERO), DVec3::ONE, DVec3::ZERO)
 }
 
@@ -89,7 +91,7 @@ impl Run for KickDrift {
         let dt = step.clock.dt;
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
-        for id in self.bodies.iter() {
+        for id in step.turn.due(step.world, &self.bodies) {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
@@ -136,7 +138,7 @@ impl Run for Kick {
         let dt = step.clock.dt;
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
-        for id in self.bodies.iter() {
+        for id in step.turn.due(step.world, &self.bodies) {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();

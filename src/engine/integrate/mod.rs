@@ -2,4 +2,5 @@
 
 mod leapfrog;
 
+pub(crate) use leapfrog::constrained;
 pub use leapfrog::{DRIFT, KICK, OwnMotion, add_systems};

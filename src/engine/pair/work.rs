@@ -43,7 +43,11 @@ pub(crate) fn add_work_systems(
 ) {
     let powers = Powers::default();
     let first = FirstKick { accounts: accounts.clone(), powers: Arc::clone(&powers) };
-    sim.add_system(System::new(Stage::InitialIntegrate, "pair_work_of_first_kick", first).before(DRIFT));
+    sim.add_system(
+        System::new(Stage::InitialIntegrate, "pair_work_of_first_kick", first)
+            .on_phases([phase])
+            .before(DRIFT),
+    );
     let second = SecondKick { accounts, bodies, powers, sums: Vec::new() };
     sim.add_system(
         System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)

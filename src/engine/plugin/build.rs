@@ -73,8 +73,8 @@ fn build_in(
         let mut setup = Setup { world: &world, resources: &mut resources, warnings: &mut sim.warnings };
         step(&mut setup).map_err(|error| at_scene(scene, error))?;
     }
-    let schedule =
-        Schedule::new(std::mem::take(&mut sim.systems)).map_err(|e| vec![Problem::new(e.to_string())])?;
+    let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
+        .map_err(|e| vec![Problem::new(e.to_string())])?;
     if let Some(output) = &output {
         output.lock().prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }
@@ -82,6 +82,7 @@ fn build_in(
         world,
         resources,
         schedule,
+        sub_cycled: sim.sub_cycled,
         output,
         source: source.clone(),
         warnings: sim.warnings,

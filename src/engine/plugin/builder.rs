@@ -26,6 +26,7 @@ pub struct SimBuilder<'s> {
     pub(super) systems: Vec<System>,
     pub(super) setup: Vec<SetupStep>,
     pub(super) scope: BodySet,
+    pub(super) sub_cycled: Vec<PhaseId>,
     pub(super) warnings: Vec<String>,
     pub(super) references: Vec<String>,
     pub(super) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
@@ -47,6 +48,7 @@ impl<'s> SimBuilder<'s> {
             systems: Vec::new(),
             setup: Vec::new(),
             scope: BodySet::default(),
+            sub_cycled: Vec::new(),
             warnings: Vec::new(),
             references: Vec::new(),
             prescribed: BTreeMap::new(),
@@ -137,7 +139,17 @@ impl<'s> SimBuilder<'s> {
 
     /// Adds a system.
     pub fn add_system(&mut self, system: System) {
-        self.systems.push(system);
+        let phases = system.bodies_without_phases().map(|bodies| self.phases_of(bodies));
+        self.systems.push(match phases {
+            Some(phases) => system.on_phases(phases),
+            None => system,
+        });
+    }
+
+    /// Lets these phases take short steps, as many as their limits ask for, in the step of all others. What acts between the two
+    /// must be frozen in the long step.
+    pub fn sub_cycle(&mut self, phases: impl IntoIterator<Item = PhaseId>) {
+        self.sub_cycled.extend(phases);
     }
 
     /// Keeps the time step at or below `dt`, s; `by` names the cause to the user.

@@ -84,13 +84,15 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
     let mut force = view.write::<Force>()?;
     let mut mobility = view.write::<Mobility>()?;
     let mass = view.read::<Mass>()?;
+    let due = step.turn.is_due(step.world, body);
     let mut kinetic = 0.0;
     for row in rows.iter().map(|&row| row as usize) {
         if removed[row] == Removed::YES {
             continue;
         }
-        // The velocity is that of mid-step; the account of kinetic energy is taken at its end.
-        let v = velocity[row].0 + 0.5 * step.clock.dt * (force[row].0 * mobility[row].0);
+        // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take short steps are there.
+        let late = if due { 0.5 * step.clock.dt } else { 0.0 };
+        let v = velocity[row].0 + late * (force[row].0 * mobility[row].0);
         kinetic += 0.5 * mass[row].0 * v.length_squared();
         removed[row] = Removed::YES;
         velocity[row] = Velocity(DVec3::ZERO);
@@ -99,5 +101,9 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
     }
     let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
     step.ledger.add(account, body, kinetic);
+    if !due {
+        let held = step.ledger.account("kinetic", AccountKind::Stored);
+        step.ledger.add(held, body, -kinetic);
+    }
     Ok(())
 }

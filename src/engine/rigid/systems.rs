@@ -63,6 +63,18 @@ impl RigidBody {
         self.refresh();
     }
 
+    /// Changes force and torque of the state, N and N m, at the end of a step, and makes up for half a step, s, of the change. Returns
+    /// the gain of kinetic energy and the work that constraints supply, J.
+    pub(crate) fn push_late(&mut self, force: DVec3, torque: DVec3, half: f64) -> (f64, f64) {
+        let before = (self.kinetic(), self.state.force, self.state.torque);
+        (self.state.force, self.state.torque) = (force, torque);
+        let constraints = -half * self.constraint_power();
+        self.kick(half);
+        self.state.force += before.1;
+        self.state.torque += before.2;
+        (self.kinetic() - before.0, constraints)
+    }
+
     /// Angular velocity and momentum fit each other and the constraint.
     fn refresh(&mut self) {
         let (inertia, state) = (&self.inertia, &mut self.state);

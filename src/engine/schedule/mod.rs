@@ -8,6 +8,7 @@ mod resources;
 mod stage;
 mod step;
 mod system;
+mod turn;
 
 pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, Ledger};
@@ -17,3 +18,4 @@ pub use resources::Resources;
 pub use stage::Stage;
 pub use step::{Clock, Step, StepError};
 pub use system::{Access, Mode, Run, System};
+pub use turn::{Pace, Turn};

@@ -8,6 +8,8 @@ use thiserror::Error;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::system::{Mode, System};
+use super::turn::Pace;
+use crate::world::PhaseId;
 
 /// Why the systems cannot be put in order.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -53,12 +55,14 @@ pub enum ScheduleError {
 #[derive(Default)]
 pub struct Schedule {
     systems: Vec<System>,
+    paces: Vec<Pace>,
     times: Vec<Duration>,
 }
 
 impl Schedule {
-    /// Orders the systems; those without stated order keep the order in which they were added.
-    pub fn new(systems: Vec<System>) -> Result<Self, ScheduleError> {
+    /// Orders the systems; those without stated order keep the order in which they were added. Those of sub-cycled phases run in
+    /// the short steps.
+    pub fn new(systems: Vec<System>, sub_cycled: &[PhaseId]) -> Result<Self, ScheduleError> {
         let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
         let mut ordered = Vec::with_capacity(slots.len());
         for stage in Stage::ALL {
@@ -66,16 +70,17 @@ impl Schedule {
                 .filter(|&k| slots[k].as_ref().is_some_and(|system| system.stage == stage))
                 .collect();
             let stage_systems: Vec<System> = members.iter().filter_map(|&k| slots[k].take()).collect();
-            ordered.extend(order_stage(stage, stage_systems)?);
+            ordered.extend(order_stage(stage, stage_systems, sub_cycled)?);
         }
         let times = vec![Duration::ZERO; ordered.len()];
-        Ok(Self { systems: ordered, times })
+        let paces = ordered.iter().map(|system: &System| system.pace(sub_cycled)).collect();
+        Ok(Self { systems: ordered, paces, times })
     }
 
-    /// Runs the systems of the stages that `wanted` accepts.
+    /// Runs the systems of the stages that `wanted` accepts, as far as they run in this part of the step.
     pub fn run(&mut self, step: &mut Step<'_>, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
         for (k, (system, time)) in self.systems.iter_mut().zip(&mut self.times).enumerate() {
-            if wanted(system.stage) {
+            if wanted(system.stage) && step.turn.has(self.paces[k]) {
                 step.ledger.enter(k);
                 let start = Instant::now();
                 system.work.run(step)?;
@@ -114,13 +119,19 @@ impl Schedule {
     pub fn describe(&self) -> String {
         let mut text = String::new();
         for stage in Stage::ALL {
-            let members: Vec<_> = self.systems.iter().filter(|system| system.stage == stage).collect();
+            let all = self.systems.iter().zip(&self.paces);
+            let members: Vec<_> = all.filter(|(system, _)| system.stage == stage).collect();
             if members.is_empty() {
                 continue;
             }
             let _ = writeln!(text, "{stage:?}");
-            for system in members {
-                let _ = write!(text, "  {}", system.label);
+            for (system, pace) in members {
+                let when = match pace {
+                    Pace::Long => "",
+                    Pace::Short => " (short steps)",
+                    Pace::Both => " (long and short steps)",
+                };
+                let _ = write!(text, "  {}{when}", system.label);
                 for (mode, verb) in
                     [(Mode::Reads, "reads"), (Mode::Writes, "writes"), (Mode::Adds, "adds to")]
                 {
@@ -137,7 +148,11 @@ impl Schedule {
     }
 }
 
-fn order_stage(stage: Stage, systems: Vec<System>) -> Result<Vec<System>, ScheduleError> {
+fn order_stage(
+    stage: Stage,
+    systems: Vec<System>,
+    sub_cycled: &[PhaseId],
+) -> Result<Vec<System>, ScheduleError> {
     let precedes = stated_order(stage, &systems)?;
     let n = systems.len();
     let mut order = Vec::with_capacity(n);
@@ -151,7 +166,7 @@ fn order_stage(stage: Stage, systems: Vec<System>) -> Result<Vec<System>, Schedu
         placed[k] = true;
         order.push(k);
     }
-    check_ambiguity(stage, &systems, &precedes)?;
+    check_ambiguity(stage, &systems, &precedes, sub_cycled)?;
     let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
     Ok(order.into_iter().filter_map(|k| slots[k].take()).collect())
 }
@@ -191,10 +206,18 @@ fn stated_order(stage: Stage, systems: &[System]) -> Result<Vec<Vec<bool>>, Sche
     Ok(precedes)
 }
 
-fn check_ambiguity(stage: Stage, systems: &[System], precedes: &[Vec<bool>]) -> Result<(), ScheduleError> {
+fn check_ambiguity(
+    stage: Stage,
+    systems: &[System],
+    precedes: &[Vec<bool>],
+    sub_cycled: &[PhaseId],
+) -> Result<(), ScheduleError> {
+    let paces: Vec<Pace> = systems.iter().map(|system| system.pace(sub_cycled)).collect();
     for a in 0..systems.len() {
         for b in a + 1..systems.len() {
-            if precedes[a][b] || precedes[b][a] {
+            // Systems of the long step and of the short ones run apart.
+            let apart = matches!((paces[a], paces[b]), (Pace::Long, Pace::Short) | (Pace::Short, Pace::Long));
+            if apart || precedes[a][b] || precedes[b][a] {
                 continue;
             }
             if let Some(column) = systems[a].conflict_with(&systems[b]) {

@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::ledger::Ledger;
 use super::limits::TimeStepLimits;
 use super::resources::Resources;
+use super::turn::Turn;
 use crate::world::{MissingColumn, World};
 
 /// Where the run is in time.
@@ -45,6 +46,8 @@ pub struct Step<'s> {
     pub limits: &'s mut TimeStepLimits,
     /// What the user should look at; repeated at the end of the run.
     pub warnings: &'s mut Vec<String>,
+    /// Which part of the step this is: a system that is [`by_body`](super::System::by_body) asks it for the bodies that are due.
+    pub turn: Turn<'s>,
     /// Set it to end the run after this step; the text says why.
     pub stop: &'s mut Option<String>,
 }

@@ -4,6 +4,7 @@ use super::each::EachRow;
 use super::ledger::AccountKind;
 use super::stage::Stage;
 use super::step::{Step, StepError};
+use super::turn::Pace;
 use crate::world::{BodySet, Column, PhaseId};
 
 /// How a system touches a column.
@@ -62,6 +63,9 @@ pub struct System {
     pub(super) stage: Stage,
     pub(super) access: Vec<Access>,
     pub(super) phases: Option<Vec<PhaseId>>,
+    bodies: Option<BodySet>,
+    long: bool,
+    by_body: bool,
     pub(super) before: Vec<String>,
     pub(super) after: Vec<String>,
     pub(super) work: Box<dyn Run>,
@@ -75,6 +79,9 @@ impl System {
             stage,
             access: Vec::new(),
             phases: None,
+            bodies: None,
+            long: false,
+            by_body: false,
             before: Vec::new(),
             after: Vec::new(),
             work: Box::new(work),
@@ -89,16 +96,18 @@ impl System {
         bodies: BodySet,
         f: impl for<'r> Fn(&super::step::Clock, Q::Row<'r>) + Send + Sync + 'static,
     ) -> Self {
+        let of = bodies.clone();
         let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
             let clock = step.clock;
-            for body in bodies.iter() {
+            for body in step.turn.due(step.world, &bodies) {
                 let (phase, rows) = step.world.body_view(body);
                 Q::for_each(&phase, rows, &|row| f(&clock, row))?;
             }
             Ok(())
         });
         Q::declare(&mut system.access);
-        system
+        system.bodies = Some(of);
+        system.by_body()
     }
 
     /// [`System::each`] for a system whose energy has an account: `f` also returns the energy of the particle, J. Of an
@@ -111,10 +120,11 @@ impl System {
         (account, kind): (&'static str, AccountKind),
         f: impl for<'r> Fn(&super::step::Clock, Q::Row<'r>) -> f64 + Send + Sync + 'static,
     ) -> Self {
+        let of = bodies.clone();
         let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
             let clock = step.clock;
             let account_id = step.ledger.account(account, kind);
-            for body in bodies.iter() {
+            for body in step.turn.due(step.world, &bodies) {
                 let (phase, rows) = step.world.body_view(body);
                 let energy = Q::for_each(&phase, rows, &|row| f(&clock, row))?;
                 match kind {
@@ -127,7 +137,8 @@ impl System {
             Ok(())
         });
         Q::declare(&mut system.access);
-        system
+        system.bodies = Some(of);
+        system.by_body()
     }
 
     /// Declares that the system reads column `T`.
@@ -157,6 +168,19 @@ impl System {
         self
     }
 
+    /// Declares that the system acts on the bodies that are due alone ([`Turn::due`](super::Turn::due)): where some of its
+    /// phases are sub-cycled and others are not, it runs in the long step and in the short ones.
+    pub fn by_body(mut self) -> Self {
+        self.by_body = true;
+        self
+    }
+
+    /// Declares that the system runs once per step, also where all phases that it touches are sub-cycled.
+    pub fn in_long_steps(mut self) -> Self {
+        self.long = true;
+        self
+    }
+
     /// Runs before every system of its stage with that label.
     pub fn before(mut self, label: impl Into<String>) -> Self {
         self.before.push(label.into());
@@ -182,6 +206,26 @@ impl System {
     /// Declared access.
     pub fn access(&self) -> &[Access] {
         &self.access
+    }
+
+    /// The bodies that the system was made for, if it does not say which phases it touches.
+    pub(crate) fn bodies_without_phases(&self) -> Option<&BodySet> {
+        self.bodies.as_ref().filter(|_| self.phases.is_none())
+    }
+
+    /// When it runs, where these phases are sub-cycled.
+    pub(super) fn pace(&self, sub_cycled: &[PhaseId]) -> Pace {
+        let Some(phases) = self.phases.as_ref().filter(|phases| !self.long && !phases.is_empty()) else {
+            return Pace::Long;
+        };
+        let short = phases.iter().filter(|phase| sub_cycled.contains(phase)).count();
+        if short == phases.len() {
+            Pace::Short
+        } else if short > 0 && self.by_body {
+            Pace::Both
+        } else {
+            Pace::Long
+        }
     }
 
     pub(super) fn conflict_with(&self, other: &System) -> Option<&'static str> {

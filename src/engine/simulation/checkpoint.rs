@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Simulation;
+use super::sub_steps::SubStepState;
 use crate::parallel::instruction_path;
 use crate::record::output::OUTPUT;
 use crate::record::{
@@ -30,6 +31,7 @@ struct Header {
     ledger: Ledger,
     next_limit: Option<Limit>,
     limits: TimeStepLimits,
+    sub_steps: SubStepState,
     warnings: Vec<String>,
     systems: Vec<(String, Vec<u8>)>,
 }
@@ -112,6 +114,7 @@ impl Simulation {
             ledger: self.ledger.clone(),
             next_limit: self.next_limit.clone(),
             limits: self.limits.clone(),
+            sub_steps: self.sub_steps.state.clone(),
             warnings: self.warnings.clone(),
             systems: self.schedule.save(),
         };
@@ -132,7 +135,8 @@ impl Simulation {
 
     /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes any.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
-        let Header { clock, ledger, next_limit, limits, warnings, systems, .. } = &checkpoint.header;
+        let Header { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
+            &checkpoint.header;
         for phase in self.world.phases() {
             let view = self.world.phase(phase);
             for column in view.columns().iter() {
@@ -161,6 +165,7 @@ impl Simulation {
         self.ledger = ledger.clone();
         self.next_limit = next_limit.clone();
         self.limits = limits.clone();
+        self.sub_steps.state = sub_steps.clone();
         self.warnings = warnings.clone();
         self.started = true;
         self.pace.begin(self.clock.step);

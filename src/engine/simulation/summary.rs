@@ -37,6 +37,8 @@ pub struct Summary {
     pub end_time: f64,
     /// Steps since time 0.
     pub steps: u64,
+    /// Short steps of sub-cycled bodies since time 0; none where no body is sub-cycled.
+    pub short_steps: Option<u64>,
     /// Length of the last step, s.
     pub last_dt: f64,
     /// What limits the time step.
@@ -120,6 +122,7 @@ impl Simulation {
             time: self.clock.time,
             end_time: self.end,
             steps: self.clock.step,
+            short_steps: self.sub_steps().map(|(_, total)| total),
             last_dt: self.clock.dt,
             limited_by: self.next_limit.as_ref().map(|limit| limit.by.clone()),
             particles,

@@ -1,37 +1,23 @@
 //! The systems of a flow, once all fluids and walls of the scene are known.
 
-use std::sync::{Arc, Mutex};
-
 use glam::DVec3;
 
 use super::checks;
 use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
-use super::density::Continuity;
-use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
 use super::formulation::FluidBody;
 use super::kernel::FluidKernel;
-use super::neighbors::Neighbors;
-use super::pair_rows::FluidPairs;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
 use super::start::{StartPressure, start};
-use super::state::EquationOfState;
-use super::wall::{PreviousVelocity, WallBody};
-use super::wall_state::WallState;
-use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
+use super::systems;
+use super::wall::WallBody;
+use crate::formulations::total_lagrangian::TotalLagrangian;
 use crate::neighbors::Periodic;
-use crate::pair::{BodyTerms, add_pair_systems, add_work_systems};
 use crate::plugin::{BodyPlan, Formulation, SetupError, SimBuilder};
-use crate::removal::REMOVAL;
+use crate::rigid::Rigid;
 use crate::scene::{Dimension, Problem};
-use crate::schedule::{Stage, System};
-use crate::world::{
-    BodyId, Density, DensityRate, Force, Mass, PhaseId, Position, Pressure, ReferenceVolume, Removed,
-    Velocity,
-};
+use crate::world::BodyId;
 
-/// Label of the system that keeps the neighbour lists of fluids.
-pub(super) const NEIGHBORS: &str = "fluid_neighbors";
 /// Skin of the neighbour lists over the spacing of the fluid.
 const SKIN: f64 = 0.4;
 
@@ -51,8 +37,8 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     for wall in &walls {
         checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)?;
     }
-    let solids = solids(sim);
-    for &id in &solids {
+    let moved = moved_bodies(sim);
+    for &id in &moved {
         checks::is_fine(sim.body(id), spacing)?;
         if let Err(SetupError::Problems(problems)) =
             checks::wall_is_thick(sim.body(id), spacing, support, &periodic)
@@ -80,10 +66,13 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         };
         groups.push(group(sim.body(*id), Role::Boundary(surface), &groups));
     }
-    for id in solids {
+    for id in moved {
         let surface = Surface { no_slip: true, suction: false, velocity: DVec3::ZERO, moved: true };
         groups.push(group(sim.body(id), Role::Boundary(surface), &groups));
     }
+    let short = systems::short_phases(&groups, sim);
+    groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
+    sim.sub_cycle(short);
     let dimension = sim.dimension().count();
     let total = groups.last().map_or(0, |group| group.cloud.end);
     let cloud = FlowCloud {
@@ -93,6 +82,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         plane: sim.dimension() == Dimension::Two,
         periods: Periods::new(&periodic),
         positions: vec![DVec3::ZERO; total],
+        before: Vec::new(),
         records: vec![Record::default(); total],
         pairs: FlowPairs::new(support, SKIN * spacing, periodic),
     };
@@ -102,96 +92,13 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         setup.resources.insert(cloud);
         Ok(())
     });
-    add(&groups, sim)
+    systems::add(&groups, sim)
 }
 
-fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-    let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
-    phases.dedup();
-    let bounding = |moved: bool| {
-        let of = |group: &&Group| matches!(&group.role, Role::Boundary(surface) if surface.moved == moved);
-        groups.iter().find(of).map(|group| group.phase)
-    };
-    let (fluid, walls, solids) = (groups[0].phase, bounding(false), bounding(true));
-    let account = add_pair_systems(sim, fluid, FLUID_FORCE, FluidPairs)?;
-    sim.add_system(
-        System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
-            .on_phases(phases)
-            .after(REMOVAL)
-            .reads::<Position>()
-            .reads::<Velocity>()
-            .reads::<ReferenceVolume>(),
-    );
-    let continuity = Continuity { account, compression: Vec::new(), sums: Vec::new() };
-    sim.add_system(
-        System::new(Stage::Gradients, "fluid_continuity", continuity)
-            .on_phases([fluid])
-            .reads::<DensityRate>()
-            .reads::<Mass>()
-            .reads::<Removed>()
-            .writes::<Density>(),
-    );
-    sim.add_system(
-        System::new(
-            Stage::Constitutive,
-            "fluid_pressure",
-            EquationOfState { warned: Vec::new(), sums: Vec::new() },
-        )
-        .on_phases([fluid])
-        .reads::<Density>()
-        .reads::<Mass>()
-        .reads::<Removed>()
-        .writes::<Pressure>(),
-    );
-    let gravity = sim.gravity();
-    add_force(sim, groups, fluid, FLUID_FORCE, Some(gravity));
-    if walls.is_some() || solids.is_some() {
-        sim.add_system(
-            System::new(Stage::Boundary, "wall_pressure", WallState { gravity, beside: Vec::new() })
-                .on_phases(walls)
-                .reads::<Velocity>()
-                .writes::<Pressure>()
-                .writes::<PreviousVelocity>(),
-        );
-    }
-    if let Some(walls) = walls {
-        add_force(sim, groups, walls, "fluid_force_on_walls", Some(gravity));
-    }
-    if let Some(solids) = solids {
-        add_force(sim, groups, solids, "fluid_force_on_solids", None);
-    }
-    Ok(())
-}
-
-fn add_force(
-    sim: &mut SimBuilder<'_>,
-    groups: &[Group],
-    phase: PhaseId,
-    label: &'static str,
-    gravity: Option<DVec3>,
-) {
-    let of_phase = groups.iter().filter(|group| group.phase == phase);
-    let terms = |group: &Group| BodyTerms {
-        id: group.body,
-        terms: (0..ACCOUNTS.len()).collect(),
-        forces: Vec::new(),
-    };
-    let parts = Arc::new(Mutex::new(of_phase.map(terms).collect()));
-    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts) };
-    let system =
-        System::new(Stage::Rates, label, force).on_phases([phase]).reads::<Mass>().reads::<Removed>();
-    // Solids have got their weight with their internal force.
-    sim.add_system(match gravity {
-        Some(_) => system.writes::<Force>(),
-        None => system.after(INTERNAL_FORCE).adds::<Force>(),
-    });
-    add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
-}
-
-/// The bodies that a fluid moves.
-fn solids(sim: &SimBuilder<'_>) -> Vec<BodyId> {
-    let moved = sim.bodies().iter().filter(|body| body.formulation == TotalLagrangian::NAME);
-    moved.map(|body| body.id).collect()
+/// The bodies that a fluid moves, those of a phase together.
+fn moved_bodies(sim: &SimBuilder<'_>) -> Vec<BodyId> {
+    let of = |name| sim.bodies().iter().filter(move |body| body.formulation == name).map(|body| body.id);
+    of(TotalLagrangian::NAME).chain(of(Rigid::NAME)).collect()
 }
 
 fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {
@@ -202,6 +109,7 @@ fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {
         rows: body.rows.clone(),
         cloud: start..start + body.rows.len(),
         role,
+        short: false,
     }
 }
 

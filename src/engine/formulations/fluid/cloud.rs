@@ -62,6 +62,8 @@ pub struct Group {
     pub cloud: Range<usize>,
     /// What it is to the flow.
     pub role: Role,
+    /// Whether it takes short steps in those of the flow.
+    pub short: bool,
 }
 
 impl Group {
@@ -102,6 +104,8 @@ pub struct FlowCloud {
     pub(super) plane: bool,
     pub(super) periods: Periods,
     pub(super) positions: Vec<DVec3>,
+    /// Positions of what bounds the flow at the start of the step, of bodies that take short steps alone.
+    pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,
 }

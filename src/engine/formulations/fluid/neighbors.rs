@@ -20,7 +20,7 @@ impl Run for Neighbors {
         cloud.read_positions(step.world)?;
         let FlowCloud { positions, pairs, fluid, .. } = &mut *cloud;
         let failed = |error: crate::neighbors::NeighborError| StepError::System {
-            system: super::assemble::NEIGHBORS.to_owned(),
+            system: super::systems::NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
         if self.restored.len() == positions.len() {
@@ -32,6 +32,7 @@ impl Run for Neighbors {
         }
         self.built.clone_from(&pairs.built);
         cloud.pack(step.world)?;
+        cloud.average_motion(step.clock.dt);
         Ok(())
     }
 

@@ -1,16 +1,21 @@
 //! The wall formulation: particles that bound a fluid, and move only as they are told.
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::plugin::{Formulation, SetupError, SimBuilder};
 use crate::scene::Vec3;
-use crate::world::{BodyId, ColumnSet, Pressure};
+use crate::schedule::{Stage, System};
+use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Pressure, Removed};
 
 crate::column! {
     /// Velocity of a wall at the middle of the step before.
     pub struct PreviousVelocity(glam::DVec3) = "previous_velocity", "v_n-1/2", "m/s";
 }
+
+/// Label of the system that gives walls their weight.
+pub(super) const WALL_WEIGHT: &str = "wall_weight";
 
 /// Wall: bounds the fluid, is moved by nothing but conditions and the `velocity` of its body. It needs as many layers of
 /// particles as the support of the fluid reaches, three in two dimensions and default settings.
@@ -52,6 +57,16 @@ impl Formulation for Wall {
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let gravity = sim.gravity();
+        let ids = BodySet::new(bodies.iter().map(|(id, _)| *id));
+        sim.add_system(System::each::<(&mut Force, &Mass, &Removed)>(
+            Stage::Rates,
+            WALL_WEIGHT,
+            ids,
+            move |_, (force, mass, removed)| {
+                force.0 = if *removed == Removed::NO { gravity * mass.0 } else { DVec3::ZERO };
+            },
+        ));
         for (id, parameters) in bodies {
             sim.extend(WallBody { id, parameters });
         }

@@ -8,7 +8,7 @@ use super::wall::PreviousVelocity;
 use super::wall_pressure::{Beside, WallPressure};
 use crate::parallel::{Lanes4, for_each_block};
 use crate::schedule::{Run, Step, StepError};
-use crate::world::{Pressure, Velocity};
+use crate::world::Pressure;
 
 /// Sets pressure and velocity of walls in the packed rows, and their pressure column.
 pub(super) struct WallState {
@@ -17,8 +17,7 @@ pub(super) struct WallState {
     pub beside: Vec<Beside>,
 }
 
-type Rows<'a> =
-    (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [Velocity], &'a [Beside]);
+type Rows<'a> = (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [Beside]);
 
 impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
@@ -37,15 +36,9 @@ impl Run for WallState {
             let view = step.world.phase(group.phase);
             let mut pressure = view.write::<Pressure>()?;
             let mut previous = view.write::<PreviousVelocity>()?;
-            let velocity = view.read::<Velocity>()?;
             let rows = group.rows.clone();
-            let slices: Rows<'_> = (
-                &mut records[group.cloud.clone()],
-                &mut pressure[rows.clone()],
-                &mut previous[rows.clone()],
-                &velocity[rows],
-                beside,
-            );
+            let slices: Rows<'_> =
+                (&mut records[group.cloud.clone()], &mut pressure[rows.clone()], &mut previous[rows], beside);
             let (gravity, dt) = (self.gravity, step.clock.dt);
             for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
         }
@@ -53,14 +46,9 @@ impl Run for WallState {
     }
 }
 
-fn apply(
-    surface: &Surface,
-    gravity: DVec3,
-    dt: f64,
-    (records, pressure, previous, velocity, beside): Rows<'_>,
-) {
+fn apply(surface: &Surface, gravity: DVec3, dt: f64, (records, pressure, previous, beside): Rows<'_>) {
     for (k, record) in records.iter_mut().enumerate() {
-        let v = velocity[k].0;
+        let v = record.velocity();
         let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
         previous[k] = PreviousVelocity(v);
         let fluid = &beside[k];

@@ -1,0 +1,193 @@
+//! The force of a flow on bodies that take short steps.
+//!
+//! It is frozen in the long step: the short steps run with what the flow did at its start, f(n). At its end the change comes as an
+//! impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly the opposite of what the kicks of the
+//! fluid were. The fluid sees the mean velocity of the long step, on which the frozen force does its work. With one
+//! short step in the long one this is the leapfrog, and under a constant force nothing kicks at all.
+
+use glam::DVec3;
+
+use super::cloud::{FlowCloud, Group, Role};
+use super::force::ACCOUNTS;
+use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
+use super::pair_force::{ForceRows, PARTS, PairForce};
+use crate::parallel::{BlockSum, Lanes4, for_each_block};
+use crate::plugin::SimBuilder;
+use crate::rigid::RigidBodies;
+use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
+use crate::world::{BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
+
+crate::column! {
+    /// Force of the flow in the last long step.
+    pub struct CouplingForce(glam::DVec3) = "coupling_force", "f_c", "N";
+}
+crate::column! {
+    /// Viscous part of the force of the flow.
+    pub struct CouplingFriction(glam::DVec3) = "coupling_friction", "f_v", "N";
+}
+crate::column! {
+    /// Part of the force of the flow that is due to the pressure of the boundary.
+    pub struct CouplingPressure(glam::DVec3) = "coupling_pressure", "f_w", "N";
+}
+
+/// Adds the systems for one phase of bodies beside the flow; other systems have given them their weight, and make the second kick.
+pub(super) fn add(
+    sim: &mut SimBuilder<'_>,
+    groups: &[Group],
+    phase: PhaseId,
+    label: &'static str,
+    [weight, kick]: [&'static str; 2],
+) {
+    let bodies = BodySet::new(groups.iter().filter(|group| group.phase == phase).map(|group| group.body));
+    sim.add_column_to::<CouplingForce>(&bodies);
+    sim.add_column_to::<CouplingFriction>(&bodies);
+    sim.add_column_to::<CouplingPressure>(&bodies);
+    sim.add_system(
+        System::new(Stage::PreStep, format!("{label}_before"), move |step: &mut Step<'_>| {
+            Ok(step.resources.get_mut::<FlowCloud>().remember(phase, step.world)?)
+        })
+        .on_phases([phase])
+        .reads::<Position>()
+        .in_long_steps(),
+    );
+    sim.add_system(
+        System::each::<(Adds<Force>, &CouplingForce)>(
+            Stage::Rates,
+            format!("{label}_frozen"),
+            bodies,
+            |_, (force, coupling)| force.0 += coupling.0,
+        )
+        .on_phases([phase])
+        .after(weight),
+    );
+    let coupling = Coupling { phase, total: Vec::new(), parts: Vec::new(), sums: Vec::new() };
+    sim.add_system(
+        System::new(Stage::FinalIntegrate, label, coupling)
+            .on_phases([phase])
+            .in_long_steps()
+            .reads::<Mass>()
+            .reads::<Mobility>()
+            .reads::<Removed>()
+            .adds::<Force>()
+            .adds::<Velocity>()
+            .after(kick),
+    );
+}
+
+impl FlowCloud {
+    /// Keeps the positions of a phase at the start of the long step.
+    fn remember(&mut self, phase: PhaseId, world: &crate::world::World) -> Result<(), StepError> {
+        self.before.resize(self.positions.len() - self.fluid, DVec3::ZERO);
+        for group in self.groups.iter().filter(|group| group.phase == phase) {
+            let position = world.phase(group.phase).read::<Position>()?;
+            let before = &mut self.before[group.cloud.start - self.fluid..group.cloud.end - self.fluid];
+            before.copy_from_slice(bytemuck::cast_slice(&position[group.rows.clone()]));
+        }
+        Ok(())
+    }
+
+    /// Gives bodies that take short steps their mean velocity over the long one, s.
+    pub(super) fn average_motion(&mut self, dt: f64) {
+        if dt == 0.0 {
+            return;
+        }
+        let Self { groups, records, positions, before, fluid, .. } = self;
+        for group in groups.iter().filter(|group| group.short) {
+            let before = &before[group.cloud.start - *fluid..group.cloud.end - *fluid];
+            let slices = (&mut records[group.cloud.clone()], &positions[group.cloud.clone()], before);
+            type Rows<'a> = (&'a mut [super::Record], &'a [DVec3], &'a [DVec3]);
+            for_each_block(slices, &mut Vec::new(), &|_, (records, now, before): Rows<'_>| {
+                for (k, record) in records.iter_mut().enumerate() {
+                    record.motion = Lanes4::new((now[k] - before[k]) / dt, 0.0);
+                }
+            });
+        }
+    }
+}
+
+struct Coupling {
+    phase: PhaseId,
+    /// Force on the particles of a body, and its parts, N.
+    total: Vec<Force>,
+    parts: Vec<DVec3>,
+    sums: Vec<Exchange>,
+}
+
+/// What the change of the force does, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Exchange {
+    /// Gain of kinetic energy.
+    pub kinetic: f64,
+    /// Work that constraints take up.
+    pub constraints: f64,
+    /// Work of the parts of the force over the long step.
+    pub parts: [f64; PARTS],
+}
+
+impl BlockSum for Exchange {
+    fn add(&mut self, next: &Self) {
+        self.kinetic += next.kinetic;
+        self.constraints += next.constraints;
+        (0..PARTS).for_each(|part| self.parts[part] += next.parts[part]);
+    }
+}
+
+impl Run for Coupling {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let cloud = step.resources.get::<FlowCloud>();
+        let rigid = step.resources.try_get::<RigidBodies>().map(|bodies| bodies.clone());
+        for group in cloud.groups.iter().filter(|group| group.phase == self.phase) {
+            self.total.resize(group.rows.len(), Force::default());
+            self.parts.resize(PARTS * group.rows.len(), DVec3::ZERO);
+            PairForce { cloud: &cloud, group, adds: false }
+                .run(ForceRows { total: &mut self.total, parts: &mut self.parts });
+            let view = step.world.phase(group.phase);
+            let rows = group.rows.clone();
+            let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);
+            let removed = view.read::<Removed>()?;
+            let (mut velocity, mut force) = (view.write::<Velocity>()?, view.write::<Force>()?);
+            let mut frozen = view.write::<CouplingForce>()?;
+            let mut friction = view.write::<CouplingFriction>()?;
+            let mut pressure = view.write::<CouplingPressure>()?;
+            let first = group.cloud.start - cloud.fluid;
+            let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
+            let particles = Particles {
+                dt: step.clock.dt,
+                position: &cloud.positions[group.cloud.clone()],
+                before,
+                mass: &mass[rows.clone()],
+                mobility: &mobility[rows.clone()],
+                removed: &removed[rows.clone()],
+                total: &self.total,
+                parts: &self.parts,
+            };
+            let rows = ParticleRows {
+                velocity: &mut velocity[rows.clone()],
+                force: &mut force[rows.clone()],
+                frozen: &mut frozen[rows.clone()],
+                friction: &mut friction[rows.clone()],
+                pressure: &mut pressure[rows],
+            };
+            let body = |bodies: &RigidBodies| bodies.lock().iter().position(|body| body.id == group.body);
+            let exchange = match rigid.as_ref().and_then(|bodies| Some((bodies, body(bodies)?))) {
+                Some((bodies, k)) => give_to_rigid_body(&mut bodies.lock()[k], &particles, rows),
+                None => particles.give(rows, &mut self.sums),
+            };
+            let moving =
+                if let Role::Boundary(surface) = &group.role { surface.velocity } else { DVec3::ZERO };
+            // What drives a belt does the work that friction turns into heat.
+            let belt = -self.parts.iter().step_by(PARTS).sum::<DVec3>().dot(moving) * step.clock.dt;
+            let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
+            let constraints = step.ledger.account("constraints", AccountKind::Supplied);
+            step.ledger.add(kinetic, group.body, exchange.kinetic);
+            step.ledger.add(constraints, group.body, exchange.constraints + belt);
+            for (name, work) in ACCOUNTS.iter().zip(exchange.parts) {
+                let account = step.ledger.account(name, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, -work);
+            }
+            let viscosity = step.ledger.account(ACCOUNTS[0], AccountKind::Dissipated);
+            step.ledger.add(viscosity, group.body, belt);
+        }
+        Ok(())
+    }
+}

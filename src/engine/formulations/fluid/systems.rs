@@ -1,0 +1,132 @@
+//! The systems of a flow and of its effect on what bounds it.
+
+use std::sync::{Arc, Mutex};
+
+use super::cloud::{Group, Role};
+use super::coupling;
+use super::density::Continuity;
+use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
+use super::neighbors::Neighbors;
+use super::pair_rows::FluidPairs;
+use super::state::EquationOfState;
+use super::wall::{PreviousVelocity, WALL_WEIGHT, Wall};
+use super::wall_state::WallState;
+use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
+use crate::integrate::KICK;
+use crate::pair::{BodyTerms, add_pair_systems, add_work_systems};
+use crate::plugin::{Formulation, SetupError, SimBuilder};
+use crate::removal::REMOVAL;
+use crate::rigid::{RIGID_KICK, RIGID_WEIGHT, Rigid};
+use crate::schedule::{Stage, System};
+use crate::world::{
+    Density, DensityRate, Force, Mass, PhaseId, Position, Pressure, ReferenceVolume, Removed, Velocity,
+};
+
+/// Label of the system that keeps the neighbour lists of fluids.
+pub(super) const NEIGHBORS: &str = "fluid_neighbors";
+
+/// The phases of what bounds the flow.
+fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
+    let mut phases: Vec<PhaseId> =
+        groups.iter().filter(|group| group.fluid().is_none()).map(|group| group.phase).collect();
+    phases.dedup();
+    phases
+}
+
+/// The phases that take short steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
+pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
+    let touched = |group: &Group| {
+        let name = &sim.body(group.body).name;
+        sim.scene().contacts.iter().any(|contact| contact.between.0 == *name || contact.between.1 == *name)
+    };
+    let moved = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.moved);
+    if !groups.iter().any(moved) {
+        return Vec::new();
+    }
+    let walls = |group: &&Group| group.fluid().is_none() && (moved(group) || touched(group));
+    let mut phases: Vec<PhaseId> = groups.iter().filter(walls).map(|group| group.phase).collect();
+    phases.dedup();
+    phases
+}
+
+/// Adds the systems of the groups.
+pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
+    phases.dedup();
+    let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
+    let account = add_pair_systems(sim, fluid, FLUID_FORCE, FluidPairs)?;
+    sim.add_system(
+        System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
+            .on_phases(phases)
+            .after(REMOVAL)
+            .reads::<Position>()
+            .reads::<Velocity>()
+            .reads::<ReferenceVolume>(),
+    );
+    let continuity = Continuity { account, compression: Vec::new(), sums: Vec::new() };
+    sim.add_system(
+        System::new(Stage::Gradients, "fluid_continuity", continuity)
+            .on_phases([fluid])
+            .reads::<DensityRate>()
+            .reads::<Mass>()
+            .reads::<Removed>()
+            .writes::<Density>(),
+    );
+    sim.add_system(
+        System::new(
+            Stage::Constitutive,
+            "fluid_pressure",
+            EquationOfState { warned: Vec::new(), sums: Vec::new() },
+        )
+        .on_phases([fluid])
+        .reads::<Density>()
+        .reads::<Mass>()
+        .reads::<Removed>()
+        .writes::<Pressure>(),
+    );
+    let gravity = sim.gravity();
+    add_force(sim, groups, fluid, FLUID_FORCE);
+    if !boundaries.is_empty() {
+        sim.add_system(
+            System::new(Stage::Boundary, "wall_pressure", WallState { gravity, beside: Vec::new() })
+                .on_phases(boundaries.iter().copied())
+                .in_long_steps()
+                .reads::<Velocity>()
+                .writes::<Pressure>()
+                .writes::<PreviousVelocity>(),
+        );
+    }
+    for phase in boundaries {
+        let of_phase = sim.bodies().iter().find(|body| body.phase == phase);
+        let (label, weight, kick) = match of_phase.map(|body| body.formulation) {
+            Some(Wall::NAME) => ("fluid_force_on_walls", WALL_WEIGHT, KICK),
+            Some(TotalLagrangian::NAME) => ("fluid_force_on_solids", INTERNAL_FORCE, KICK),
+            Some(Rigid::NAME) => ("fluid_force_on_rigid_bodies", RIGID_WEIGHT, RIGID_KICK),
+            _ => continue,
+        };
+        if groups.iter().any(|group| group.phase == phase && group.short) {
+            coupling::add(sim, groups, phase, label, [weight, kick]);
+        } else {
+            add_force(sim, groups, phase, label);
+        }
+    }
+    Ok(())
+}
+
+/// Adds the force on particles that take long steps; those that flow get their weight with it.
+fn add_force(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, label: &'static str) {
+    let of_phase = || groups.iter().filter(|group| group.phase == phase);
+    let terms = |group: &Group| BodyTerms {
+        id: group.body,
+        terms: (0..ACCOUNTS.len()).collect(),
+        forces: Vec::new(),
+    };
+    let parts = Arc::new(Mutex::new(of_phase().map(terms).collect()));
+    let flows = of_phase().any(|group| group.fluid().is_some());
+    let gravity = flows.then(|| sim.gravity());
+    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts) };
+    let system =
+        System::new(Stage::Rates, label, force).on_phases([phase]).reads::<Mass>().reads::<Removed>();
+    sim.add_system(if flows { system.writes::<Force>() } else { system.after(WALL_WEIGHT).adds::<Force>() });
+    add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
+}

@@ -1,0 +1,52 @@
+//! Two clocks in one step: what is stiff takes several short steps while the rest takes one long one.
+
+use crate::world::{BodyId, BodySet, PhaseId, World};
+
+/// When a system runs in a step in which some phases are sub-cycled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// Once: it touches phases that are not sub-cycled, or says so by [`System::in_long_steps`](super::System::in_long_steps).
+    Long,
+    /// In every short step: all phases that it touches are sub-cycled.
+    Short,
+    /// In both, each time with the bodies that are due: see [`System::by_body`](super::System::by_body).
+    Both,
+}
+
+/// Which part of a step runs now: the long step, or one of the short steps in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'s> {
+    short: bool,
+    sub_cycled: &'s [PhaseId],
+}
+
+impl<'s> Turn<'s> {
+    /// The long step; without sub-cycled phases, the whole of the step.
+    pub fn long(sub_cycled: &'s [PhaseId]) -> Self {
+        Self { short: false, sub_cycled }
+    }
+
+    /// A short step.
+    pub fn short(sub_cycled: &'s [PhaseId]) -> Self {
+        Self { short: true, sub_cycled }
+    }
+
+    /// Whether the body moves in this part of the step.
+    pub fn is_due(self, world: &World, body: BodyId) -> bool {
+        self.sub_cycled.contains(&world.body(body).phase) == self.short
+    }
+
+    /// The bodies of a set that move in this part of the step.
+    pub fn due(self, world: &'s World, bodies: &BodySet) -> impl Iterator<Item = BodyId> {
+        bodies.iter().filter(move |&body| self.is_due(world, body))
+    }
+
+    /// Whether a system of this pace runs now.
+    pub(super) fn has(self, pace: Pace) -> bool {
+        match pace {
+            Pace::Long => !self.short,
+            Pace::Short => self.short,
+            Pace::Both => true,
+        }
+    }
+}
