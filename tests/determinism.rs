@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{all_plugins, coupled, failing, flow, metals, removal, simulation};
+use common::coupled::coupled;
+use common::{all_plugins, failing, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 

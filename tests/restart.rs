@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::{all_plugins, coupled, failing, flow, metals, removal, simulation};
+use common::coupled::coupled;
+use common::{all_plugins, failing, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {

@@ -1,9 +1,8 @@
 //! What several tests share.
 #![allow(dead_code, reason = "every test uses a part")]
 
-mod coupled;
+pub mod coupled;
 
-pub use coupled::coupled;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
 use meshless::{plugin, standard_plugins};

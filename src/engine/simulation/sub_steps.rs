@@ -87,7 +87,7 @@ impl Simulation {
         self.sub_steps.state.last = 0;
         loop {
             let count = self.sub_steps.count(rest);
-            if !(count * LEAST_STEP < 1.0) {
+            if count.is_nan() || count * LEAST_STEP >= 1.0 {
                 let limit = self.sub_steps.state.next.clone();
                 let (dt, by) = limit.map_or((f64::NAN, String::new()), |limit| (limit.dt, limit.by));
                 return Err(RunError::StepTooSmall { dt, by });

@@ -44,7 +44,7 @@ pub(super) fn add(
     sim.add_column_to::<CouplingPressure>(&bodies);
     sim.add_system(
         System::new(Stage::PreStep, format!("{label}_before"), move |step: &mut Step<'_>| {
-            Ok(step.resources.get_mut::<FlowCloud>().remember(phase, step.world)?)
+            step.resources.get_mut::<FlowCloud>().remember(phase, step.world)
         })
         .on_phases([phase])
         .reads::<Position>()
