@@ -3,7 +3,7 @@
 mod common;
 
 use common::coupled::coupled;
-use common::{all_plugins, failing, flow, metals, removal, simulation};
+use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -28,6 +28,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (3, flow(3)),
         (3, metals()),
         (2, failing()),
+        (2, failing_metals()),
     ];
     for (dimension, source) in scenes {
         let one = hash_after(&source, 1, 150);

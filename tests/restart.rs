@@ -3,7 +3,7 @@
 mod common;
 
 use common::coupled::coupled;
-use common::{all_plugins, failing, flow, metals, removal, simulation};
+use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -22,6 +22,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (metals(), 200, 17),
         (failing(), 300, 18),
         (failing(), 300, 19),
+        (failing_metals(), 400, 20),
+        (failing_metals(), 400, 21),
     ];
     for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);

@@ -171,6 +171,51 @@ pub fn failing() -> Source {
     Source::new("failing.ron", text)
 }
 
+/// Strips of metal that flow and break, each by another law and in another way, and touch each other.
+pub fn failing_metals() -> Source {
+    let strip = |name: &str, at: f64, control: &str, failure: &str| {
+        format!(
+            r#"(name: "{name}", material: "{name}", spacing: 1e-3, formulation: TotalLagrangian(support: 2.6),
+                plugins: [hourglass_control({control}), failure({failure})],
+                shape: Difference(Box(min: (0, {at:?}), max: (0.03, {:?})), Box(min: (0.014, {:?}), max: (0.016, {:?}))))"#,
+            at + 0.008,
+            at + 0.006,
+            at + 0.009
+        )
+    };
+    let fracture = "criterion: JohnsonCook(d1: 0.01, d2: 0.05, d3: -1.5)";
+    let strips = [
+        strip("flowing", 0.0, "", &format!("{fracture}, growth: CrackSpeed(), then: Removed")),
+        strip("hot", 0.0081, "form: Combined", &format!("{fracture}, then: NoDeviator")),
+        strip(
+            "turned",
+            0.0162,
+            "form: Ganzenmueller2015",
+            &format!("{fracture}, growth: CrackSpeed(factor: 0.2), then: NoTension"),
+        ),
+        strip("gone", 0.0243, "", "criterion: MaximumPrincipalStress(limit: 3e8), then: Removed"),
+    ];
+    let contacts = ["flowing\", \"hot", "hot\", \"turned", "turned\", \"gone"].map(|pair| {
+        format!("Contact(between: (\"{pair}\"), law: Penalty(), friction: 0.2, restitution: 0.6)")
+    });
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{
+                "flowing": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Linear(yield_stress: 2e8, modulus: 5e8)),
+                "hot": Al6061T6(eos: MieGrueneisen(slope: 1.34, gamma: 2.0)),
+                "turned": Hypoelastic(density: 2700, young: 70e9, poisson: 0.3, heating: (specific_heat: 885),
+                                      hardening: Power(yield_stress: 1e8, coefficient: 2e8, exponent: 0.4)),
+                "gone": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Perfect(yield_stress: 2e8)),
+            }},
+            bodies: [{}], contacts: [{}],
+            conditions: [InitialVelocity(on: Select(), value: ("6000*(x - 0.015)", "0.2*sin(300*x)"))],
+            time: (end: 10.0))"#,
+        strips.join(", "),
+        contacts.join(", ")
+    );
+    Source::new("failing_metals.ron", text)
+}
+
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));

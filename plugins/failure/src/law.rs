@@ -67,11 +67,8 @@ impl FailingLaw {
         let f = &rows.deformation[k];
         let (volume, mean) = (f.determinant(), cauchy(&rows.stress[k], given).trace() / 3.0);
         let mean = self.then.borne(mean);
-        if rows.dt > 0.0 {
-            own.energy[k].0 += 0.5 * (own.mean[k].0 + mean) * (volume - own.volume[k].0);
-            own.volume[k].0 = volume;
-            own.mean[k].0 = mean;
-        }
+        own.energy[k].0 += 0.5 * (own.mean[k].0 + mean) * (volume - own.volume[k].0);
+        (own.volume[k].0, own.mean[k].0) = (volume, mean);
         rows.stress[k] = cofactor(f) * mean;
         rows.energy[k] = own.energy[k].0;
         rows.plastic_work[k] = 0.0;
@@ -117,6 +114,10 @@ impl SolidLaw for FailingLaw {
 
     fn needs_positive_volume(&self) -> bool {
         self.inner.needs_positive_volume()
+    }
+
+    fn remembers_path(&self) -> bool {
+        self.inner.remembers_path()
     }
 
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {

@@ -64,8 +64,8 @@ pub enum Growth {
     /// From 0 to 1 within one step.
     #[default]
     AtOnce,
-    /// The cube root of the damage grows by factor c / h per second: a crack crosses the support h (2.41 spacings) at the speed factor c,
-    /// c being the speed of longitudinal waves.
+    /// The cube root of the damage grows by factor c / h per second: a crack crosses the support h (the mean of the body) at the speed
+    /// factor c, c being the speed of longitudinal waves.
     CrackSpeed {
         /// Speed of the crack over the speed of waves.
         #[serde(default = "usual_speed")]
@@ -77,7 +77,7 @@ fn usual_speed() -> f64 {
     0.4
 }
 
-/// Support of a particle in spacings: that of the total-Lagrangian formulation where a scene does not say otherwise.
+/// Support of a particle in spacings, of bodies that are not total-Lagrangian.
 const SUPPORT: f64 = 2.41;
 
 impl Plugin for Failure {
@@ -99,7 +99,9 @@ impl Plugin for Failure {
             let speed = body.material.sound_speed().unwrap_or_default();
             let growth = match self.growth {
                 Growth::AtOnce => f64::INFINITY,
-                Growth::CrackSpeed { factor } => factor * speed / (SUPPORT * body.spacing),
+                Growth::CrackSpeed { factor } => {
+                    factor * speed / sim.mean_support(id).unwrap_or(SUPPORT * body.spacing)
+                }
             };
             let (name, criterion, then) = (body.name.clone(), self.criterion.clone(), self.then);
             sim.wrap_solid_law(id, |inner| {

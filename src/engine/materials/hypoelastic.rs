@@ -83,6 +83,10 @@ impl SolidLaw for HypoelasticLaw {
         true
     }
 
+    fn remembers_path(&self) -> bool {
+        true
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.pressure.step_factor(&self.elastic, stretches)
     }
@@ -135,16 +139,20 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
                 plastic_strain: strain[k].0,
                 temperature: temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
             };
+            let change = velocity_gradient_step(&reached[k].0, f);
+            reached[k].0 = *f;
             if moves {
-                let gradient = velocity_gradient_step(&reached[k].0, f) * (1.0 / rows.dt);
+                let gradient = change * (1.0 / rows.dt);
                 rows.plastic_work[k] = volume.ratio * law.shape.advance(&mut now, &gradient, rows.dt);
-                reached[k].0 = *f;
-                deviator[k].0 = now.deviator;
                 strain[k].0 = now.plastic_strain;
                 if let Some(temperature) = &mut temperature {
                     temperature[k].0 = now.temperature;
                 }
+            } else {
+                // Deformed at the start, or bonds are cut: what is beyond yield then flows in the next step.
+                now.deviator = law.shape.elastic(&now.deviator, &change, 1.0);
             }
+            deviator[k].0 = now.deviator;
             let (pressure, stored) = match &mut energies {
                 None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
                 Some(energies) => {

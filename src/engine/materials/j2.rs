@@ -124,6 +124,10 @@ impl SolidLaw for PlasticLaw {
         true
     }
 
+    fn remembers_path(&self) -> bool {
+        true
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.pressure.step_factor(&self.elastic, stretches)
     }
@@ -200,9 +204,8 @@ impl HotLoop for PlasticLoop<'_, '_> {
                 }
                 yield_stress[k].0 = law.hardening.static_stress(strain[k].0, heated);
             }
-            if rows.dt > 0.0 {
-                equivalent[k].0 = q;
-            }
+            // Also where bonds are cut: what is beyond yield after that flows back from there.
+            equivalent[k].0 = q;
             let (pressure, stored) = match &mut energies {
                 None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
                 Some(energies) => {

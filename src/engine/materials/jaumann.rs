@@ -38,10 +38,7 @@ impl HypoelasticJ2 {
     #[inline(always)]
     pub fn advance(&self, state: &mut HypoelasticState, gradient: &DMat3, dt: f64) -> f64 {
         let before = (1.5 * state.deviator.double_dot(&state.deviator)).sqrt();
-        let rate = Sym3::symmetric_part(*gradient).deviator();
-        // Half of the strain before the turn and half after it: all of it on one side would be of first order.
-        let half = rate * (self.shear * dt);
-        let mut deviator = turn(&(state.deviator + half), gradient, dt) + half;
+        let mut deviator = self.elastic(&state.deviator, gradient, dt);
         let mut work = 0.0;
         if let Some(hardening) = &self.hardening {
             let stress = (1.5 * deviator.double_dot(&deviator)).sqrt();
@@ -59,6 +56,15 @@ impl HypoelasticJ2 {
         }
         state.deviator = deviator;
         work
+    }
+
+    /// The deviator after an elastic step.
+    #[inline(always)]
+    pub(super) fn elastic(&self, deviator: &Sym3, gradient: &DMat3, dt: f64) -> Sym3 {
+        let rate = Sym3::symmetric_part(*gradient).deviator();
+        // Half of the strain before the turn and half after it: all of it on one side would be of first order.
+        let half = rate * (self.shear * dt);
+        turn(&(*deviator + half), gradient, dt) + half
     }
 }
 

@@ -140,6 +140,12 @@ pub trait SolidLaw: Send + Sync {
     /// Whether the law has no meaning for a particle that is turned inside out (det F <= 0).
     fn needs_positive_volume(&self) -> bool;
 
+    /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a particle is cut, and its F measured
+    /// anew, the law then goes on from the F that it knows.
+    fn remembers_path(&self) -> bool {
+        false
+    }
+
     /// Factor of the stable time step at the extreme stretches of a body.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
 

@@ -120,7 +120,7 @@ impl Rigid {
         let plan = sim.body(id);
         let shape = &sim.scene().bodies[id.0].shape;
         let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
-        let of_shape = MassProperties::new(plan, shape, sim.dimension());
+        let of_shape = MassProperties::new(plan, &*surface, sim.dimension());
         let mass = self.mass.unwrap_or(of_shape.mass);
         let has_mass = mass > 0.0 && mass.is_finite();
         if !has_mass && !constraint.is_complete() {
@@ -131,7 +131,7 @@ impl Rigid {
             ));
         }
         let factor = mass / of_shape.mass;
-        let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
+        let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing);
         let reach =
             nodes.points.iter().map(|x| x.distance(of_shape.center)).fold(0.0, f64::max) + nodes.radius;
         let points = of_shape.points * factor;

@@ -1,11 +1,11 @@
-//! Mass, centre and inertia of a body from its particles.
+//! Mass, centre and inertia of a body from its shape, or from its particles.
 
 use glam::DVec3;
 
 use crate::linalg::Sym3;
 use crate::plugin::BodyPlan;
 use crate::scene::Dimension;
-use crate::shapes::Shape;
+use crate::shapes::{Moments, Shape, Surface};
 
 /// What a rigid body weighs.
 #[derive(Clone, Copy, Debug)]
@@ -21,36 +21,39 @@ pub(super) struct MassProperties {
 }
 
 impl MassProperties {
-    /// Each particle counts as the square or cube of its volume, so that the inertia of a box is exact; that of a sphere or
-    /// disc has a closed form.
-    pub fn new(body: &BodyPlan, shape: &Shape, dimension: Dimension) -> Self {
+    /// Where the shape has no closed form, each particle counts as the square or cube of its volume.
+    pub fn new(body: &BodyPlan, surface: &dyn Surface, dimension: Dimension) -> Self {
         let density = body.material.density;
         let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
-        let mass = density * volume;
-        let sphere = sphere_of(shape);
-        let moment = body.sites.iter().map(|site| site.volume * site.position).sum::<DVec3>();
-        let center = sphere.map_or(moment / volume, |(center, _)| center);
+        let moments = surface.moments().unwrap_or_else(|| of_particles(body, volume, dimension));
         let mut points = Sym3::ZERO;
-        let mut cells = 0.0;
         for site in &body.sites {
-            let (m, r) = (density * site.volume, site.position - center);
-            points += (Sym3::IDENTITY * r.length_squared() - Sym3::dyad(r)) * m;
-            let side_squared = match dimension {
-                Dimension::Two => site.volume,
-                Dimension::Three => site.volume.powf(2.0 / 3.0),
-            };
-            cells += m * side_squared / 6.0;
+            points += about(&Sym3::dyad(site.position - moments.center)) * (density * site.volume);
         }
-        let tensor = match (sphere, dimension) {
-            (Some((_, radius)), Dimension::Two) => {
-                let square = mass * radius * radius;
-                Sym3::from_diagonal(DVec3::new(0.25 * square, 0.25 * square, 0.5 * square))
-            }
-            (Some((_, radius)), Dimension::Three) => Sym3::IDENTITY * (0.4 * mass * radius * radius),
-            (None, _) => points + Sym3::IDENTITY * cells,
-        };
-        Self { mass, center, tensor, points }
+        // The mass is that of the particles: files of particles say their volumes themselves.
+        let mass = density * volume;
+        let tensor = about(&moments.second) * (mass / moments.volume);
+        Self { mass, center: moments.center, tensor, points }
     }
+}
+
+/// The inertia of second moments.
+fn about(second: &Sym3) -> Sym3 {
+    Sym3::IDENTITY * second.trace() - *second
+}
+
+fn of_particles(body: &BodyPlan, volume: f64, dimension: Dimension) -> Moments {
+    let center = body.sites.iter().map(|site| site.volume * site.position).sum::<DVec3>() / volume;
+    let mut second = Sym3::ZERO;
+    for site in &body.sites {
+        let (side_squared, axes) = match dimension {
+            Dimension::Two => (site.volume, DVec3::new(1.0, 1.0, 0.0)),
+            Dimension::Three => (site.volume.powf(2.0 / 3.0), DVec3::ONE),
+        };
+        second += (Sym3::dyad(site.position - center) + Sym3::from_diagonal(axes * (side_squared / 12.0)))
+            * site.volume;
+    }
+    Moments { volume, center, second }
 }
 
 /// Centre and radius of a shape that is a sphere or disc, m.

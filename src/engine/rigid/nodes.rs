@@ -1,9 +1,10 @@
 //! The points with which a rigid body touches others.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::inertia::sphere_of;
-use crate::scene::Dimension;
 use crate::shapes::{Shape, Site, Surface};
 
 /// The points with which a rigid body touches the surfaces of other rigid bodies.
@@ -18,19 +19,13 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// The centre of a sphere or disc. Of other shapes the corners, points on the edges of boxes, and the outermost
-    /// particles, moved to the surface.
-    pub(super) fn new(
-        shape: &Shape,
-        surface: &dyn Surface,
-        sites: &[Site],
-        spacing: f64,
-        dimension: Dimension,
-    ) -> Self {
+    /// The centre of a sphere or disc. Of other shapes points on sharp edges and corners, and the outermost particles,
+    /// moved to the surface.
+    pub(super) fn new(shape: &Shape, surface: &dyn Surface, sites: &[Site], spacing: f64) -> Self {
         if let Some((center, radius)) = sphere_of(shape) {
             return Self { points: vec![center], radius, spacing: 2.0 * radius };
         }
-        let mut points = edges(shape, spacing, dimension);
+        let mut points = along(&surface.edges(spacing), spacing);
         for site in sites {
             let nearest = surface.closest(site.position);
             if nearest.signed_distance.abs() < 0.75 * spacing {
@@ -46,43 +41,31 @@ impl Nodes {
     }
 }
 
-/// Corners of a shape, and points on its straight edges.
-fn edges(shape: &Shape, spacing: f64, dimension: Dimension) -> Vec<DVec3> {
-    let moved = |shape: &Shape, to: &dyn Fn(DVec3) -> DVec3| {
-        edges(shape, spacing, dimension).into_iter().map(to).collect()
-    };
-    match shape {
-        Shape::Box { min, max } => edges_of_box(min.0, max.0, spacing, dimension),
-        Shape::Polygon { points } => points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect(),
-        Shape::Extrusion { polygon, from, to } => {
-            polygon.iter().flat_map(|&(x, y)| [DVec3::new(x, y, *from), DVec3::new(x, y, *to)]).collect()
-        }
-        Shape::Translate { shape, by } => moved(shape, &|x| x + by.0),
-        Shape::Rotate { shape, axis, angle_degrees, about } => {
-            let turn = glam::DQuat::from_axis_angle(axis.0.normalize(), angle_degrees.to_radians());
-            moved(shape, &|x| about.0 + turn * (x - about.0))
-        }
-        Shape::Scale { shape, by, about } => moved(shape, &|x| about.0 + by.0 * (x - about.0)),
-        Shape::Union(shapes) => shapes.iter().flat_map(|shape| edges(shape, spacing, dimension)).collect(),
-        Shape::Difference(whole, _) => edges(whole, spacing, dimension),
-        _ => Vec::new(),
-    }
+/// The ends of edges and points between them. Of points in one cell of half a spacing the first is kept, so that the many short edges
+/// of a fine mesh make no more of them than a coarse one has; ends come first.
+fn along(edges: &[[DVec3; 2]], spacing: f64) -> Vec<DVec3> {
+    let ends = edges.iter().flatten().copied();
+    let between = edges.iter().flat_map(|&[a, b]| {
+        let parts = (a.distance(b) / spacing).round().max(1.0) as usize;
+        (1..parts).map(move |part| a + (b - a) * (part as f64 / parts as f64))
+    });
+    let mut taken = BTreeSet::new();
+    let cell = |x: DVec3| (x / (0.5 * spacing)).to_array().map(|c| c.floor() as i64);
+    ends.chain(between).filter(|x| taken.insert(cell(*x))).collect()
 }
 
-fn edges_of_box(min: DVec3, max: DVec3, spacing: f64, dimension: Dimension) -> Vec<DVec3> {
-    let axes = dimension.count();
-    let corner =
-        |n: usize| DVec3::from_array(std::array::from_fn(|k| if n >> k & 1 == 0 { min[k] } else { max[k] }));
-    let mut points: Vec<DVec3> = (0..1 << axes).map(corner).collect();
-    for axis in (0..axes).filter(|_| dimension == Dimension::Three) {
-        let parts = ((max[axis] - min[axis]) / spacing).round().max(1.0) as usize;
-        for start in (0..8).filter(|n| n >> axis & 1 == 0) {
-            points.extend((1..parts).map(|part| {
-                let mut point = corner(start);
-                point[axis] += (max[axis] - min[axis]) * part as f64 / parts as f64;
-                point
-            }));
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_kept_and_fine_edges_are_thinned() {
+        let (a, b, c) = (DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.0, 0.33, 0.0));
+        let points = along(&[[a, b], [b, c]], 0.1);
+        assert!(points.contains(&a) && points.contains(&b) && points.contains(&c));
+        assert_eq!(points.len(), 11 + 3);
+        let fine: Vec<[DVec3; 2]> =
+            (0..1000).map(|k| [k, k + 1].map(|k| DVec3::X * (f64::from(k) / 1000.0))).collect();
+        assert!((18..=21).contains(&along(&fine, 0.1).len()));
     }
-    points
 }

@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
+use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Facing, Surface, SurfacePoint, behind_all};
+use crate::linalg::Sym3;
 
 /// A box along the axes; in two dimensions a rectangle.
 pub(super) struct Block {
@@ -49,5 +51,22 @@ impl Surface for Block {
         };
         let faces = [0, 1, 2].map(nearer_face);
         behind_all(point, &faces[..self.axes])
+    }
+
+    fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
+        let corners = self.corners.corners();
+        if self.axes == 2 {
+            return (0..4).map(|n| [corners[n]; 2]).collect();
+        }
+        let along = |axis: usize| (0..8).filter(move |n| n >> axis & 1 == 0).map(move |n| (n, n | 1 << axis));
+        (0..3).flat_map(along).map(|(n, other)| [corners[n], corners[other]]).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let volume = self.volume()?;
+        let sides = self.corners.extent();
+        let own = |k: usize| if k < self.axes { volume * sides[k] * sides[k] / 12.0 } else { 0.0 };
+        let second = Sym3::from_diagonal(DVec3::new(own(0), own(1), own(2)));
+        Some(Moments { volume, center: self.corners.center(), second })
     }
 }

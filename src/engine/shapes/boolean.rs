@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
 
@@ -129,6 +130,15 @@ impl<R: Surface + ?Sized> Surface for Union<R> {
         let first = self.parts[0].closest(point);
         self.parts[1..].iter().map(|part| part.closest(point)).fold(first, nearer)
     }
+
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        self.parts.iter().flat_map(|part| part.edges(piece)).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let first = self.parts[0].moments()?;
+        self.parts[1..].iter().try_fold(first, |sum, part| Some(sum.joined(part.moments()?, 1.0)))
+    }
 }
 
 /// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no boundary.
@@ -139,6 +149,15 @@ impl<R: Surface + ?Sized> Surface for Difference<R> {
             return outer;
         }
         SurfacePoint { point: inner.point, normal: -inner.normal, signed_distance: -inner.signed_distance }
+    }
+
+    /// Those of the hole are notches: what touches them has touched its faces before.
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        self.whole.edges(piece)
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        Some(self.whole.moments()?.joined(self.hole.moments()?, -1.0))
     }
 }
 

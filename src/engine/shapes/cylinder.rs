@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::concentric::Rings;
+use super::moments::Moments;
 use super::region::{Aabb, Region, capped};
-use super::surface::{Facing, Surface, SurfacePoint, behind_all};
+use super::surface::{Facing, Surface, SurfacePoint, behind_all, circle};
+use crate::linalg::Sym3;
 
 /// A circular cylinder with flat ends; `inner` is 0 where it is solid.
 pub(super) struct Cylinder {
@@ -64,5 +66,25 @@ impl Surface for Cylinder {
         }
         let end = Facing { normal: if along < 0.0 { -axis } else { axis }, distance: along.abs() - length };
         behind_all(point, &[side, end])
+    }
+
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        let axis = (self.to - self.from).normalize();
+        let mut edges = Vec::new();
+        for end in [self.from, self.to] {
+            for radius in [self.outer, self.inner].into_iter().filter(|radius| *radius > 0.0) {
+                edges.extend(circle(end, axis, radius, piece));
+            }
+        }
+        edges
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let volume = self.volume()?;
+        let length = self.from.distance(self.to);
+        let along = Sym3::dyad((self.to - self.from) / length);
+        let across = 0.25 * (self.inner.powi(2) + self.outer.powi(2));
+        let second = (Sym3::IDENTITY - along) * (volume * across) + along * (volume * length * length / 12.0);
+        Some(Moments { volume, center: 0.5 * (self.from + self.to), second })
     }
 }

@@ -3,8 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::error::FillErrorKind;
+use super::moments::Moments;
 use super::region::{Aabb, Region, capped};
 use super::surface::{Facing, Surface, SurfacePoint, behind_all};
+use crate::linalg::Sym3;
 
 /// A polygon in x-y that does not cross itself.
 pub(super) struct Polygon {
@@ -77,6 +79,16 @@ impl Polygon {
                 (a - origin).perp_dot(b - origin)
             })
             .sum()
+    }
+
+    fn moments(&self) -> Moments {
+        let origin = self.corners[0];
+        let triangle = |i: usize| {
+            let (a, b) = self.edge(i);
+            let (a, b) = (a - origin, b - origin);
+            (0.5 * a.perp_dot(b), [a.extend(0.0), b.extend(0.0), DVec3::ZERO])
+        };
+        Moments::of_simplices(origin.extend(0.0), 2, (0..self.corners.len()).map(triangle))
     }
 
     fn area(&self) -> f64 {
@@ -174,6 +186,14 @@ impl Surface for Polygon {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         self.facing(point.truncate()).foot(point)
     }
+
+    fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
+        self.corners.iter().map(|corner| [corner.extend(0.0); 2]).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        Some(Polygon::moments(self))
+    }
 }
 
 impl Surface for Extrusion {
@@ -182,5 +202,24 @@ impl Surface for Extrusion {
         let top = Facing { normal: DVec3::Z, distance: point.z - self.to };
         let end = top.outermost(Facing { normal: -DVec3::Z, distance: self.from - point.z });
         behind_all(point, &[side, end])
+    }
+
+    fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
+        let mut edges = Vec::new();
+        for i in 0..self.polygon.corners.len() {
+            let (a, b) = self.polygon.edge(i);
+            edges.extend([self.from, self.to].map(|z| [a.extend(z), b.extend(z)]));
+            edges.push([a.extend(self.from), a.extend(self.to)]);
+        }
+        edges
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let flat = self.polygon.moments();
+        let height = self.to - self.from;
+        let volume = flat.volume * height;
+        let upright = Sym3::from_diagonal(DVec3::Z) * (volume * height * height / 12.0);
+        let center = flat.center + DVec3::Z * (0.5 * (self.from + self.to));
+        Some(Moments { volume, center, second: flat.second * height + upright })
     }
 }

@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::concentric::Rings;
+use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Facing, Surface, SurfacePoint};
+use crate::linalg::Sym3;
 
 /// The region between two concentric circles in z = 0.
 pub(super) struct Ring {
@@ -45,5 +47,15 @@ impl Surface for Ring {
         let radial = arm.try_normalize().unwrap_or(DVec3::X);
         let outer = Facing { normal: radial, distance: arm.length() - self.outer };
         outer.outermost(Facing { normal: -radial, distance: self.inner - arm.length() }).foot(point)
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let volume = self.volume()?;
+        let square = 0.25 * volume * (self.inner.powi(2) + self.outer.powi(2));
+        Some(Moments {
+            volume,
+            center: self.center,
+            second: Sym3::from_diagonal(DVec3::new(square, square, 0.0)),
+        })
     }
 }

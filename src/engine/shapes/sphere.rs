@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::concentric::Rings;
+use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
+use crate::linalg::Sym3;
 
 /// A sphere; in two dimensions a disc.
 pub(super) struct Sphere {
@@ -46,5 +48,16 @@ impl Surface for Sphere {
             normal,
             signed_distance: self.distance(point),
         }
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let volume = self.volume()?;
+        let square = volume * self.radius * self.radius;
+        let second = if self.axes == 3 {
+            DVec3::splat(square / 5.0)
+        } else {
+            DVec3::new(1.0, 1.0, 0.0) * (square / 4.0)
+        };
+        Some(Moments { volume, center: self.center, second: Sym3::from_diagonal(second) })
     }
 }

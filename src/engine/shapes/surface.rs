@@ -1,7 +1,10 @@
 //! The surface of a shape: what a tool needs to be touched.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
+use super::moments::Moments;
 use super::region::Region;
 
 /// The point of a surface that is nearest to a given one.
@@ -21,6 +24,28 @@ pub trait Surface: Region {
     /// The point of the surface that is nearest to `point`. Of several equally near ones the choice is fixed: the same `point` always has
     /// the same answer.
     fn closest(&self, point: DVec3) -> SurfacePoint;
+
+    /// Sharp edges, straight ones by their two ends, round ones in pieces not much longer than `piece` \[m\]; corners of two
+    /// dimensions and tips are pieces without length. Smooth surfaces have none.
+    fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
+        Vec::new()
+    }
+
+    /// Volume, centre and second moments, where they have a closed form.
+    fn moments(&self) -> Option<Moments> {
+        None
+    }
+}
+
+/// A circle in pieces not much longer than `piece`, about a unit vector `axis` \[m\].
+pub(super) fn circle(center: DVec3, axis: DVec3, radius: f64, piece: f64) -> Vec<[DVec3; 2]> {
+    let (u, v) = axis.any_orthonormal_pair();
+    let parts = (TAU * radius / piece).ceil().max(8.0) as usize;
+    let at = |k: usize| {
+        let angle = TAU * (k % parts) as f64 / parts as f64;
+        center + radius * (angle.cos() * u + angle.sin() * v)
+    };
+    (0..parts).map(|k| [at(k), at(k + 1)]).collect()
 }
 
 /// A face at a signed distance along its outward normal.

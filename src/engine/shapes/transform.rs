@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
+use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
 
@@ -121,6 +122,15 @@ impl<R: Surface + ?Sized> Surface for Translated<R> {
         let found = self.region.closest(point - self.by);
         SurfacePoint { point: found.point + self.by, ..found }
     }
+
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        let edges = self.region.edges(piece).into_iter();
+        edges.map(|edge| edge.map(|end| end + self.by)).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        Some(self.region.moments()?.translated(self.by))
+    }
 }
 
 impl<R: Surface + ?Sized> Surface for Rotated<R> {
@@ -128,6 +138,15 @@ impl<R: Surface + ?Sized> Surface for Rotated<R> {
         let found = self.region.closest(turned(self.turn.inverse(), self.about, point));
         let (point, normal) = (turned(self.turn, self.about, found.point), self.turn * found.normal);
         SurfacePoint { point, normal, ..found }
+    }
+
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        let edges = self.region.edges(piece).into_iter();
+        edges.map(|edge| edge.map(|end| turned(self.turn, self.about, end))).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        Some(self.region.moments()?.rotated(self.turn, self.about))
     }
 }
 
@@ -140,5 +159,14 @@ impl<R: Surface + ?Sized> Surface for Scaled<R> {
             normal: found.normal,
             signed_distance: self.by.x * found.signed_distance,
         }
+    }
+
+    fn edges(&self, piece: f64) -> Vec<[DVec3; 2]> {
+        let edges = self.region.edges(piece / self.by.x).into_iter();
+        edges.map(|edge| edge.map(|end| self.about + self.by * (end - self.about))).collect()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        Some(self.region.moments()?.scaled(self.by.x, self.axes, self.about))
     }
 }

@@ -25,7 +25,7 @@ use crate::world::{
 /// A body as the deformation system sees it.
 pub(super) struct BodyLaw {
     pub(super) id: BodyId,
-    law: Arc<dyn SolidLaw>,
+    pub(super) law: Arc<dyn SolidLaw>,
     /// The state columns of its law.
     state: StateColumns,
     pub(super) estimate: StepEstimate,
@@ -120,6 +120,7 @@ impl Deformation {
                 terms: &terms[..law.terms.len()],
                 frame: &frame,
                 first_row: rows.start,
+                refits: self.removed.refits(),
                 plane: self.plane,
                 dt,
             };
@@ -182,18 +183,18 @@ impl Run for Deformation {
 
     fn save(&self) -> Vec<u8> {
         let factors: Vec<f64> = self.laws.iter().map(|law| law.stretch_factor).collect();
-        postcard::to_stdvec(&(factors, self.removed.rows())).unwrap_or_default()
+        postcard::to_stdvec(&(factors, self.removed.rows(), self.removed.refits().entries()))
+            .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((factors, removed)) = postcard::from_bytes::<(Vec<f64>, Vec<u32>)>(state) else {
-            return false;
-        };
+        type Saved = (Vec<f64>, Vec<u32>, Vec<(u32, glam::DMat3)>);
+        let Ok((factors, removed, refits)) = postcard::from_bytes::<Saved>(state) else { return false };
         if factors.len() != self.laws.len() {
             return false;
         }
         self.laws.iter_mut().zip(factors).for_each(|(law, factor)| law.stretch_factor = factor);
-        self.removed = RemovedRows::restored(removed);
+        self.removed = RemovedRows::restored(removed, refits);
         true
     }
 }

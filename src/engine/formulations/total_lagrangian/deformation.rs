@@ -9,6 +9,7 @@ use glam::{DMat3, DVec3};
 use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
 use super::frame::Frame;
+use super::refit::{self, Refits};
 use super::rows::{PairStress, PairStressRows, Site};
 use crate::linalg::Sym3;
 use crate::materials::{SolidLaw, StateRows, StressRows};
@@ -99,6 +100,8 @@ pub(super) struct DeformationPass<'a> {
     pub frame: &'a Frame,
     /// First row of the body in the phase.
     pub first_row: usize,
+    /// Measures of deformation that outlast cuts in the neighbourhood.
+    pub refits: &'a Refits,
     /// Plane strain.
     pub plane: bool,
     /// Length of the step, s; zero before the first.
@@ -134,6 +137,8 @@ impl DeformationPass<'_> {
         };
         run_hot_in(self.plane, gather);
         let (stress, energy, modulus) = (rows.stress, &mut energy[..n], &mut modulus[..n]);
+        let refits = self.refits.of_block(first, n);
+        refit::to_law(refits, first, rows.deformation, stress);
         self.law.stress(&mut StressRows {
             dt: self.dt,
             deformation: rows.deformation,
@@ -144,12 +149,15 @@ impl DeformationPass<'_> {
             plastic_work: &mut plastic_work[..n],
             state: rows.state,
         });
+        let fitted = |k: usize| DMat3::IDENTITY + gradient[k];
+        refit::from_law(refits, first, fitted, rows.deformation, stress);
         let inverse_moment = &bonds.inverse_moment[first..first + n];
         // A particle without a deformation gradient resists nothing: its bonds would hold it against rotation.
         for (modulus, inverse) in modulus.iter_mut().zip(inverse_moment) {
             *modulus = if *inverse == Sym3::ZERO { 0.0 } else { *modulus };
         }
         run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
+        refit::to_column(refits, first, stress);
         let mut sum = DeformationSum::default();
         let memory = rows.memory;
         for (sum, term) in sum.terms.iter_mut().zip(self.terms) {

@@ -14,6 +14,7 @@ mod frame;
 mod images;
 mod internal_force;
 mod pairs;
+mod refit;
 mod removed;
 mod repeats;
 mod rows;

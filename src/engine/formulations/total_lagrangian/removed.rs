@@ -1,13 +1,17 @@
 //! Removed particles leave the bonds: what is left of a neighbourhood is fitted anew, and what the bonds held is booked.
 
+use glam::DMat3;
+
 use super::constitutive::Deformation;
 use super::deformation::DeformationSum;
 use super::formulation::PackedRows;
 use super::internal_force::InternalForce;
+use super::refit::{Refits, fit_of};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{
-    Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
+    DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed, Velocity,
+    World,
 };
 
 /// The removed rows that the passes know of.
@@ -15,14 +19,20 @@ use crate::world::{
 pub(super) struct RemovedRows {
     /// Ascending.
     rows: Vec<u32>,
+    /// What the laws of plastic bodies go on from.
+    refits: Refits,
     /// Whether the bonds do not know of them yet: after a restart.
     restored: bool,
 }
 
 impl RemovedRows {
     /// Those of a checkpoint.
-    pub fn restored(rows: Vec<u32>) -> Self {
-        Self { restored: !rows.is_empty(), rows }
+    pub fn restored(rows: Vec<u32>, refits: Vec<(u32, DMat3)>) -> Self {
+        Self { restored: !rows.is_empty(), rows, refits: Refits::restored(refits) }
+    }
+
+    pub fn refits(&self) -> &Refits {
+        &self.refits
     }
 
     pub fn rows(&self) -> &[u32] {
@@ -53,9 +63,10 @@ impl Deformation {
         self.book(step)?;
         let held: Vec<f64> = self.found.iter().map(DeformationSum::stored).collect();
         let before = self.forces(step, packed)?;
-        self.removed.rows.clear();
+        let known = std::mem::take(&mut self.removed.rows);
         self.removed.rows.extend((0..removed.len() as u32).filter(|&k| removed[k as usize] != Removed::NO));
         self.cut(step.world, packed)?;
+        self.refit(step.world, packed, &known)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, 0.0)?;
         self.book(step)?;
@@ -68,6 +79,30 @@ impl Deformation {
             step.ledger.add(account, law.id, held - sum.stored() + 0.5 * step.clock.dt * power);
         }
         Ok(true)
+    }
+
+    /// Takes in how the fits of plastic bodies have changed beside rows that were not `known` to be removed.
+    fn refit(&mut self, world: &World, packed: &mut PackedRows, known: &[u32]) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        let gradient = view.read::<DeformationGradient>()?;
+        let PackedRows { bonds, images, sites, .. } = packed;
+        let mut is_new = vec![false; view.len()];
+        for &row in self.removed.rows.iter().filter(|row| known.binary_search(row).is_err()) {
+            is_new[row as usize] = true;
+            sites[row as usize].reference.0[3] = 0.0;
+        }
+        images.fill_sites(sites);
+        for law in self.laws.iter().filter(|law| law.law.remembers_path()) {
+            for row in world.body(law.id).rows.clone() {
+                let bonds_of = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
+                let is_cut = bonds.neighbors[bonds_of].iter().any(|&j| is_new[images.source(j as usize)]);
+                if is_cut && sites[row].is_present() {
+                    let after = fit_of(row, bonds, sites);
+                    self.removed.refits.take_in(row as u32, &gradient[row].0, &after);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The internal forces of the last pass.

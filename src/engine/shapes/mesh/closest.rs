@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::solid::MeshSolid;
 use super::topology::Triangles;
 use super::triangle::{Part, closest};
+use crate::shapes::moments::Moments;
 use crate::shapes::region::Region;
 use crate::shapes::surface::{Surface, SurfacePoint};
 
@@ -45,6 +46,34 @@ impl Normals {
     }
 }
 
+/// Cosine of the angle between normals beyond which an edge or corner counts as sharp: 20 degrees.
+const SHARP: f64 = 0.94;
+
+/// Edges between faces that meet at an angle, and the tips of cones.
+pub(super) fn sharp_edges(
+    triangles: &Triangles,
+    neighbors: &[[u32; 3]],
+    normals: &Normals,
+) -> Vec<[DVec3; 2]> {
+    let mut edges = Vec::new();
+    let mut is_tip = vec![false; triangles.points.len()];
+    for (n, (corners, sides)) in triangles.corners.iter().zip(neighbors).enumerate() {
+        for k in 0..3 {
+            let (corner, other) = (corners[k], sides[k] as usize);
+            if normals.corners[corner as usize].dot(normals.faces[n]) < SHARP {
+                is_tip[corner as usize] = true;
+            }
+            if n < other && normals.faces[n].dot(normals.faces[other]) < SHARP {
+                let next = corners[(k + 1) % 3];
+                edges.push([corner, next].map(|corner| triangles.points[corner as usize]));
+            }
+        }
+    }
+    let tips = triangles.points.iter().zip(is_tip).filter(|(_, is_tip)| *is_tip);
+    edges.extend(tips.map(|(tip, _)| [*tip; 2]));
+    edges
+}
+
 impl MeshSolid {
     /// The nearest point, its normal and the signed distance to it.
     pub(super) fn nearest(&self, point: DVec3) -> SurfacePoint {
@@ -77,5 +106,19 @@ impl MeshSolid {
 impl Surface for MeshSolid {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         self.nearest(point)
+    }
+
+    fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
+        self.edges.clone()
+    }
+
+    fn moments(&self) -> Option<Moments> {
+        let origin = self.bounds().center();
+        let tetrahedra = (0..self.triangles.corners.len()).map(|n| {
+            let corners = self.triangles.at(n).map(|corner| corner - origin);
+            let [a, b, c] = corners;
+            (a.cross(b).dot(c) / 6.0, corners)
+        });
+        Some(Moments::of_simplices(origin, 3, tetrahedra))
     }
 }

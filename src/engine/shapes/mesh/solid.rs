@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::closest::Normals;
+use super::closest::{Normals, sharp_edges};
 use super::fault::MeshFault;
 use super::topology::Triangles;
 use super::tree::Tree;
@@ -13,6 +13,8 @@ pub(in crate::shapes) struct MeshSolid {
     pub(super) triangles: Triangles,
     pub(super) normals: Normals,
     pub(super) tree: Tree,
+    /// Sharp edges by their ends, and tips.
+    pub(super) edges: Vec<[DVec3; 2]>,
     bounds: Aabb,
     volume: f64,
 }
@@ -38,7 +40,8 @@ impl MeshSolid {
         let tree = Tree::new(&boxes);
         triangles.check_crossings(&boxes, &tree)?;
         let normals = Normals::new(&triangles, &neighbors);
-        Ok(Self { triangles, normals, tree, bounds, volume: volume.abs() })
+        let edges = sharp_edges(&triangles, &neighbors, &normals);
+        Ok(Self { triangles, normals, tree, edges, bounds, volume: volume.abs() })
     }
 }
 

@@ -1,0 +1,121 @@
+//! What a cut in its neighbourhood does to the measure of a particle's deformation.
+//!
+//! Without a removed neighbour the fit F_i is another one, though nothing has moved. A law of F alone takes the new fit as it is. Plastic
+//! flow, however, belongs to the F under which it came about: a fit that jumps by some per cent would put the metal far beyond yield, and
+//! energy into the body. Such a law goes on from where it was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it.
+//! The force is the gradient of its energy by F_i, P_i C_i^T.
+
+use glam::DMat3;
+
+use super::bonds::Bonds;
+use super::rows::Site;
+
+/// The factors C of the rows that have one, ascending by row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Refits(Vec<(u32, DMat3)>);
+
+impl Refits {
+    /// Those of a checkpoint.
+    pub fn restored(entries: Vec<(u32, DMat3)>) -> Self {
+        Self(entries)
+    }
+
+    /// All rows with their factors.
+    pub fn entries(&self) -> &[(u32, DMat3)] {
+        &self.0
+    }
+
+    /// Those of `n` rows from `first` on.
+    pub fn of_block(&self, first: usize, n: usize) -> &[(u32, DMat3)] {
+        let until = |row: usize| self.0.partition_point(|entry| (entry.0 as usize) < row);
+        if self.0.is_empty() { &[] } else { &self.0[until(first)..until(first + n)] }
+    }
+
+    /// Takes in that the fit of a row has gone from `before` to `after`. A new fit that is inside out measures nothing.
+    pub fn take_in(&mut self, row: u32, before: &DMat3, after: &DMat3) {
+        if !(after.determinant() > 0.0) {
+            return;
+        }
+        let change = after.inverse() * *before;
+        match self.0.binary_search_by_key(&row, |entry| entry.0) {
+            Ok(k) => self.0[k].1 = change * self.0[k].1,
+            Err(k) => self.0.insert(k, (row, change)),
+        }
+    }
+}
+
+/// Before the law: what the columns of a row hold becomes what the law sees. The stress column is the one whose Cauchy stress with F
+/// is that of the law, P C^T / det C.
+pub(super) fn to_law(refits: &[(u32, DMat3)], first: usize, deformation: &mut [DMat3], stress: &mut [DMat3]) {
+    for (row, c) in refits {
+        let k = *row as usize - first;
+        deformation[k] *= *c;
+        stress[k] = stress[k] * c.inverse().transpose() * c.determinant();
+    }
+}
+
+/// After the law: F is the fit again, and the stress the one that makes forces, P C^T.
+pub(super) fn from_law(
+    refits: &[(u32, DMat3)],
+    first: usize,
+    fitted: impl Fn(usize) -> DMat3,
+    deformation: &mut [DMat3],
+    stress: &mut [DMat3],
+) {
+    for (row, c) in refits {
+        let k = *row as usize - first;
+        deformation[k] = fitted(k);
+        stress[k] *= c.transpose();
+    }
+}
+
+/// When the forces are made: what the stress column holds.
+pub(super) fn to_column(refits: &[(u32, DMat3)], first: usize, stress: &mut [DMat3]) {
+    for (row, c) in refits {
+        stress[*row as usize - first] *= 1.0 / c.determinant();
+    }
+}
+
+/// The fit F of one row.
+pub(super) fn fit_of(row: usize, bonds: &Bonds, sites: &[Site]) -> DMat3 {
+    let site = &sites[row];
+    let (x, u) = (site.reference.xyz(), site.displacement.xyz());
+    let mut spread = DMat3::ZERO;
+    let range = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
+    for (&j, &weight) in bonds.neighbors[range.clone()].iter().zip(&bonds.weights[range]) {
+        let other = &sites[j as usize];
+        let arm = (other.reference.xyz() - x) * (f64::from(weight) * other.reference.0[3]);
+        let change = other.displacement.xyz() - u;
+        spread += DMat3::from_cols(change * arm.x, change * arm.y, change * arm.z);
+    }
+    DMat3::IDENTITY + spread * bonds.inverse_moment[row].to_matrix()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_sees_what_it_saw_before_however_often_the_fit_changes() {
+        let first = DMat3::from_cols_array(&[1.1, 0.1, 0.0, 0.02, 0.9, 0.0, 0.1, 0.0, 1.05]);
+        let second = DMat3::from_cols_array(&[1.0, 0.2, 0.1, 0.0, 0.95, 0.0, 0.0, 0.1, 1.15]);
+        let third = DMat3::from_cols_array(&[0.8, 0.1, 0.1, 0.3, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        let mut refits = Refits::default();
+        refits.take_in(9, &third, &first);
+        refits.take_in(4, &first, &second);
+        refits.take_in(4, &second, &third);
+        // Inside out: nothing to be taken in.
+        refits.take_in(4, &third, &-DMat3::IDENTITY);
+        assert_eq!(refits.entries().iter().map(|entry| entry.0).collect::<Vec<_>>(), [4, 9]);
+        assert_eq!((refits.of_block(0, 4).len(), refits.of_block(4, 6).len()), (0, 2));
+        let own = refits.of_block(3, 2);
+        let (mut deformation, stress) = ([DMat3::IDENTITY, third], [DMat3::IDENTITY, second * 7.0]);
+        let mut column = stress;
+        to_law(own, 3, &mut deformation, &mut column);
+        assert!(deformation[1].abs_diff_eq(first, 1e-14));
+        from_law(own, 3, |_| third, &mut deformation, &mut column);
+        to_column(own, 3, &mut column);
+        assert!(deformation[1] == third && column[1].abs_diff_eq(stress[1], 1e-13));
+        assert!(deformation[0] == DMat3::IDENTITY && column[0] == DMat3::IDENTITY);
+    }
+}
