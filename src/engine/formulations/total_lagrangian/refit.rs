@@ -33,7 +33,8 @@ impl Refits {
 
     /// Takes in that the fit of a row has gone from `before` to `after`. A new fit that is inside out measures nothing.
     pub fn take_in(&mut self, row: u32, before: &DMat3, after: &DMat3) {
-        if !(after.determinant() > 0.0) {
+        let measures = after.determinant() > 0.0;
+        if !measures {
             return;
         }
         let change = after.inverse() * *before;
