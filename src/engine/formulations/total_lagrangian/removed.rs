@@ -85,13 +85,13 @@ impl Deformation {
     fn refit(&mut self, world: &World, packed: &mut PackedRows, known: &[u32]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let gradient = view.read::<DeformationGradient>()?;
-        let PackedRows { bonds, images, sites, .. } = packed;
+        let PackedRows { bonds, images, origin, sites, .. } = packed;
         let mut is_new = vec![false; view.len()];
         for &row in self.removed.rows.iter().filter(|row| known.binary_search(row).is_err()) {
             is_new[row as usize] = true;
             sites[row as usize].reference.0[3] = 0.0;
         }
-        images.fill_sites(sites);
+        images.fill_sites(*origin, sites);
         for law in self.laws.iter().filter(|law| law.law.remembers_path()) {
             for row in world.body(law.id).rows.clone() {
                 let bonds_of = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
