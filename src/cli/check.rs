@@ -81,7 +81,7 @@ fn bodies(scene: &Scene, sim: &Simulation) -> Result<String, Failure> {
         let (view, rows) = sim.world().body_view(BodyId(k));
         let masses = view.read::<Mass>().map_err(|error| Failure::Run(error.to_string()))?;
         let mass: f64 = masses[rows.clone()].iter().map(|mass| mass.0).sum();
-        let [mean, least, most] = match Neighbors::count(&view, rows)? {
+        let [mean, least, most] = match Neighbors::count(sim, BodyId(k))? {
             Some(count) => [format!("{:.1}", count.mean), count.least.to_string(), count.most.to_string()],
             None => ["-".to_owned(), "-".to_owned(), "-".to_owned()],
         };

@@ -1,14 +1,14 @@
 //! How many neighbours the particles of a body have.
 
-use std::ops::Range;
-
+use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::glam::DVec3;
 use meshless_engine::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic, Support};
-use meshless_engine::world::{PhaseView, ReferencePosition, SupportRadius};
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, ReferencePosition, SupportRadius};
 
 use super::failure::Failure;
 
-/// Numbers of neighbours within one body, in its reference configuration.
+/// Numbers of neighbours of the particles of one body.
 pub struct Neighbors {
     /// Mean.
     pub mean: f64,
@@ -19,8 +19,15 @@ pub struct Neighbors {
 }
 
 impl Neighbors {
-    /// Counts the neighbours; none where the particles have no support radius.
-    pub fn count(view: &PhaseView<'_>, rows: Range<usize>) -> Result<Option<Self>, Failure> {
+    /// Counts the neighbours of the particles of a body: those of the reference configuration in solids, those that are near now
+    /// in fluids. None where particles have no neighbours of their own.
+    pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, Failure> {
+        if let Some(cloud) = sim.resources().try_get::<FlowCloud>()
+            && let Some(counts) = cloud.neighbor_counts(body)
+        {
+            return Ok(Self::of(&counts));
+        }
+        let (view, rows) = sim.world().body_view(body);
         let (Ok(positions), Ok(support)) = (view.read::<ReferencePosition>(), view.read::<SupportRadius>())
         else {
             return Ok(None);
@@ -33,8 +40,12 @@ impl Neighbors {
             .within(cloud, 0.0, &Periodic::NONE, &mut list)
             .map_err(|error| Failure::Run(error.to_string()))?;
         let counts: Vec<usize> = (0..positions.len()).map(|row| list.row(row).len()).collect();
-        let (Some(&least), Some(&most)) = (counts.iter().min(), counts.iter().max()) else { return Ok(None) };
+        Ok(Self::of(&counts))
+    }
+
+    fn of(counts: &[usize]) -> Option<Self> {
+        let (least, most) = (*counts.iter().min()?, *counts.iter().max()?);
         let mean = counts.iter().sum::<usize>() as f64 / counts.len() as f64;
-        Ok(Some(Self { mean, least, most }))
+        Some(Self { mean, least, most })
     }
 }

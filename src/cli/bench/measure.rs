@@ -21,7 +21,7 @@ const WARM_UP: u64 = 3;
 pub struct Measurement {
     /// Name of the work.
     pub work: String,
-    /// Number of particles.
+    /// Number of particles, without those of walls.
     pub particles: usize,
     /// Mean number of neighbours.
     pub neighbors: f64,
@@ -92,10 +92,9 @@ impl Measurement {
             sim.step().map_err(|error| failed(&error))?;
         }
         let seconds = begun.elapsed().as_secs_f64();
-        let particles = sim.world().len();
+        let (particles, neighbors) = moving(&sim)?;
         let steps = sim.clock().step - first;
         let rate = particles as f64 * steps as f64 / seconds;
-        let neighbors = mean_neighbors(&sim)?;
         let grown = before.zip(after).map(|(before, after)| after.saturating_sub(before) as f64);
         Ok(Self {
             work: work.name.to_owned(),
@@ -128,16 +127,15 @@ fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<System> {
         .collect()
 }
 
-/// Mean over the bodies that have neighbours.
-fn mean_neighbors(sim: &Simulation) -> Result<f64, Failure> {
-    let (mut sum, mut particles) = (0.0, 0.0);
+/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not counted.
+fn moving(sim: &Simulation) -> Result<(usize, f64), Failure> {
+    let (mut sum, mut particles) = (0.0, 0);
     for k in 0..sim.world().bodies().len() {
-        let (view, rows) = sim.world().body_view(BodyId(k));
-        let count = rows.len() as f64;
-        if let Some(neighbors) = Neighbors::count(&view, rows)? {
-            sum += neighbors.mean * count;
+        let count = sim.world().body(BodyId(k)).rows.len();
+        if let Some(neighbors) = Neighbors::count(sim, BodyId(k))? {
+            sum += neighbors.mean * count as f64;
             particles += count;
         }
     }
-    Ok(if particles > 0.0 { sum / particles } else { 0.0 })
+    Ok((particles, if particles > 0 { sum / particles as f64 } else { 0.0 }))
 }

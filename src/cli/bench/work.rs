@@ -11,27 +11,66 @@ pub struct Work {
     /// What it is, in one line.
     pub title: &'static str,
     scene: (&'static str, &'static str),
-    /// Path of the spacing in the scene, and the spacing for a number of particles, m.
-    spacing: (&'static str, fn(f64) -> f64),
+    /// The spacing for a number of particles, m.
+    spacing: fn(f64) -> f64,
     /// Values of the scene that make this work out of it.
-    set: &'static [(&'static str, &'static str)],
+    set: &'static [(&'static str, Value)],
 }
 
-impl Work {
-    /// The scene with about that many particles.
-    pub fn scene(&self, particles: usize) -> Result<Template> {
-        let (path, text) = self.scene;
-        let (place, spacing) = self.spacing;
-        let mut template = Template::new(path, text).set(place, spacing(particles as f64))?;
-        for (path, value) in self.set {
-            template = template.set(path, value)?;
+/// A value of a scene.
+enum Value {
+    /// As it stands.
+    Text(&'static str),
+    /// The spacing.
+    Spacing,
+    /// A tank whose walls have four layers of particles, in as many dimensions.
+    Tank(usize),
+}
+
+impl Value {
+    fn text(&self, spacing: f64) -> String {
+        let wall = 4.0 * spacing;
+        let across = ((1.0 / spacing).round() + 4.0) * spacing;
+        match self {
+            Self::Text(text) => (*text).to_owned(),
+            Self::Spacing => format!("{spacing:?}"),
+            Self::Tank(2) => format!(
+                "Difference(Box(min: (-{wall:?}, -{wall:?}), max: ({:?}, 1.2)), Box(min: (0, 0), max: ({:?}, 2)))",
+                across + 1.0,
+                across + 1.0 - wall,
+            ),
+            Self::Tank(_) => format!(
+                "Difference(Box(min: (-{wall:?}, -{wall:?}, -{wall:?}), max: ({:?}, 1.2, {across:?})), \
+                 Box(min: (0, 0, 0), max: ({:?}, 2, {:?})))",
+                across + 1.0,
+                across + 1.0 - wall,
+                across - wall,
+            ),
         }
-        Ok(template)
     }
 }
 
+impl Work {
+    /// The scene with about that many particles that move.
+    pub fn scene(&self, particles: usize) -> Result<Template> {
+        let (path, text) = self.scene;
+        let spacing = (self.spacing)(particles as f64);
+        self.set.iter().try_fold(Template::new(path, text), |template, (path, value)| {
+            template.set(path, value.text(spacing))
+        })
+    }
+}
+
+use Value::{Spacing, Tank, Text};
+
 const BLOCK: (&str, &str) = ("benches/scenes/block.ron", include_str!("../../../benches/scenes/block.ron"));
 const STRIP: (&str, &str) = ("benches/scenes/strip.ron", include_str!("../../../benches/scenes/strip.ron"));
+
+const DAM: (&str, &str) = ("benches/scenes/dam.ron", include_str!("../../../benches/scenes/dam.ron"));
+const DAM_PLANE: (&str, &str) =
+    ("benches/scenes/dam_plane.ron", include_str!("../../../benches/scenes/dam_plane.ron"));
+const DAM_PLATE: (&str, &str) =
+    ("benches/scenes/dam_plate.ron", include_str!("../../../benches/scenes/dam_plate.ron"));
 
 /// Spacing of a lattice in the unit cube or square, m.
 fn cube(particles: f64) -> f64 {
@@ -42,41 +81,111 @@ fn square(particles: f64) -> f64 {
     1.0 / particles.sqrt().round()
 }
 
-/// A solid in three dimensions.
-const fn block(
-    name: &'static str,
-    title: &'static str,
-    set: &'static [(&'static str, &'static str)],
-) -> Work {
-    Work { name, title, scene: BLOCK, spacing: ("bodies.block.spacing", cube), set }
-}
-
 /// All works.
 pub const WORKS: &[Work] = &[
-    block(
-        "solid-31",
-        "solid in three dimensions, total-Lagrangian, 32 neighbours inside",
-        &[("bodies.block.formulation", "TotalLagrangian(support: 2.2)")],
-    ),
-    block(
-        "solid-31-free",
-        "the same without hourglass control",
-        &[("bodies.block.formulation", "TotalLagrangian(support: 2.2)"), ("bodies.block.plugins", "[]")],
-    ),
-    block(
-        "solid-31-term",
-        "the same with a pair term of a plugin, artificial viscosity",
-        &[
-            ("bodies.block.formulation", "TotalLagrangian(support: 2.2)"),
-            ("bodies.block.plugins", "[hourglass_control(), artificial_viscosity()]"),
+    Work {
+        name: "solid-31",
+        title: "solid in three dimensions, total-Lagrangian, 32 neighbours inside",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
         ],
-    ),
-    block("solid-54", "solid in three dimensions, total-Lagrangian, 56 neighbours inside", &[]),
+    },
+    Work {
+        name: "solid-31-free",
+        title: "the same without hourglass control",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
+            ("bodies.block.plugins", Text("[]")),
+        ],
+    },
+    Work {
+        name: "solid-31-term",
+        title: "the same with a pair term of a plugin, artificial viscosity",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
+            ("bodies.block.plugins", Text("[hourglass_control(), artificial_viscosity()]")),
+        ],
+    },
+    Work {
+        name: "solid-54",
+        title: "solid in three dimensions, total-Lagrangian, 56 neighbours inside",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[("bodies.block.spacing", Spacing)],
+    },
     Work {
         name: "solid-2d",
         title: "solid in plane strain, total-Lagrangian",
         scene: STRIP,
-        spacing: ("bodies.strip.spacing", square),
-        set: &[],
+        spacing: square,
+        set: &[("bodies.strip.spacing", Spacing)],
+    },
+    Work {
+        name: "dam-80",
+        title: "dam break in three dimensions, 80 neighbours inside",
+        scene: DAM,
+        spacing: cube,
+        set: &[
+            ("bodies.water.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(3)),
+        ],
+    },
+    Work {
+        name: "dam-170",
+        title: "the same with 170 neighbours inside",
+        scene: DAM,
+        spacing: cube,
+        set: &[
+            ("bodies.water.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(3)),
+            ("bodies.water.formulation", Text("Fluid(support: 3.4)")),
+        ],
+    },
+    Work {
+        name: "dam-2d",
+        title: "dam break in a plane, 20 neighbours inside",
+        scene: DAM_PLANE,
+        spacing: square,
+        set: &[
+            ("bodies.water.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(2)),
+        ],
+    },
+    Work {
+        name: "dam-2d-delta",
+        title: "the same as scenes have it without settings: 28 neighbours, renormalised density diffusion",
+        scene: DAM_PLANE,
+        spacing: square,
+        set: &[
+            ("bodies.water.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(2)),
+            ("bodies.water.formulation", Text("Fluid")),
+            ("bodies.water.plugins", Text("[density_diffusion()]")),
+        ],
+    },
+    Work {
+        name: "dam-plate",
+        title: "dam break in a plane with a plate of rubber in its way",
+        scene: DAM_PLATE,
+        spacing: square,
+        set: &[
+            ("bodies.water.spacing", Spacing),
+            ("bodies.plate.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(2)),
+        ],
     },
 ];

@@ -4,7 +4,7 @@ use super::{Cloud, NeighborError, NeighborSearch, Periodic};
 use std::ops::Range;
 
 /// Neighbours of every target particle, in compressed rows: row i is `indices[offsets[i]..offsets[i + 1]]`,
-/// ascending. Data of pairs lie in arrays parallel to `indices`.
+/// ascending, unless the search says otherwise. Data of pairs lie in arrays parallel to `indices`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NeighborList {
     pub(super) offsets: Vec<usize>,
@@ -40,7 +40,7 @@ impl NeighborList {
         self.indices.len()
     }
 
-    /// Neighbours of particle `i`, ascending.
+    /// Neighbours of particle `i`.
     #[inline]
     pub fn row(&self, i: usize) -> &[u32] {
         &self.indices[self.range(i)]

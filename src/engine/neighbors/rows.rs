@@ -1,7 +1,7 @@
 //! Rows of a list from a grid, in parallel.
 //!
-//! Rows are found in waves that bound the memory beside the list. Within a wave they are found in the order of cells,
-//! so that particles that share candidates follow each other whatever the order of rows, and copied to their places.
+//! Rows are found in waves that bound the memory beside the list, block by block, and copied to their places. Particles that are
+//! neighbours in the order of rows share candidates: set-up and sorting see to it that they mostly are near each other.
 
 use super::grid::Grid;
 use super::periodic::nearest_integer;
@@ -19,27 +19,16 @@ const WAVE: usize = 1024;
 /// Memory of one wave, kept from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// Bucket (upper half) and row within the wave (lower half), sorted.
-    order: Vec<u64>,
-    /// Place of each row of the wave in `order`.
-    places: Vec<u32>,
     blocks: Vec<Block>,
 }
 
-/// Rows of one block, one after another, in the order of cells.
+/// Rows of one block, one after another.
 #[derive(Debug, Default)]
 struct Block {
     ends: Vec<usize>,
     /// Longer than what is used: candidates are written first and kept if they are near.
     found: Vec<u32>,
     excess: Vec<f64>,
-}
-
-impl Block {
-    fn range(&self, k: usize) -> Range<usize> {
-        let start = if k == 0 { 0 } else { self.ends[k - 1] };
-        start..self.ends[k]
-    }
 }
 
 /// What a build looks for.
@@ -51,6 +40,9 @@ pub(super) struct Query<'a> {
     pub radius: f64,
     pub skin: f64,
     pub periodic: &'a Periodic,
+    /// Where the groups of the sources end: a row is ordered by groups, and within a group by cells. None for rows in ascending
+    /// order.
+    pub groups: Option<&'a [u32]>,
 }
 
 impl Query<'_> {
@@ -60,33 +52,28 @@ impl Query<'_> {
         list: &mut NeighborList,
     ) {
         let rows = self.targets.positions.len();
-        let Buffers { order, places, blocks } = buffers;
+        let blocks = &mut buffers.blocks;
         blocks.resize_with(blocks.len().max(rows.div_ceil(BLOCK).min(WAVE)), Block::default);
         list.offsets.clear();
         list.offsets.push(0);
         list.offsets.reserve(rows);
         for first in (0..rows).step_by(BLOCK * WAVE) {
             let last = (first + BLOCK * WAVE).min(rows);
-            self.sort_by_cell(first..last, order, places);
             let wave = &mut blocks[..(last - first).div_ceil(BLOCK)];
             let arch = Arch::new();
-            wave.par_iter_mut().zip(order.par_chunks(BLOCK)).for_each(|(block, order)| {
+            wave.par_iter_mut().enumerate().for_each(|(b, block)| {
+                let start = first + b * BLOCK;
                 arch.dispatch(
                     #[inline(always)]
-                    || self.find_rows::<PERIODIC, UNIFORM>(first, order, block),
+                    || self.find_rows::<PERIODIC, UNIFORM>(start..(start + BLOCK).min(last), block),
                 );
             });
 
-            let found = |row: usize| {
-                let place = places[row - first] as usize;
-                let block = &wave[place / BLOCK];
-                &block.found[block.range(place % BLOCK)]
-            };
             let before = list.offsets[first];
             let mut total = before;
-            for row in first..last {
-                total += found(row).len();
-                list.offsets.push(total);
+            for block in &*wave {
+                list.offsets.extend(block.ends.iter().map(|end| total + end));
+                total = list.offsets[list.offsets.len() - 1];
             }
             if list.indices.len() < total {
                 if list.indices.capacity() < total {
@@ -97,51 +84,23 @@ impl Query<'_> {
             }
             let mut free = &mut list.indices[before..total];
             let mut parts: [&mut [u32]; WAVE] = std::array::from_fn(|_| &mut [][..]);
-            for (part, start) in parts.iter_mut().zip((first..last).step_by(BLOCK)) {
-                let pairs = list.offsets[(start + BLOCK).min(last)] - list.offsets[start];
-                (*part, free) = free.split_at_mut(pairs);
+            for (part, block) in parts.iter_mut().zip(&*wave) {
+                (*part, free) = free.split_at_mut(block.ends.last().copied().unwrap_or(0));
             }
-            parts[..wave.len()].par_iter_mut().enumerate().for_each(|(b, part)| {
-                let start = first + b * BLOCK;
-                let mut at = 0;
-                for row in start..(start + BLOCK).min(last) {
-                    let row = found(row);
-                    part[at..at + row.len()].copy_from_slice(row);
-                    at += row.len();
-                }
+            parts[..wave.len()].par_iter_mut().zip(&*wave).for_each(|(part, block)| {
+                part.copy_from_slice(&block.found[..part.len()]);
             });
         }
         list.indices.truncate(list.offsets[rows]);
     }
 
-    fn sort_by_cell(&self, rows: Range<usize>, order: &mut Vec<u64>, places: &mut Vec<u32>) {
-        order.resize(rows.len(), 0);
-        order
-            .par_iter_mut()
-            .with_min_len(4096)
-            .zip(&self.targets.positions[rows.clone()])
-            .enumerate()
-            .for_each(|(k, (key, position))| *key = u64::from(self.grid.key(*position)) << 32 | k as u64);
-        order.par_sort_unstable();
-        places.resize(rows.len(), 0);
-        for (place, key) in order.iter().enumerate() {
-            places[*key as u32 as usize] = place as u32;
-        }
-    }
-
     #[inline(always)]
-    fn find_rows<const PERIODIC: bool, const UNIFORM: bool>(
-        &self,
-        first: usize,
-        order: &[u64],
-        block: &mut Block,
-    ) {
+    fn find_rows<const PERIODIC: bool, const UNIFORM: bool>(&self, rows: Range<usize>, block: &mut Block) {
         let Block { ends, found, excess } = block;
         let image = (self.periodic.lengths(), self.periodic.inverse_lengths());
         ends.clear();
         let mut used = 0;
-        for key in order {
-            let i = first + *key as u32 as usize;
+        for i in rows {
             let start = used;
             let x_i = self.targets.positions[i];
             let own_row = if self.same_set { i as u32 } else { u32::MAX };
@@ -177,7 +136,10 @@ impl Query<'_> {
                     used += kept;
                 },
             );
-            found[start..used].sort_unstable();
+            let row = &mut found[start..used];
+            if self.groups.is_none_or(|groups| is_mixed(row, groups)) {
+                row.sort_unstable();
+            }
             ends.push(used);
         }
     }
@@ -205,4 +167,15 @@ impl Query<'_> {
             excess[k] = dx * dx + dy * dy + dz * dz - limit(k);
         }
     }
+}
+
+/// Whether a row has members of several groups.
+#[inline(always)]
+fn is_mixed(row: &[u32], groups: &[u32]) -> bool {
+    let (mut low, mut high) = (u32::MAX, 0);
+    for &j in row {
+        low = low.min(j);
+        high = high.max(j);
+    }
+    groups.iter().any(|&end| low < end && end <= high)
 }

@@ -25,22 +25,23 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(cloud, cloud, true, skin, periodic, list)
+        self.build(cloud, cloud, true, (skin, None), periodic, list)
     }
 
-    /// Lists the neighbours of the first `targets` particles of `cloud` in `cloud`: otherwise as [`NeighborSearch::within`].
+    /// Lists the neighbours of the first `targets` particles of `cloud` in `cloud`. A row is ordered by the groups of particles
+    /// that end at `groups`, and within a group by cells: cheaper than ascending rows. Otherwise as [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
     pub fn of_first(
         &mut self,
-        targets: usize,
+        (targets, groups): (usize, &[u32]),
         cloud: Cloud<'_>,
         skin: f64,
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(cloud.first(targets), cloud, true, skin, periodic, list)
+        self.build(cloud.first(targets), cloud, true, (skin, Some(groups)), periodic, list)
     }
 
     /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are not
@@ -56,7 +57,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(targets, sources, false, skin, periodic, list)
+        self.build(targets, sources, false, (skin, None), periodic, list)
     }
 
     fn build(
@@ -64,7 +65,7 @@ impl NeighborSearch {
         targets: Cloud<'_>,
         sources: Cloud<'_>,
         same_set: bool,
-        skin: f64,
+        (skin, groups): (f64, Option<&[u32]>),
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
@@ -94,7 +95,7 @@ impl NeighborSearch {
             matches!((targets.support, sources.support), (Support::Uniform(_), Support::Uniform(_)));
         self.grid.build(sources, !uniform, bounds, radius, periodic);
 
-        let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic };
+        let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic, groups };
         match (periodic.any(), uniform) {
             (false, true) => query.fill::<false, true>(&mut self.buffers, list),
             (false, false) => query.fill::<false, false>(&mut self.buffers, list),
@@ -102,5 +103,32 @@ impl NeighborSearch {
             (true, false) => query.fill::<true, false>(&mut self.buffers, list),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn rows_of_the_first_particles_are_those_of_all_in_the_order_of_groups() {
+        let place = |k: usize| {
+            let t = k as f64;
+            DVec3::new((0.37 * t).sin(), (1.7 * t + 0.3).sin(), (0.9 * t + 1.1).sin())
+        };
+        let positions: Vec<DVec3> = (0..400).map(place).collect();
+        let cloud = Cloud::uniform(&positions, 0.5);
+        let (mut all, mut first) = (NeighborList::default(), NeighborList::default());
+        let (mut search, groups) = (NeighborSearch::default(), [90, 250, 400]);
+        search.within(cloud, 0.05, &Periodic::NONE, &mut all).expect("a list");
+        search.of_first((250, &groups), cloud, 0.05, &Periodic::NONE, &mut first).expect("a list");
+        assert_eq!(first.rows(), 250);
+        for i in 0..250 {
+            let mut row = first.row(i).to_vec();
+            assert!(groups.iter().all(|&end| row.is_partitioned(|&j| j < end)), "{row:?}");
+            row.sort_unstable();
+            assert_eq!(row, all.row(i));
+        }
     }
 }

@@ -74,6 +74,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
     let dimension = sim.dimension().count();
+    let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
     let cloud = FlowCloud {
         groups: groups.clone(),
@@ -84,7 +85,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         positions: vec![DVec3::ZERO; total],
         before: Vec::new(),
         records: vec![Record::default(); total],
-        pairs: FlowPairs::new(support, SKIN * spacing, periodic),
+        pairs: FlowPairs::new(support, SKIN * spacing, periodic, ends),
     };
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;

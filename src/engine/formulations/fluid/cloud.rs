@@ -189,7 +189,7 @@ impl FlowCloud {
             let other = &self.records[row];
             let x_ij = self.pairs.periodic().minimal_image(other.position() - own);
             let square = x_ij.length_squared();
-            if square < limit && row != i {
+            if square < limit {
                 let (distance, volume) = (square.sqrt(), other.volume());
                 let (weight, kernel) = (self.kernel.weight(distance), self.kernel.value(distance));
                 f(&Near { row, x_ij, distance, weight, kernel, volume });
@@ -200,6 +200,17 @@ impl FlowCloud {
     /// Volume of a fluid particle, m3; `i` is its row in the phase of fluids.
     pub fn volume(&self, i: usize) -> f64 {
         self.records[i].volume()
+    }
+
+    /// Number of neighbours within the support of every particle of a fluid body, what bounds the fluid included.
+    pub fn neighbor_counts(&self, body: BodyId) -> Option<Vec<usize>> {
+        let group = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())?;
+        let count = |i: usize| {
+            let mut count = 0;
+            self.for_each_neighbor(i, |_| count += 1);
+            count
+        };
+        Some(group.cloud.clone().map(count).collect())
     }
 
     /// Number of directed pairs in the lists.

@@ -101,7 +101,7 @@ impl<P: RowPass> HotLoop for Block<'_, P> {
 }
 
 impl FlowCloud {
-    /// The neighbours of fluid particle `i` with rows in `among`, in the order of its list, four at a time; `0..self.fluid` are all
+    /// The neighbours of fluid particle `i` in the bodies whose rows are `among`, in the order of its list, four at a time; `0..self.fluid` are all
     /// fluids, the rows of a body those of its own, and [`FlowCloud::everything`] also what bounds the fluid.
     #[inline(always)]
     pub fn fours<A: Arithmetic>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
@@ -122,7 +122,7 @@ impl FlowCloud {
     }
 }
 
-/// The rows of an ascending list that lie in a range.
+/// The part of a row that lies in a range of whole bodies: rows are ordered by bodies.
 #[inline(always)]
 pub(super) fn part<'a>(row: &'a [u32], among: &Range<usize>) -> &'a [u32] {
     let (Some(&first), Some(&last)) = (row.first(), row.last()) else { return row };

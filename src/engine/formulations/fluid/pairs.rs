@@ -12,6 +12,8 @@ pub(super) struct FlowPairs {
     support: f64,
     skin: f64,
     periodic: Periodic,
+    /// Where the bodies end, as rows of the cloud: rows of the lists are ordered by them.
+    groups: Vec<u32>,
     search: NeighborSearch,
     /// Neighbours of each fluid particle as rows of the cloud.
     pub fluid: NeighborList,
@@ -24,11 +26,12 @@ pub(super) struct FlowPairs {
 }
 
 impl FlowPairs {
-    pub fn new(support: f64, skin: f64, periodic: Periodic) -> Self {
+    pub fn new(support: f64, skin: f64, periodic: Periodic, groups: Vec<u32>) -> Self {
         Self {
             support,
             skin,
             periodic,
+            groups,
             search: NeighborSearch::default(),
             fluid: NeighborList::default(),
             boundary: NeighborList::default(),
@@ -58,7 +61,7 @@ impl FlowPairs {
         self.built.clear();
         let cloud = |positions| Cloud::uniform(positions, self.support);
         let (all, wet, dry) = (cloud(positions), cloud(&positions[..fluid]), cloud(&positions[fluid..]));
-        self.search.of_first(fluid, all, self.skin, &self.periodic, &mut self.fluid)?;
+        self.search.of_first((fluid, &self.groups), all, self.skin, &self.periodic, &mut self.fluid)?;
         self.search.between(dry, wet, self.skin, &self.periodic, &mut self.boundary)?;
         self.built.extend_from_slice(positions);
         self.builds += 1;
