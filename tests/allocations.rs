@@ -6,7 +6,8 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::{all_plugins, simulation};
+use common::{all_plugins, flow, simulation};
+use meshless::scene::Source;
 
 /// The allocator of the system, with a count of what is asked of it.
 struct Counting;
@@ -37,10 +38,10 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 /// Allocations of each of `steps` steps after a warm-up, on a number of threads.
-fn counts(dimension: usize, threads: usize, steps: usize) -> Vec<u64> {
+fn counts(source: &Source, threads: usize, steps: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
-        let mut sim = simulation(&all_plugins(dimension));
+        let mut sim = simulation(source);
         sim.run(|sim| sim.clock().step < 50).expect("a run");
         let mut counts = Vec::with_capacity(steps);
         for _ in 0..steps {
@@ -55,12 +56,22 @@ fn counts(dimension: usize, threads: usize, steps: usize) -> Vec<u64> {
 #[test]
 fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
     for dimension in [2, 3] {
-        let counts = counts(dimension, 1, 100);
+        let counts = counts(&all_plugins(dimension), 1, 100);
         // A limit of the time step that falls below all before it has a text, which is made once.
         let texts = counts.iter().filter(|&&count| count == 1).count();
         assert!(texts <= 3 && counts.iter().all(|&count| count <= 1), "{dimension} dimensions: {counts:?}");
     }
     // The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies.
-    let counts = counts(3, 2, 100);
+    let counts = counts(&all_plugins(3), 2, 100);
     assert!(counts.iter().sum::<u64>() < 20, "two threads: {counts:?}");
+}
+
+#[test]
+fn a_step_of_flows_allocates_nothing_but_room_for_longer_lists() {
+    for dimension in [2, 3] {
+        let counts = counts(&flow(dimension), 1, 100);
+        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and its search.
+        let calm = counts.iter().filter(|&&count| count == 0).count();
+        assert!(calm >= 80 && counts.iter().sum::<u64>() < 60, "{dimension} dimensions: {counts:?}");
+    }
 }

@@ -1,4 +1,4 @@
-//! Memory of this program.
+//! Memory and processor time of this program.
 
 /// Memory that this program takes, where the system tells, B.
 pub fn resident_bytes() -> Option<usize> {
@@ -7,3 +7,15 @@ pub fn resident_bytes() -> Option<usize> {
     let kilobytes: usize = line.trim().trim_end_matches("kB").trim().parse().ok()?;
     Some(kilobytes * 1024)
 }
+
+/// Time that the processors have spent on this program, s, as far as the system tells.
+pub fn processor_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The name of the program, in parentheses, may hold spaces; the times are the 12th and 13th fields behind it.
+    let fields = text.rsplit_once(')')?.1;
+    let mut times = fields.split_whitespace().skip(11).map(|ticks| ticks.parse::<f64>().ok());
+    Some((times.next()?? + times.next()??) / TICKS_PER_SECOND)
+}
+
+/// What Linux counts times of programs in.
+const TICKS_PER_SECOND: f64 = 100.0;

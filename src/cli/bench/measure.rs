@@ -8,7 +8,7 @@ use meshless_engine::world::BodyId;
 use serde::{Deserialize, Serialize};
 
 use super::super::failure::Failure;
-use super::super::memory::resident_bytes;
+use super::super::memory::{processor_seconds, resident_bytes};
 use super::super::neighbors::Neighbors;
 use super::machine;
 use super::work::Work;
@@ -31,6 +31,9 @@ pub struct Measurement {
     pub steps: u64,
     /// Their wall time, s.
     pub seconds: f64,
+    /// Share of the threads' time in which they ran: below one where other programs took processors away. None where the
+    /// system does not tell.
+    pub busy: Option<f64>,
     /// Particles times steps per second.
     pub particle_steps_per_second: f64,
     /// Directed pairs times steps per second.
@@ -87,11 +90,13 @@ impl Measurement {
             sim.step().map_err(|error| failed(&error))?;
         }
         let (first, timers) = (sim.clock().step, timers(&sim));
+        let processor = processor_seconds();
         let begun = Instant::now();
         while begun.elapsed() < least || sim.clock().step == first {
             sim.step().map_err(|error| failed(&error))?;
         }
         let seconds = begun.elapsed().as_secs_f64();
+        let spent = processor.zip(processor_seconds()).map(|(before, after)| after - before);
         let (particles, neighbors) = moving(&sim)?;
         let steps = sim.clock().step - first;
         let rate = particles as f64 * steps as f64 / seconds;
@@ -103,6 +108,7 @@ impl Measurement {
             threads,
             steps,
             seconds,
+            busy: spent.map(|spent| spent / (seconds * f64::from(threads))),
             particle_steps_per_second: rate,
             directed_pairs_per_second: rate * neighbors,
             bytes_per_particle: grown.map(|grown| grown / particles.max(1) as f64),

@@ -17,7 +17,7 @@ pub fn list(works: &[&Work]) -> String {
 pub fn heading(machine: &Machine) -> String {
     format!(
         "{}, {}, meshless {}\n\
-         {:<14} {:>10} {:>8} {:>8} {:>12} {:>14} {:>12} {:>11}",
+         {:<14} {:>10} {:>8} {:>8} {:>12} {:>14} {:>6} {:>12} {:>11}",
         machine.processor,
         machine.instruction_path,
         machine.version,
@@ -27,6 +27,7 @@ pub fn heading(machine: &Machine) -> String {
         "neighb.",
         "M p-steps/s",
         "M pairs/s",
+        "busy",
         "B/particle",
         "1st step s",
     )
@@ -35,14 +36,16 @@ pub fn heading(machine: &Machine) -> String {
 /// One line, and the share of every system under it if that is asked for.
 pub fn text(measured: &Measurement, profile: bool) -> String {
     let bytes = measured.bytes_per_particle.map_or_else(|| "-".to_owned(), |bytes| format!("{bytes:.0}"));
+    let busy = measured.busy.map_or_else(|| "-".to_owned(), |busy| format!("{:.0} %", 100.0 * busy));
     let mut text = format!(
-        "{:<14} {:>10} {:>8} {:>8.1} {:>12.3} {:>14.1} {:>12} {:>11.2}",
+        "{:<14} {:>10} {:>8} {:>8.1} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2}",
         measured.work,
         counted(measured.particles as f64, "").trim_end(),
         measured.threads,
         measured.neighbors,
         1e-6 * measured.particle_steps_per_second,
         1e-6 * measured.directed_pairs_per_second,
+        busy,
         bytes,
         measured.first_step_after,
     );

@@ -47,7 +47,10 @@ impl Axis {
             let turns = (x - self.origin) * self.inverse_period;
             (((turns - turns.floor()) * self.inverse_cell) as i64).min(self.cells - 1)
         } else {
-            ((x - self.origin) * self.inverse_cell).floor() as i64
+            let cells = (x - self.origin) * self.inverse_cell;
+            // Rounded down, without a call of the library.
+            let whole = cells as i64;
+            whole - i64::from(cells < whole as f64)
         }
     }
 
@@ -57,7 +60,7 @@ impl Axis {
     }
 
     /// Buckets of a cell and the two beside it, ascending, each once.
-    #[inline]
+    #[inline(always)]
     fn around(&self, cell: i64) -> Few<i64> {
         let mut found = Few::default();
         for near in [cell.saturating_sub(1), cell, cell.saturating_add(1)] {
@@ -103,6 +106,28 @@ impl<T: Copy + Ord> Few<T> {
     }
 }
 
+/// Ranges of particles.
+pub(super) struct Ranges {
+    ranges: [std::ops::Range<usize>; 27],
+    count: usize,
+}
+
+impl Ranges {
+    #[inline(always)]
+    fn push(&mut self, range: std::ops::Range<usize>) {
+        self.ranges[self.count] = range;
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    pub(super) fn as_slice(&self) -> &[std::ops::Range<usize>] {
+        &self.ranges[..self.count]
+    }
+}
+
+/// Room behind the last particle, so that four can be read from each.
+const PADDING: usize = 3;
+
 /// Source particles in cell order; buffers are kept from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
@@ -110,7 +135,7 @@ pub(super) struct Grid {
     keys: Vec<u32>,
     /// Particles of bucket b are `starts[b]..starts[b + 1]` of the arrays below.
     starts: Vec<u32>,
-    /// Row of the particle.
+    /// Row of the particle; this and the arrays below are longer by [`PADDING`].
     pub(super) rows: Vec<u32>,
     coordinates: [Vec<f64>; 3],
     /// Support radii; empty where not asked for.
@@ -161,8 +186,8 @@ impl Grid {
         }
 
         for (a, coordinate) in self.coordinates.iter_mut().enumerate() {
-            coordinate.resize(count, 0.0);
-            coordinate
+            coordinate.resize(count + PADDING, 0.0);
+            coordinate[..count]
                 .par_iter_mut()
                 .with_min_len(4096)
                 .zip(&self.rows)
@@ -171,7 +196,9 @@ impl Grid {
         self.supports.clear();
         if with_supports {
             self.supports.extend(self.rows.iter().map(|&row| sources.support_of(row as usize)));
+            self.supports.resize(count + PADDING, 0.0);
         }
+        self.rows.resize(count + PADDING, 0);
     }
 
     /// Bucket of a position: where a source is, and a sensible order for targets, which may lie outside.
@@ -184,19 +211,20 @@ impl Grid {
         ((at(2) * self.axes[1].buckets + at(1)) * self.axes[0].buckets + at(0)) as u32
     }
 
-    /// Coordinates of a range of the sorted particles.
+    /// Coordinates of the sorted particles.
     #[inline(always)]
-    pub(super) fn coordinates(&self, range: std::ops::Range<usize>) -> [&[f64]; 3] {
+    pub(super) fn coordinates(&self) -> [&[f64]; 3] {
         let [x, y, z] = &self.coordinates;
-        [&x[range.clone()], &y[range.clone()], &z[range]]
+        [x, y, z]
     }
 
-    /// Calls `visit` with ranges of the sorted arrays that hold all sources in the cells around `position`, each once.
-    #[inline(always)]
-    pub(super) fn around(&self, position: DVec3, mut visit: impl FnMut(std::ops::Range<usize>)) {
+    /// Ranges of the sorted arrays that hold all sources in the cells around `position`, each once.
+    #[inline]
+    pub(super) fn around(&self, position: DVec3) -> Ranges {
+        let mut ranges = Ranges { ranges: [const { 0..0 }; 27], count: 0 };
         let [x, y, z] = &self.axes;
         let columns = x.around(x.cell(position.x));
-        let Some((&first, rest)) = columns.as_slice().split_first() else { return };
+        let Some((&first, rest)) = columns.as_slice().split_first() else { return ranges };
         let lines = y.around(y.cell(position.y));
         for &bz in z.around(z.cell(position.z)).as_slice() {
             for &by in lines.as_slice() {
@@ -205,14 +233,15 @@ impl Grid {
                 let (mut from, mut to) = (first, first);
                 for &next in rest {
                     if next != to + 1 {
-                        visit(self.range(line + from, line + to));
+                        ranges.push(self.range(line + from, line + to));
                         from = next;
                     }
                     to = next;
                 }
-                visit(self.range(line + from, line + to));
+                ranges.push(self.range(line + from, line + to));
             }
         }
+        ranges
     }
 
     #[inline]

@@ -82,9 +82,10 @@ impl Periodic {
     }
 }
 
-/// Rounds to the nearest integer without a call: between 2^52 and 2^53 the spacing of doubles is one.
+/// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer without a call.
+pub(super) const SHIFT: f64 = 6755399441055744.0;
+
 #[inline(always)]
-pub(super) fn nearest_integer(x: f64) -> f64 {
-    const SHIFT: f64 = 6755399441055744.0;
+fn nearest_integer(x: f64) -> f64 {
     (x + SHIFT) - SHIFT
 }

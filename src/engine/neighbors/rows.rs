@@ -4,10 +4,9 @@
 //! neighbours in the order of rows share candidates: set-up and sorting see to it that they mostly are near each other.
 
 use super::grid::Grid;
-use super::periodic::nearest_integer;
+use super::periodic::SHIFT;
 use super::{Cloud, NeighborList, Periodic};
-use glam::DVec3;
-use pulp::Arch;
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -26,9 +25,8 @@ pub(super) struct Buffers {
 #[derive(Debug, Default)]
 struct Block {
     ends: Vec<usize>,
-    /// Longer than what is used: candidates are written first and kept if they are near.
+    /// Longer than what is used: four candidates are written at once, and those kept that are near.
     found: Vec<u32>,
-    excess: Vec<f64>,
 }
 
 /// What a build looks for.
@@ -60,13 +58,10 @@ impl Query<'_> {
         for first in (0..rows).step_by(BLOCK * WAVE) {
             let last = (first + BLOCK * WAVE).min(rows);
             let wave = &mut blocks[..(last - first).div_ceil(BLOCK)];
-            let arch = Arch::new();
             wave.par_iter_mut().enumerate().for_each(|(b, block)| {
                 let start = first + b * BLOCK;
-                arch.dispatch(
-                    #[inline(always)]
-                    || self.find_rows::<PERIODIC, UNIFORM>(start..(start + BLOCK).min(last), block),
-                );
+                let rows = start..(start + BLOCK).min(last);
+                run_hot(BlockRows::<PERIODIC, UNIFORM> { query: self, rows, block });
             });
 
             let before = list.offsets[first];
@@ -93,80 +88,82 @@ impl Query<'_> {
         }
         list.indices.truncate(list.offsets[rows]);
     }
+}
+
+/// The rows of a block.
+struct BlockRows<'a, const PERIODIC: bool, const UNIFORM: bool> {
+    query: &'a Query<'a>,
+    rows: Range<usize>,
+    block: &'a mut Block,
+}
+
+impl<const PERIODIC: bool, const UNIFORM: bool> HotLoop for BlockRows<'_, PERIODIC, UNIFORM> {
+    type Output = ();
 
     #[inline(always)]
-    fn find_rows<const PERIODIC: bool, const UNIFORM: bool>(&self, rows: Range<usize>, block: &mut Block) {
-        let Block { ends, found, excess } = block;
-        let image = (self.periodic.lengths(), self.periodic.inverse_lengths());
+    fn run<A: Arithmetic>(self, a: A) {
+        let Query { grid, targets, same_set, radius, skin, periodic, groups } = *self.query;
+        let Block { ends, found } = self.block;
+        let (length, inverse) = (periodic.lengths(), periodic.inverse_lengths());
+        let coordinates = grid.coordinates();
+        let uniform = Lanes4::splat(radius * radius);
         ends.clear();
         let mut used = 0;
-        for i in rows {
+        for i in self.rows {
             let start = used;
-            let x_i = self.targets.positions[i];
-            let own_row = if self.same_set { i as u32 } else { u32::MAX };
-            self.grid.around(
-                x_i,
-                #[inline(always)]
-                |range| {
-                    let count = range.len();
-                    if found.len() < used + count {
-                        found.resize((used + count) * 3 / 2, 0);
+            let x_i = targets.positions[i];
+            let support_i = if UNIFORM { 0.0 } else { targets.support_of(i) };
+            for range in grid.around(x_i).as_slice() {
+                let room = used + range.len() + 4;
+                if found.len() < room {
+                    found.resize(room * 3 / 2, 0);
+                }
+                for first in range.clone().step_by(4) {
+                    let mut square = Lanes4::ZERO;
+                    for axis in 0..3 {
+                        let mut x = a.minus(four(coordinates[axis], first), Lanes4::splat(x_i[axis]));
+                        if PERIODIC {
+                            let shift = Lanes4::splat(SHIFT);
+                            let turns = a.minus(a.scale_add(inverse[axis], x, shift), shift);
+                            x = a.scale_add(-length[axis], turns, x);
+                        }
+                        square = a.times_add(x, x, square);
                     }
-                    if excess.len() < count {
-                        excess.resize(count * 3 / 2, 0.0);
-                    }
-                    let excess = &mut excess[..count];
-                    if UNIFORM {
-                        let limit = self.radius * self.radius;
-                        self.distances::<PERIODIC>(x_i, image, range.clone(), excess, |_| limit);
+                    let limit = if UNIFORM {
+                        uniform
                     } else {
-                        let support_i = self.targets.support_of(i);
-                        let supports = &self.grid.supports[range.clone()];
-                        self.distances::<PERIODIC>(x_i, image, range.clone(), excess, |k| {
-                            let radius = 0.5 * (support_i + supports[k]) + self.skin;
-                            radius * radius
-                        });
+                        let sum = a.plus(four(&grid.supports, first), Lanes4::splat(support_i));
+                        let radius = a.scale_add(0.5, sum, Lanes4::splat(skin));
+                        a.times(radius, radius)
+                    };
+                    let inside = (1 << (range.end - first).min(4)) - 1;
+                    let near = a.below(square, limit) & inside;
+                    let rows = &grid.rows[first..first + 4];
+                    let packed = a.pack([rows[0], rows[1], rows[2], rows[3]], near);
+                    if let Some(out) = found[used..].first_chunk_mut() {
+                        *out = packed;
                     }
-                    let into = &mut found[used..used + count];
-                    let mut kept = 0;
-                    for (&j, &excess) in self.grid.rows[range].iter().zip(&*excess) {
-                        into[kept] = j;
-                        kept += usize::from((excess < 0.0) & (j != own_row));
-                    }
-                    used += kept;
-                },
-            );
+                    used += near.count_ones() as usize;
+                }
+            }
+            if same_set && let Some(own) = found[start..used].iter().position(|&j| j == i as u32) {
+                found.copy_within(start + own + 1..used, start + own);
+                used -= 1;
+            }
             let row = &mut found[start..used];
-            if self.groups.is_none_or(|groups| is_mixed(row, groups)) {
+            if groups.is_none_or(|groups| is_mixed(row, groups)) {
                 row.sort_unstable();
             }
             ends.push(used);
         }
     }
+}
 
-    /// Squared distances of candidates less the square of the pair radius: a loop without branches, for the vector unit.
-    #[inline(always)]
-    fn distances<const PERIODIC: bool>(
-        &self,
-        x_i: DVec3,
-        (length, inverse_length): (DVec3, DVec3),
-        range: Range<usize>,
-        excess: &mut [f64],
-        limit: impl Fn(usize) -> f64,
-    ) {
-        let [x, y, z] = self.grid.coordinates(range);
-        let count = excess.len();
-        let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
-        for k in 0..count {
-            let (mut dx, mut dy, mut dz) = (x[k] - x_i.x, y[k] - x_i.y, z[k] - x_i.z);
-            if PERIODIC {
-                dx -= length.x * nearest_integer(dx * inverse_length.x);
-                dy -= length.y * nearest_integer(dy * inverse_length.y);
-                dz -= length.z * nearest_integer(dz * inverse_length.z);
-            }
-            excess[k] = dx * dx + dy * dy + dz * dz - limit(k);
-        }
-    }
+/// Four numbers of a column.
+#[inline(always)]
+fn four(column: &[f64], first: usize) -> Lanes4 {
+    let four = &column[first..first + 4];
+    Lanes4([four[0], four[1], four[2], four[3]])
 }
 
 /// Whether a row has members of several groups.

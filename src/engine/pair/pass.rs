@@ -121,6 +121,7 @@ struct Fastest {
 }
 
 impl BlockSum for Fastest {
+    #[inline]
     fn add(&mut self, next: &Self) {
         self.damping = self.damping.max(next.damping);
         self.stiffness = self.stiffness.max(next.stiffness);

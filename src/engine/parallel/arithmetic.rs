@@ -34,6 +34,12 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// `c` in lanes where `a < b`, zero in the others.
     fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
 
+    /// Bit k is set where `a < b` in lane k.
+    fn below(self, a: Lanes4, b: Lanes4) -> usize;
+
+    /// The values whose bits are set, in their order; what follows them has no meaning.
+    fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4];
+
     /// `a b + c`, lane by lane.
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
 
@@ -121,6 +127,23 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
+    fn below(self, a: Lanes4, b: Lanes4) -> usize {
+        let bit = |k: usize| usize::from(a.0[k] < b.0[k]) << k;
+        bit(0) | bit(1) | bit(2) | bit(3)
+    }
+
+    #[inline(always)]
+    fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
+        let mut packed = [0; 4];
+        let mut count = 0;
+        for (k, value) in values.into_iter().enumerate() {
+            packed[count] = value;
+            count = (count + (bits >> k & 1)).min(3);
+        }
+        packed
+    }
+
+    #[inline(always)]
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
         Lanes4([
             self.mul_add(a.0[0], b.0[0], c.0[0]),
@@ -164,6 +187,28 @@ mod v3 {
 
     use super::{Arithmetic, Lanes4};
 
+    /// For every set of bits the bytes of the values whose bits are set.
+    const PACKED: [[u8; 16]; 16] = {
+        let mut table = [[0x80; 16]; 16];
+        let mut bits = 0;
+        while bits < 16 {
+            let (mut k, mut at) = (0, 0);
+            while k < 4 {
+                if bits >> k & 1 == 1 {
+                    let mut byte = 0;
+                    while byte < 4 {
+                        table[bits][4 * at + byte] = (4 * k + byte) as u8;
+                        byte += 1;
+                    }
+                    at += 1;
+                }
+                k += 1;
+            }
+            bits += 1;
+        }
+        table
+    };
+
     /// AVX2 and FMA: product and sum are rounded once.
     impl Arithmetic for V3 {
         #[inline(always)]
@@ -205,6 +250,16 @@ mod v3 {
         fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             let mask = self.cmp_lt_f64x4(cast(a), cast(b));
             cast::<f64x4, Lanes4>(self.select_f64x4(mask, cast(c), cast(Lanes4::ZERO)))
+        }
+
+        #[inline(always)]
+        fn below(self, a: Lanes4, b: Lanes4) -> usize {
+            self.avx._mm256_movemask_pd(cast(self.cmp_lt_f64x4(cast(a), cast(b)))) as usize
+        }
+
+        #[inline(always)]
+        fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
+            cast(self.ssse3._mm_shuffle_epi8(cast(values), cast(PACKED[bits & 15])))
         }
 
         #[inline(always)]

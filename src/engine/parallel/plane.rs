@@ -29,6 +29,8 @@ impl<A: Arithmetic> Arithmetic for Plane<A> {
         smaller(a: Lanes4, b: Lanes4) -> Lanes4;
         larger(a: Lanes4, b: Lanes4) -> Lanes4;
         where_below(a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
+        below(a: Lanes4, b: Lanes4) -> usize;
+        pack(values: [u32; 4], bits: usize) -> [u32; 4];
         times_add(a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
         sqrt(a: Lanes4) -> Lanes4;
         or_zero(a: Lanes4) -> Lanes4;

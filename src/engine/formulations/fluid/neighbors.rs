@@ -29,8 +29,8 @@ impl Run for Neighbors {
         }
         if pairs.is_stale(positions) {
             pairs.build(positions, *fluid).map_err(failed)?;
+            self.built.clone_from(&pairs.built);
         }
-        self.built.clone_from(&pairs.built);
         cloud.pack(step.world)?;
         cloud.average_motion(step.clock.dt);
         Ok(())

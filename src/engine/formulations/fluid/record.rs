@@ -92,14 +92,13 @@ pub(super) struct Four<const D: usize> {
 /// Neighbours j of a row, four at a time; the last ones are filled up with i itself, whose differences are zero.
 #[inline(always)]
 pub(super) fn padded(chunk: &[u32], i: usize) -> [usize; 4] {
-    if let [j, k, l, m] = *chunk {
-        return [j as usize, k as usize, l as usize, m as usize];
+    match *chunk {
+        [j, k, l, m, ..] => [j as usize, k as usize, l as usize, m as usize],
+        [j, k, l] => [j as usize, k as usize, l as usize, i],
+        [j, k] => [j as usize, k as usize, i, i],
+        [j] => [j as usize, i, i, i],
+        [] => [i; 4],
     }
-    let mut j = [i; 4];
-    for (to, &from) in j.iter_mut().zip(chunk) {
-        *to = from as usize;
-    }
-    j
 }
 
 /// Beyond the support in the lanes that hold no neighbour, by the number of those that do.
