@@ -5,6 +5,7 @@ mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use common::{all_plugins, flow, simulation};
 use meshless::scene::Source;
@@ -37,8 +38,12 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// One test counts at a time.
+static TURN: Mutex<()> = Mutex::new(());
+
 /// Allocations of each of `steps` steps after a warm-up, on a number of threads.
 fn counts(source: &Source, threads: usize, steps: usize) -> Vec<u64> {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
         let mut sim = simulation(source);
