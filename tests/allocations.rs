@@ -75,8 +75,9 @@ fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
 fn a_step_of_flows_allocates_nothing_but_room_for_longer_lists() {
     for dimension in [2, 3] {
         let counts = counts(&flow(dimension), 1, 100);
-        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and its search.
-        let calm = counts.iter().filter(|&&count| count == 0).count();
-        assert!(calm >= 80 && counts.iter().sum::<u64>() < 60, "{dimension} dimensions: {counts:?}");
+        // The limit of the time step falls as the water gets faster, and has a text then. The largest number of neighbours grows as
+        // water is compressed, and with it the memory of a list and its search.
+        let texts = counts.iter().filter(|&&count| count <= 1).count();
+        assert!(texts >= 80 && counts.iter().all(|&count| count < 8), "{dimension} dimensions: {counts:?}");
     }
 }
