@@ -25,7 +25,7 @@ impl Plugin for InitialDisplacement {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let selection = sim.select(&self.on, "on")?;
+        let selection = sim.select_at_start(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
         let parts = parts_of(&selection, sim);
         field.require_finite(&parts, "displacement")?;

@@ -69,8 +69,10 @@ fn build_in(
     let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
     let world = spawn::spawn(&sim);
     let mut resources = Resources::default();
+    let held = BodySet::new(sim.held.take());
     for step in std::mem::take(&mut sim.setup) {
-        let mut setup = Setup { world: &world, resources: &mut resources, warnings: &mut sim.warnings };
+        let mut setup =
+            Setup { world: &world, resources: &mut resources, held: &held, warnings: &mut sim.warnings };
         step(&mut setup).map_err(|error| at_scene(scene, error))?;
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)

@@ -1,6 +1,7 @@
 //! What a plugin sees while a simulation is built.
 
 use std::any::{Any, TypeId};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -30,6 +31,8 @@ pub struct SimBuilder<'s> {
     pub(super) warnings: Vec<String>,
     pub(super) references: Vec<String>,
     pub(super) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
+    /// Bodies that selections hold.
+    pub(super) held: RefCell<Vec<BodyId>>,
     extensions: BTreeMap<TypeId, Vec<Box<dyn Any>>>,
 }
 
@@ -52,6 +55,7 @@ impl<'s> SimBuilder<'s> {
             warnings: Vec::new(),
             references: Vec::new(),
             prescribed: BTreeMap::new(),
+            held: RefCell::default(),
             extensions: BTreeMap::new(),
         }
     }
@@ -169,8 +173,16 @@ impl<'s> SimBuilder<'s> {
         self.setup.push(Box::new(step));
     }
 
-    /// The rows that a selection means; `field` is its name among the parameters, for errors.
+    /// The rows that a selection means; `field` is its name among the parameters, for errors. The bodies keep the order of
+    /// their rows through the run: fluids among them are not sorted.
     pub fn select(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
+        let selection = self.select_at_start(select, field)?;
+        self.held.borrow_mut().extend(selection.parts.iter().map(|(body, _)| *body));
+        Ok(selection)
+    }
+
+    /// The rows that a selection means until the first step, for what is done once.
+    pub fn select_at_start(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
         selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
     }
 

@@ -2,7 +2,7 @@
 
 use super::error::SetupError;
 use crate::schedule::Resources;
-use crate::world::World;
+use crate::world::{BodySet, World};
 
 /// What a set-up step sees.
 pub struct Setup<'a> {
@@ -10,6 +10,9 @@ pub struct Setup<'a> {
     pub world: &'a World,
     /// What systems share.
     pub resources: &'a mut Resources,
+    /// Bodies whose particles a selection holds by their rows (see [`SimBuilder::select`](super::SimBuilder::select)): their rows
+    /// keep their order.
+    pub held: &'a BodySet,
     /// Tells the user something; repeated at the end of the run.
     pub warnings: &'a mut Vec<String>,
 }

@@ -33,7 +33,7 @@ pub use fill::{Site, fill};
 pub use lattice::Lattice;
 pub use mesh::MeshFault;
 pub use moments::Moments;
-pub use morton::morton_order;
+pub use morton::{MortonSort, morton_order};
 pub use region::{Aabb, Region};
 pub use shape::Shape;
 pub use surface::{Surface, SurfacePoint};

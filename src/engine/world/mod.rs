@@ -2,6 +2,7 @@
 
 mod body;
 mod column;
+mod permute;
 mod registry;
 mod standard;
 mod state;

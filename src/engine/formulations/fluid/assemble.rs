@@ -76,7 +76,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let dimension = sim.dimension().count();
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
-    let cloud = FlowCloud {
+    let mut cloud = FlowCloud {
         groups: groups.clone(),
         fluid,
         kernel: FluidKernel::new(support, dimension),
@@ -89,6 +89,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     };
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
+        cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
         checks::flow_is_slow(&cloud, setup.world)?;
         setup.resources.insert(cloud);
         Ok(())
@@ -110,6 +111,7 @@ fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {
         rows: body.rows.clone(),
         cloud: start..start + body.rows.len(),
         role,
+        held: true,
         short: false,
     }
 }

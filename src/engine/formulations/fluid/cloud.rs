@@ -62,6 +62,8 @@ pub struct Group {
     pub cloud: Range<usize>,
     /// What it is to the flow.
     pub role: Role,
+    /// Whether someone holds particles by their rows, so that these must not be sorted.
+    pub held: bool,
     /// Whether it takes short steps in those of the flow.
     pub short: bool,
 }

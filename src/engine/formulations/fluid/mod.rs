@@ -22,6 +22,7 @@ mod pair_force;
 mod pair_rows;
 mod pairs;
 mod record;
+mod sort;
 mod sound_speed;
 mod start;
 mod state;

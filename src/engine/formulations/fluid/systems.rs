@@ -17,10 +17,8 @@ use crate::pair::{BodyTerms, add_pair_systems, add_work_systems};
 use crate::plugin::{Formulation, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::rigid::{RIGID_KICK, RIGID_WEIGHT, Rigid};
-use crate::schedule::{Stage, System};
-use crate::world::{
-    Density, DensityRate, Force, Mass, PhaseId, Position, Pressure, ReferenceVolume, Removed, Velocity,
-};
+use crate::schedule::{Mode, Stage, System};
+use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, Removed, Velocity};
 
 /// Label of the system that keeps the neighbour lists of fluids.
 pub(super) const NEIGHBORS: &str = "fluid_neighbors";
@@ -55,14 +53,11 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     phases.dedup();
     let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
     let account = add_pair_systems(sim, fluid, FLUID_FORCE, FluidPairs)?;
-    sim.add_system(
-        System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
-            .on_phases(phases)
-            .after(REMOVAL)
-            .reads::<Position>()
-            .reads::<Velocity>()
-            .reads::<ReferenceVolume>(),
-    );
+    // Sorting permutes all columns.
+    let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
+    let lists =
+        System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default()).on_phases(phases).after(REMOVAL);
+    sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
     let continuity = Continuity { account, compression: Vec::new(), sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)

@@ -6,7 +6,9 @@ use crate::kernels::{Kernel, KernelName};
 use crate::plugin::{Registry, build};
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
-use crate::world::{BodyId, Column, Density, Force, Mass, Position, Pressure, ReferenceVolume, Velocity};
+use crate::world::{
+    BodyId, Column, Density, Force, Mass, ParticleId, Position, Pressure, ReferenceVolume, Velocity,
+};
 
 fn simulation(text: &str) -> Simulation {
     let registry = Registry::standard();
@@ -198,6 +200,27 @@ fn a_dam_break_keeps_its_energy_in_the_books() {
     let ledger = sim.ledger();
     assert!(ledger.total_named("gravity") > 50.0 && ledger.total_named("viscosity") > 0.0);
     assert!(ledger.relative_error().abs() < 2e-3, "{}", ledger.relative_error());
+}
+
+#[test]
+fn sorted_particles_move_as_those_that_keep_their_rows() {
+    let positions = |condition: &str| {
+        let text = dam(2, "").replace("conditions: [", &format!("conditions: [{condition}"));
+        let mut sim = simulation(&text);
+        run(&mut sim, 300);
+        let ids: Vec<u64> = column::<ParticleId>(&sim, 0).iter().map(|id| id.0).collect();
+        let mut rows: Vec<usize> = (0..ids.len()).collect();
+        rows.sort_by_key(|&row| ids[row]);
+        let x = column::<Position>(&sim, 0);
+        (ids.is_sorted(), rows.into_iter().map(|row| x[row].0).collect::<Vec<_>>())
+    };
+    let (as_made, sorted) = positions("");
+    assert!(!as_made);
+    let (as_made, held) =
+        positions(r#"Force(on: Select(body: "water", nearest: (0, 0)), value: ("0", "0")),"#);
+    assert!(as_made);
+    let farthest = sorted.iter().zip(&held).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(farthest < 1e-6 * 0.04, "{farthest}");
 }
 
 #[test]
