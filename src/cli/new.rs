@@ -47,6 +47,7 @@ const TEMPLATES: &[Template] = &templates![
     "taylor_bar",
     "tensile_specimen",
     "brittle_bar",
+    "projectile",
     "dam_break",
     "dam_break_3d",
     "dam_break_obstacle",

@@ -1,6 +1,7 @@
 //! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of [`register`].
 
 mod hertz;
+mod images;
 mod law;
 mod memory;
 mod node_view;

@@ -1,5 +1,6 @@
 //! From the contacts of a scene to the systems that make them.
 
+use super::images::{mirrors, periodic};
 use super::law::{ContactPair, NormalForce};
 use super::particles::{ParticleContact, radii};
 use super::response::Interaction;
@@ -7,6 +8,7 @@ use super::restitution::damping_ratio;
 use super::sides::{Nodes, Sides};
 use super::surface::SurfaceContact;
 use super::system::{self, Touching};
+use crate::formulations::total_lagrangian::MirrorPlane;
 use crate::materials::{ElasticConstants, Law};
 use crate::plugin::{BodyPlan, Formulation, SimBuilder};
 use crate::rigid::{Rigid, sphere_of};
@@ -21,6 +23,7 @@ pub type MakeLaw<'m> = &'m dyn Fn(&Item, &ContactPair) -> Result<Box<dyn NormalF
 /// # Errors
 /// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
+    let planes: Vec<MirrorPlane> = sim.take_extensions();
     let scene = sim.scene();
     let mut problems = Vec::new();
     let mut touching = Vec::new();
@@ -38,7 +41,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
             );
             continue;
         }
-        match pairs_of(contact, sim, make) {
+        match pairs_of(contact, k, &planes, sim, make) {
             Ok(pairs) => {
                 numbers.resize(numbers.len() + pairs.len(), k);
                 touching.extend(pairs);
@@ -68,6 +71,8 @@ fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Probl
 
 fn pairs_of(
     contact: &Contact,
+    number: usize,
+    planes: &[MirrorPlane],
     sim: &SimBuilder<'_>,
     make: MakeLaw<'_>,
 ) -> Result<Vec<Touching>, Vec<Problem>> {
@@ -90,19 +95,22 @@ fn pairs_of(
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
         Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
-            Sides { first: of.id, nodes, second: on.id },
+            Sides { first: of.id, nodes, second: on.id, periodic: periodic(sim) },
             sim.gravity().length(),
         ))))
     };
     let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();
     Ok(match (is_rigid(first), is_rigid(second)) {
         (false, false) => {
-            vec![Touching::Particles(Box::new(ParticleContact::new(
-                interaction()?,
-                first,
-                second,
-                sim.dimension(),
-            )))]
+            let mut pairs = Vec::new();
+            for mirror in mirrors(planes, first.id, second.id) {
+                let bodies = (first, second);
+                let pair =
+                    ParticleContact::new(interaction()?, bodies, mirror, periodic(sim), sim.dimension());
+                refuse_short_periods(&pair, number, sim)?;
+                pairs.push(Touching::Particles(Box::new(pair)));
+            }
+            pairs
         }
         (false, true) => vec![on_surface(particles(first), first, second)?],
         (true, false) => vec![on_surface(particles(second), second, first)?],
@@ -113,6 +121,26 @@ fn pairs_of(
             vec![on_surface(Nodes::Rigid, first, second)?, on_surface(Nodes::Rigid, second, first)?]
         }
     })
+}
+
+/// A particle must not see two images of another.
+fn refuse_short_periods(
+    pair: &ParticleContact,
+    number: usize,
+    sim: &SimBuilder<'_>,
+) -> Result<(), Vec<Problem>> {
+    let (periodic, least) = (periodic(sim), pair.least_period());
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let length = periodic.lengths()[axis];
+        if periodic.axes()[axis] && length < least {
+            let message = format!(
+                "the period of {length} m along {name} is too short for this contact, which needs {least} m"
+            );
+            let problem = Problem::at_path(format!("contacts[{number}].between"), message);
+            return Err(vec![problem.help("use a longer domain, or smaller particles")]);
+        }
+    }
+    Ok(())
 }
 
 fn is_rigid(body: &BodyPlan) -> bool {

@@ -130,8 +130,13 @@ impl Interaction {
 impl Losses {
     /// Adds the losses of a contact over the step to `now`; the two kicks put half of each force into the motion.
     pub fn add(&mut self, before: &Memory, now: &Memory, velocity: DVec3, dt: f64) {
+        self.add_share(1.0, before, now, velocity, dt);
+    }
+
+    /// Adds a share of the losses of a contact.
+    pub fn add_share(&mut self, share: f64, before: &Memory, now: &Memory, velocity: DVec3, dt: f64) {
         let half = 0.5 * dt * velocity;
-        self.damping -= (before.dashpot + now.dashpot).dot(half);
-        self.friction -= (before.spring + now.spring).dot(half) + now.energy() - before.energy();
+        self.damping -= share * (before.dashpot + now.dashpot).dot(half);
+        self.friction -= share * ((before.spring + now.spring).dot(half) + now.energy() - before.energy());
     }
 }

@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use super::images::Mirror;
 use super::memory::PairKey;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
 use crate::parallel::{BlockSum, sum_over_blocks};
@@ -20,6 +21,8 @@ pub(super) struct Crowd<'a> {
     pub position: &'a [Position],
     /// Radius of every particle, m.
     pub radius: &'a [f64],
+    /// The image of the body that is looked at.
+    pub mirror: Mirror,
 }
 
 /// Candidates of contact between the particles of two bodies, or of one with itself.
@@ -27,6 +30,7 @@ pub(super) struct Search {
     skin: f64,
     /// Largest radius on each side, m.
     largest: [f64; 2],
+    periodic: Periodic,
     /// How far the two bodies may move together before the list is made again, m; how far they have.
     budget: f64,
     travelled: f64,
@@ -50,9 +54,10 @@ impl Region {
         self.position.clear();
         self.reach.clear();
         for (k, (x, radius)) in crowd.position.iter().zip(crowd.radius).enumerate() {
-            if within.is_none_or(|within| x.0.cmpge(within.min).all() && x.0.cmple(within.max).all()) {
+            let x = crowd.mirror.place(x.0);
+            if within.is_none_or(|within| x.cmpge(within.min).all() && x.cmple(within.max).all()) {
                 self.numbers.push(k as u32);
-                self.position.push(x.0);
+                self.position.push(x);
                 self.reach.push(2.0 * radius);
             }
         }
@@ -65,11 +70,12 @@ impl Region {
 
 impl Search {
     /// A search between particles of these radii.
-    pub fn new(first: &[f64], second: &[f64]) -> Self {
+    pub fn new(first: &[f64], second: &[f64], periodic: Periodic) -> Self {
         let largest = [first, second].map(|radius| radius.iter().copied().fold(0.0, f64::max));
         Self {
             skin: SKIN * (largest[0] + largest[1]),
             largest,
+            periodic,
             budget: -1.0,
             travelled: 0.0,
             regions: Default::default(),
@@ -86,6 +92,11 @@ impl Search {
         self.travelled.is_nan() || self.travelled > self.budget
     }
 
+    /// Least period with which each particle sees one image of another, m.
+    pub fn least_period(&self) -> f64 {
+        2.0 * (self.largest[0] + self.largest[1] + self.skin)
+    }
+
     /// The pairs that may touch, ascending.
     pub fn pairs(&self) -> &[PairKey] {
         &self.pairs
@@ -96,7 +107,7 @@ impl Search {
         self.pairs.clear();
         self.travelled = 0.0;
         let reach = self.largest[0] + self.largest[1];
-        let boxes = [first, second].map(|crowd| around(crowd.position));
+        let boxes = [first, second].map(|crowd| self.around(crowd));
         let gap = (boxes[0].min - boxes[1].max).max(boxes[1].min - boxes[0].max).max(DVec3::ZERO).length();
         self.budget = self.skin.max(gap - reach);
         if gap >= reach + self.skin {
@@ -112,39 +123,53 @@ impl Search {
         if targets.numbers.is_empty() || sources.numbers.is_empty() {
             return Ok(());
         }
-        let (list, periodic) = (&mut self.list, Periodic::NONE);
-        self.search.between(targets.cloud(), sources.cloud(), self.skin, &periodic, list)?;
+        let list = &mut self.list;
+        self.search.between(targets.cloud(), sources.cloud(), self.skin, &self.periodic, list)?;
         for (k, &i) in targets.numbers.iter().enumerate() {
             self.pairs.extend(self.list.row(k).iter().map(|&j| (i, sources.numbers[j as usize])));
         }
         Ok(())
     }
 
-    /// Finds the pairs of a body with itself that `apart` accepts, the smaller number first.
-    pub fn within(
+    /// Finds the pairs of a body with itself, or with an image of itself, that `apart` accepts, the smaller number first. A particle may
+    /// touch its own image.
+    pub fn of_itself(
         &mut self,
-        crowd: Crowd<'_>,
+        own: Crowd<'_>,
+        other: Crowd<'_>,
         apart: impl Fn(u32, u32) -> bool,
     ) -> Result<(), NeighborError> {
+        let mirrored = other.mirror != Mirror::NONE;
+        if mirrored {
+            self.between(own, other)?;
+            self.pairs.retain(|&(i, j)| i <= j && apart(i, j));
+            return Ok(());
+        }
         self.pairs.clear();
         self.travelled = 0.0;
         self.budget = self.skin;
-        self.regions[0].collect(crowd, None);
-        self.search.within(self.regions[0].cloud(), self.skin, &Periodic::NONE, &mut self.list)?;
-        for i in 0..crowd.position.len() as u32 {
+        self.regions[0].collect(own, None);
+        self.search.within(self.regions[0].cloud(), self.skin, &self.periodic, &mut self.list)?;
+        for i in 0..own.position.len() as u32 {
             let others = self.list.row(i as usize).iter().filter(|&&j| i < j && apart(i, j));
             self.pairs.extend(others.map(|&j| (i, j)));
         }
         Ok(())
     }
-}
 
-/// The box around particles.
-fn around(position: &[Position]) -> Aabb {
-    let bounds = sum_over_blocks(position, &|_, rows: &[Position]| {
-        rows.iter().fold(Bounds::default(), |bounds, x| Bounds(bounds.0.min(x.0), bounds.1.max(x.0)))
-    });
-    Aabb { min: bounds.0, max: bounds.1 }
+    /// The box around particles; periodic axes have no end.
+    fn around(&self, crowd: Crowd<'_>) -> Aabb {
+        let mirror = crowd.mirror;
+        let bounds = sum_over_blocks(crowd.position, &|_, rows: &[Position]| {
+            let places = rows.iter().map(|x| mirror.place(x.0));
+            places.fold(Bounds::default(), |bounds, x| Bounds(bounds.0.min(x), bounds.1.max(x)))
+        });
+        let mut around = Aabb { min: bounds.0, max: bounds.1 };
+        for axis in (0..3).filter(|&axis| self.periodic.axes()[axis]) {
+            (around.min[axis], around.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        around
+    }
 }
 
 #[derive(Clone, Copy)]

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::node_view::NodeView;
+use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
 use crate::schedule::StepError;
 use crate::world::{BodyId, Mobility, Position, Removed, Velocity, World};
@@ -24,6 +25,8 @@ pub(super) struct Sides {
     pub nodes: Nodes,
     /// Rigid body with the surface.
     pub second: BodyId,
+    /// Periodic axes: the image of a node that is nearest to the centre of the surface's body touches it.
+    pub periodic: Periodic,
 }
 
 /// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without radius.
@@ -58,10 +61,20 @@ impl Sides {
         })
     }
 
+    /// The image of a place that is nearest to the body with the surface, m.
+    pub fn near(&self, x: DVec3, tool: &RigidBody) -> DVec3 {
+        if self.periodic.any() {
+            tool.state.center + self.periodic.minimal_image(x - tool.state.center)
+        } else {
+            x
+        }
+    }
+
     /// Place of the first node that is deeper inside the other body than one may start, m.
-    pub fn inside(nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
+    pub fn inside(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
         let deep = |i: usize, x: DVec3| {
-            let overlap = nodes.radius(i) - tool.surface.closest(tool.reference(x)).signed_distance;
+            let x = tool.reference(self.near(x, tool));
+            let overlap = nodes.radius(i) - tool.surface.closest(x).signed_distance;
             let radius = nodes.radius(i);
             overlap > if radius > 0.0 { RADIUS_SHARE * radius } else { SPACING_SHARE * nodes.size(i) }
         };

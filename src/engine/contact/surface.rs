@@ -29,8 +29,19 @@ pub(super) struct SurfaceContact {
     budget: f64,
     travelled: f64,
     stiffness: NodeStiffness,
-    /// Where each node that touches now is pushed, and by what force.
-    forces: Vec<(u32, DVec3, DVec3)>,
+    /// The nodes that touch now.
+    forces: Vec<Push>,
+}
+
+/// What a contact does to both sides.
+struct Push {
+    node: u32,
+    /// Where the surface is pushed, m.
+    place: DVec3,
+    /// From there to where the node is pushed: zero, or a period.
+    shift: DVec3,
+    /// Force on the node, N.
+    force: DVec3,
 }
 
 /// Stiffness over mass of the contacts of a step, 1/s2.
@@ -69,8 +80,9 @@ impl SurfaceContact {
         if self.travelled.is_nan() || self.travelled > self.budget {
             self.travelled = 0.0;
             let mut candidates = std::mem::take(&mut self.candidates);
-            self.budget =
-                self.sides.with(step.world, &bodies, |nodes, tool| near(nodes, tool, &mut candidates))?;
+            self.budget = self
+                .sides
+                .with(step.world, &bodies, |nodes, tool| self.candidates(nodes, tool, &mut candidates))?;
             self.candidates = candidates;
         }
         let mut memories = std::mem::take(&mut self.memories);
@@ -84,9 +96,9 @@ impl SurfaceContact {
             (tally, frequencies, least)
         })?;
         (self.memories, self.forces) = (memories, forces);
-        for (node, ..) in &self.forces {
+        for push in &self.forces {
             if matches!(self.sides.nodes, Nodes::Particles(_)) {
-                frequencies.particle = frequencies.particle.max(sums.of(*node as usize));
+                frequencies.particle = frequencies.particle.max(sums.of(push.node as usize));
             }
         }
         sums.clear();
@@ -124,33 +136,42 @@ impl SurfaceContact {
         tool: &RigidBody,
         dt: f64,
         memories: &mut Memories,
-        forces: &mut Vec<(u32, DVec3, DVec3)>,
+        forces: &mut Vec<Push>,
         sums: &mut NodeStiffness,
     ) -> (Tally, Frequencies) {
         let mut tally = Tally::default();
         let mut losses = Losses::default();
         let mut frequencies = Frequencies::default();
-        let slip = |node: u32, place: DVec3| nodes.velocity(node as usize, place) - tool.velocity_at(place);
+        let slip = |node: u32, place: DVec3, shift: DVec3| {
+            nodes.velocity(node as usize, place + shift) - tool.velocity_at(place)
+        };
+        let ended = |node: u32| {
+            let own_place = nodes.position(node as usize);
+            let place = self.sides.near(own_place, tool);
+            slip(node, place, own_place - place)
+        };
         for &node in &self.candidates {
             let i = node as usize;
-            let x = nodes.position(i);
+            let own_place = nodes.position(i);
+            let x = self.sides.near(own_place, tool);
             let nearest = tool.surface.closest(tool.reference(x));
             let overlap = nodes.radius(i) - nearest.signed_distance;
             if overlap <= 0.0 || !nodes.is_there(i) {
                 continue;
             }
             while let Some((old, memory)) = memories.ended_before(Some((node, 0))) {
-                let place = nodes.position(old.0 as usize);
-                losses.add(&memory, &Default::default(), slip(old.0, place), dt);
+                losses.add(&memory, &Default::default(), ended(old.0), dt);
             }
             let before = memories.of((node, 0));
             let place = nodes.place(x, || tool.place(nearest.point));
+            // Where the body of the node has it, a period away from the image that touches.
+            let shift = own_place - x;
             let meeting = Meeting {
                 touch: touch_of(nodes, i, tool, overlap),
                 normal: tool.state.rotation * nearest.normal,
-                velocity: slip(node, place),
+                velocity: slip(node, place, shift),
             };
-            let own = |n: DVec3| nodes.inverse_mass(i, place, n);
+            let own = |n: DVec3| nodes.inverse_mass(i, place + shift, n);
             let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
             let response = self.interaction.respond(&meeting, inverse_mass, dt, &before);
             losses.add(&before, &response.memory, meeting.velocity, dt);
@@ -162,11 +183,10 @@ impl SurfaceContact {
                 NodeView::Rigid(_) => frequencies.rigid += stiffness * own(meeting.normal),
             }
             memories.keep((node, 0), response.memory);
-            forces.push((node, place, response.force));
+            forces.push(Push { node, place, shift, force: response.force });
         }
         while let Some((old, memory)) = memories.ended_before(None) {
-            let place = nodes.position(old.0 as usize);
-            losses.add(&memory, &Default::default(), slip(old.0, place), dt);
+            losses.add(&memory, &Default::default(), ended(old.0), dt);
         }
         memories.turn();
         tally.losses = losses;
@@ -178,20 +198,41 @@ impl SurfaceContact {
         if let Nodes::Particles(_) = self.sides.nodes {
             let (view, rows) = step.world.body_view(self.sides.first);
             let mut column = view.write::<Force>()?;
-            for (node, _, force) in &self.forces {
-                column[rows.start + *node as usize].0 += *force;
+            for push in &self.forces {
+                column[rows.start + push.node as usize].0 += push.force;
             }
         }
         for body in bodies.iter_mut() {
-            for (_, place, force) in &self.forces {
+            for Push { place, shift, force, .. } in &self.forces {
                 if body.id == self.sides.second {
                     body.push(*place, -*force);
                 } else if body.id == self.sides.first {
-                    body.push(*place, *force);
+                    body.push(*place + *shift, *force);
                 }
             }
         }
         Ok(())
+    }
+
+    /// Finds the nodes near the surface; returns how far both bodies may move together until others are, m.
+    fn candidates(&self, nodes: &NodeView<'_>, tool: &RigidBody, candidates: &mut Vec<u32>) -> f64 {
+        candidates.clear();
+        let bounds = tool.surface.bounds();
+        let mut budget = f64::INFINITY;
+        for i in 0..nodes.len() {
+            let x = tool.reference(self.sides.near(nodes.position(i), tool));
+            let (reach, skin) = (nodes.radius(i), SKIN * nodes.size(i));
+            let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
+            if gap < skin {
+                budget = budget.min(skin);
+                if tool.surface.closest(x).signed_distance - reach < skin {
+                    candidates.push(i as u32);
+                }
+            } else {
+                budget = budget.min(gap);
+            }
+        }
+        budget
     }
 }
 
@@ -200,25 +241,4 @@ fn touch_of(nodes: &NodeView<'_>, i: usize, tool: &RigidBody, overlap: f64) -> T
     let own = if nodes.radius(i) > 0.0 { nodes.radius(i) } else { 0.5 * length };
     let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
     Touch { overlap, radius, length }
-}
-
-/// Finds the nodes near the surface; returns how far both bodies may move together until others are, m.
-fn near(nodes: &NodeView<'_>, tool: &RigidBody, candidates: &mut Vec<u32>) -> f64 {
-    candidates.clear();
-    let bounds = tool.surface.bounds();
-    let mut budget = f64::INFINITY;
-    for i in 0..nodes.len() {
-        let x = tool.reference(nodes.position(i));
-        let (reach, skin) = (nodes.radius(i), SKIN * nodes.size(i));
-        let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
-        if gap < skin {
-            budget = budget.min(skin);
-            if tool.surface.closest(x).signed_distance - reach < skin {
-                candidates.push(i as u32);
-            }
-        } else {
-            budget = budget.min(gap);
-        }
-    }
-    budget
 }

@@ -1,5 +1,6 @@
 //! Contact in small scenes, against closed forms and invariants.
 
+mod images;
 mod laws;
 mod long;
 mod particles;

@@ -113,6 +113,8 @@ impl Formulation for TotalLagrangian {
             repeats_of(body, parameters.support * body.spacing, &planes, sim)
         };
         let repeats = bodies.iter().map(repeats_of).collect::<Result<Vec<_>, _>>()?;
+        // Contacts see mirror images too.
+        planes.into_iter().for_each(|plane| sim.extend(plane));
         for ((_, parameters), repeats) in bodies.iter().zip(&repeats) {
             if parameters.neighbors.is_some() && !repeats.is_empty() {
                 let message = "neighbours cannot be counted across a symmetry plane or a periodic side";

@@ -1,0 +1,89 @@
+//! What bodies see of each other across periodic sides and symmetry planes.
+//!
+//! Across a periodic side the nearest image counts. Across symmetry planes the particles of the first body touch mirror images of those of the
+//! second: a force on the first goes mirrored, with opposite sign, to the source of the image. Of the two pairs of the whole problem, one is
+//! the mirror image of the other, and one is in the half that is solved.
+
+use glam::DVec3;
+
+use crate::formulations::total_lagrangian::MirrorPlane;
+use crate::neighbors::Periodic;
+use crate::plugin::SimBuilder;
+use crate::world::BodyId;
+
+/// The map x -> S x + c to an image, with a diagonal S of signs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mirror {
+    signs: DVec3,
+    shift: DVec3,
+}
+
+impl Mirror {
+    /// No image: the body itself.
+    pub const NONE: Self = Self { signs: DVec3::ONE, shift: DVec3::ZERO };
+
+    /// Place of the image, m.
+    pub fn place(&self, x: DVec3) -> DVec3 {
+        self.signs * x + self.shift
+    }
+
+    /// A vector of the image; and a vector at the image, at its source.
+    pub fn turn(&self, v: DVec3) -> DVec3 {
+        self.signs * v
+    }
+
+    fn and(mut self, plane: &MirrorPlane) -> Self {
+        self.signs[plane.axis] *= -1.0;
+        self.shift[plane.axis] = 2.0 * plane.at - self.shift[plane.axis];
+        self
+    }
+}
+
+/// The images of the second body that the first one may touch, beginning with that body itself: mirrored by each plane that cuts both, and by
+/// planes at right angles together.
+pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> Vec<Mirror> {
+    let mut all: Vec<(Mirror, [bool; 3])> = vec![(Mirror::NONE, [false; 3])];
+    for plane in planes.iter().filter(|plane| plane.bodies.contains(first) && plane.bodies.contains(second)) {
+        for (mirror, mut axes) in all.clone() {
+            if !std::mem::replace(&mut axes[plane.axis], true) {
+                all.push((mirror.and(plane), axes));
+            }
+        }
+    }
+    all.into_iter().map(|(mirror, _)| mirror).collect()
+}
+
+/// The periodic axes of the scene.
+pub(super) fn periodic(sim: &SimBuilder<'_>) -> Periodic {
+    let Some(domain) = &sim.scene().domain else { return Periodic::NONE };
+    let mut axes = [false; 3];
+    domain.periodic.iter().for_each(|axis| axes[axis.index()] = true);
+    // Bounds of domains are checked with the scene.
+    Periodic::new(domain.min.0, domain.max.0, axes).unwrap_or(Periodic::NONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::BodySet;
+
+    #[test]
+    fn two_planes_make_three_images_and_a_third_body_none() {
+        let plane = |axis, at, bodies: &[usize]| {
+            let bodies = BodySet::new(bodies.iter().map(|k| BodyId(*k)));
+            MirrorPlane { axis, at, bodies }
+        };
+        let planes = [plane(0, 1.0, &[0, 1]), plane(1, 0.0, &[0, 1, 2]), plane(0, 5.0, &[0])];
+        let x = DVec3::new(0.25, 3.0, 7.0);
+        let places = |first, second| {
+            let mirrors = mirrors(&planes, BodyId(first), BodyId(second));
+            mirrors.iter().map(|mirror| mirror.place(x)).collect::<Vec<_>>()
+        };
+        let expected = [(0.25, 3.0), (1.75, 3.0), (0.25, -3.0), (1.75, -3.0)];
+        assert_eq!(places(0, 1), expected.map(|(x, y)| DVec3::new(x, y, 7.0)));
+        assert_eq!(places(1, 2).len(), 2);
+        // Opposite planes of one body have no images of images.
+        assert_eq!(places(0, 0).len(), 6);
+        assert_eq!(Mirror::NONE.place(x), x);
+    }
+}
