@@ -149,12 +149,18 @@ fn place_of_probe(probe: &Probe, i: usize) -> Option<Problem> {
         (None, Some(_), Quantity::Torque) => {
             ("at", "there is no torque at a point: `Torque` is that of a selection")
         }
+        (None, Some(_), Quantity::FluidForce | Quantity::FluidTorque { .. }) => {
+            ("at", "there is no force at a point: it is that on a selection")
+        }
+        (Some(_), None, quantity) if quantity.at_point() == Some(true) => {
+            ("on", "what is measured has a place, and a selection is none")
+        }
         (None, None, Quantity::Energy) | (Some(_), None, _) | (None, Some(_), _) => return None,
         (None, None, _) => ("name", "the probe does not say where it measures"),
     };
     Some(
         Problem::at_path(format!("probes[{i}].{field}"), message)
-            .help("`on: Select(...)` averages over particles, `at: (x, y, z)` interpolates at a point"),
+            .help("`on: Select(...)` averages over particles, `at: (x, y, z)` measures at a point"),
     )
 }
 

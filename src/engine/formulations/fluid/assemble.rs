@@ -86,6 +86,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         before: Vec::new(),
         records: vec![Record::default(); total],
         pairs: FlowPairs::new(support, SKIN * spacing, periodic, ends),
+        free_surface: false,
     };
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;

@@ -27,6 +27,15 @@ pub struct FluidState {
     pub eos: EquationOfState,
 }
 
+impl FluidState {
+    /// Harmonic mean of the viscosities of two fluids, Pa s.
+    #[inline]
+    pub fn viscosity_with(&self, other: &Self) -> f64 {
+        let sum = self.viscosity + other.viscosity;
+        if sum > 0.0 { 2.0 * self.viscosity * other.viscosity / sum } else { 0.0 }
+    }
+}
+
 /// What the particles of a group are to the flow.
 #[derive(Clone, Copy, Debug)]
 pub enum Role {
@@ -110,6 +119,8 @@ pub struct FlowCloud {
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,
+    /// Whether a viscous fluid had a free surface when the lists were built.
+    pub(super) free_surface: bool,
 }
 
 impl FlowCloud {
@@ -197,6 +208,16 @@ impl FlowCloud {
                 f(&Near { row, x_ij, distance, weight, kernel, volume });
             }
         }
+    }
+
+    /// All particles as the last passes over pairs have seen them, fluids first.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// The vector from one place to another, the shortest of its periodic images, m.
+    pub fn offset(&self, from: DVec3, to: DVec3) -> DVec3 {
+        self.pairs.periodic().minimal_image(to - from)
     }
 
     /// Volume of a fluid particle, m3; `i` is its row in the phase of fluids.

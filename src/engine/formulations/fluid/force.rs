@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::cloud::{FlowCloud, Role};
 use super::pair_force::{ForceRows, PARTS, PairForce};
+use super::surface_friction::SurfaceFriction;
 use crate::pair::BodyTerms;
 use crate::parallel::for_each_block;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -23,6 +24,8 @@ pub(super) struct FlowForce {
     pub gravity: Option<DVec3>,
     /// The parts of the force on each body, for the booking of their work.
     pub parts: Arc<Mutex<Vec<BodyTerms>>>,
+    /// What friction lacks at a free surface.
+    pub friction: SurfaceFriction,
 }
 
 impl Run for FlowForce {
@@ -33,11 +36,15 @@ impl Run for FlowForce {
         let mut force = view.write::<Force>()?;
         let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
+        if groups.clone().any(|group| group.fluid().is_some()) {
+            self.friction.prepare(&cloud);
+        }
         for (group, BodyTerms { forces, .. }) in groups.zip(parts.iter_mut()) {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
             let pass = PairForce { cloud: &cloud, group, adds: self.gravity.is_none() };
             pass.run(ForceRows { total: &mut *total, parts: &mut *forces });
+            self.friction.add(&cloud, group, total, forces);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);

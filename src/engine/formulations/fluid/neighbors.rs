@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::cloud::FlowCloud;
 use super::sort::{BUILDS, Sorter};
+use super::surface_friction;
 use crate::schedule::{Run, Step, StepError};
 
 /// Keeps the lists and the packed rows of the cloud, and sorts the fluids at times.
@@ -15,6 +16,8 @@ pub(super) struct Neighbors {
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
+    /// Whether a viscous fluid had a free surface at the last build.
+    free_surface: bool,
     sorter: Sorter,
 }
 
@@ -31,7 +34,8 @@ impl Run for Neighbors {
             // Sums run in the order of the lists, four neighbours at a time: the same lists give the same bits.
             cloud.pairs.build(&std::mem::take(&mut self.restored), fluid).map_err(failed)?;
         }
-        if cloud.pairs.is_stale(&cloud.positions) {
+        let stale = cloud.pairs.is_stale(&cloud.positions);
+        if stale {
             if self.builds >= BUILDS && self.sorter.sort(&cloud, step.world) {
                 self.builds = 0;
                 cloud.read_positions(step.world)?;
@@ -43,22 +47,28 @@ impl Run for Neighbors {
         }
         cloud.pack(step.world)?;
         cloud.average_motion(step.clock.dt);
+        if stale {
+            self.free_surface = surface_friction::is_needed(&cloud);
+        }
+        cloud.free_surface = self.free_surface;
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
         let mut bytes = self.builds.to_le_bytes().to_vec();
+        bytes.push(u8::from(self.free_surface));
         bytes.extend_from_slice(bytemuck::cast_slice(&self.built));
         bytes
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Some((builds, positions)) = state.split_first_chunk() else { return false };
+        let Some((builds, [free_surface, positions @ ..])) = state.split_first_chunk() else { return false };
         let size = size_of::<DVec3>();
         if !positions.len().is_multiple_of(size) {
             return false;
         }
         self.builds = u64::from_le_bytes(*builds);
+        self.free_surface = *free_surface != 0;
         self.restored = positions.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect();
         self.built.clone_from(&self.restored);
         true

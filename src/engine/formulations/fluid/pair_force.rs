@@ -79,10 +79,7 @@ struct Sums<const D: usize> {
 #[inline(always)]
 fn pair_viscosity(a: &Role, b: &Role) -> f64 {
     match (a, b) {
-        (Role::Fluid(a), Role::Fluid(b)) => {
-            let sum = a.viscosity + b.viscosity;
-            if sum > 0.0 { 4.0 * a.viscosity * b.viscosity / sum } else { 0.0 }
-        }
+        (Role::Fluid(a), Role::Fluid(b)) => 2.0 * a.viscosity_with(b),
         (Role::Fluid(fluid), Role::Boundary(surface)) | (Role::Boundary(surface), Role::Fluid(fluid)) => {
             if surface.no_slip {
                 2.0 * fluid.viscosity

@@ -5,10 +5,12 @@ use std::sync::{Arc, Mutex};
 use super::cloud::{Group, Role};
 use super::coupling;
 use super::density::Continuity;
+use super::fields::fields;
 use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
 use super::neighbors::Neighbors;
 use super::pair_rows::FluidPairs;
 use super::state::EquationOfState;
+use super::surface_friction::SurfaceFriction;
 use super::wall::{PreviousVelocity, WALL_WEIGHT, Wall};
 use super::wall_state::WallState;
 use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
@@ -79,6 +81,7 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
         .reads::<Removed>()
         .writes::<Pressure>(),
     );
+    fields().into_iter().for_each(|field| sim.add_field(field));
     let gravity = sim.gravity();
     add_force(sim, groups, fluid, FLUID_FORCE);
     if !boundaries.is_empty() {
@@ -119,7 +122,8 @@ fn add_force(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, label: 
     let parts = Arc::new(Mutex::new(of_phase().map(terms).collect()));
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
-    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts) };
+    let friction = SurfaceFriction::default();
+    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), friction };
     let system =
         System::new(Stage::Rates, label, force).on_phases([phase]).reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.after(WALL_WEIGHT).adds::<Force>() });

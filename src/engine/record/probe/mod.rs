@@ -1,6 +1,8 @@
 //! Probes: what the particles of a selection do, or a field at a point, as functions of time.
 
 mod energies;
+mod flow;
+mod measure;
 mod particles;
 mod point;
 mod resolve;

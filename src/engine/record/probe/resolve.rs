@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use super::energies::EnergyColumns;
+use super::flow;
+use super::measure::Measure;
 use super::particles::ParticleGauge;
 use super::point::PointGauge;
 use super::torque::TorqueGauge;
@@ -20,6 +22,8 @@ pub enum Gauge {
     Point(PointGauge),
     /// Torque of the forces on particles.
     Torque(TorqueGauge),
+    /// What is measured of a flow.
+    Flow(Box<dyn Measure>),
     /// Accounts of the energy ledger.
     Energies(EnergyColumns),
 }
@@ -40,6 +44,9 @@ impl Gauge {
         if let Self::Torque(_) = self {
             return ["x", "y", "z"].map(|axis| (axis.to_owned(), "N m")).to_vec();
         }
+        if let Self::Flow(gauge) = self {
+            return gauge.columns();
+        }
         let Some(field) = self.field() else { return Vec::new() };
         field.column_names().into_iter().map(|name| (name, field.unit())).collect()
     }
@@ -48,6 +55,7 @@ impl Gauge {
     pub fn needs(&self) -> Vec<&'static str> {
         match self {
             Self::Torque(_) => TorqueGauge::NEEDS.to_vec(),
+            Self::Flow(gauge) => gauge.needs(),
             _ => self.field().map(ChosenField::needs).unwrap_or_default(),
         }
     }
@@ -61,6 +69,7 @@ impl Gauge {
             Self::Particles(gauge) => gauge.read(world, resources),
             Self::Point(gauge) => gauge.read(world, resources),
             Self::Torque(gauge) => gauge.read(world),
+            Self::Flow(gauge) => gauge.read(world, resources),
             Self::Energies(_) => Ok(Vec::new()),
         }
     }
@@ -69,7 +78,7 @@ impl Gauge {
         match self {
             Self::Particles(gauge) => Some(&gauge.field),
             Self::Point(gauge) => Some(&gauge.field),
-            Self::Torque(_) | Self::Energies(_) => None,
+            Self::Torque(_) | Self::Flow(_) | Self::Energies(_) => None,
         }
     }
 }
@@ -85,19 +94,24 @@ impl Probe {
         sim: &SimBuilder<'_>,
         table: &Arc<FieldTable>,
     ) -> Result<Self, Vec<Problem>> {
+        let on = || select(k, &probe.on.clone().unwrap_or_default(), sim);
+        if let Some(gauge) = flow::resolve(k, probe, on, sim)? {
+            return Ok(Self::new(probe, Gauge::Flow(gauge), sim));
+        }
         let gauge = match field_name(&probe.quantity) {
-            None if probe.quantity == Quantity::Torque => {
-                let on = probe.on.clone().unwrap_or_default();
-                Gauge::Torque(TorqueGauge { selection: select(k, &on, sim)? })
-            }
+            None if probe.quantity == Quantity::Torque => Gauge::Torque(TorqueGauge { selection: on()? }),
             Some(name) => field_gauge(k, probe, name, sim, table)?,
             None => Gauge::Energies(energies(k, probe.on.as_ref(), sim)?),
         };
-        Ok(Self { name: probe.name.clone(), interval: sim.scene().probe_interval(probe), gauge })
+        Ok(Self::new(probe, gauge, sim))
+    }
+
+    fn new(probe: &scene::Probe, gauge: Gauge, sim: &SimBuilder<'_>) -> Self {
+        Self { name: probe.name.clone(), interval: sim.scene().probe_interval(probe), gauge }
     }
 }
 
-/// The field behind a quantity; none behind energies.
+/// The field behind a quantity; none behind what is measured otherwise.
 fn field_name(quantity: &Quantity) -> Option<&str> {
     match quantity {
         Quantity::Displacement => Some("displacement"),
@@ -106,7 +120,7 @@ fn field_name(quantity: &Quantity) -> Option<&str> {
         // The force column holds all that acts on a particle except its constraint: what it exerts on what holds it.
         Quantity::Force => Some("force"),
         Quantity::Field(name) => Some(name),
-        Quantity::Torque | Quantity::Energy => None,
+        _ => None,
     }
 }
 
@@ -127,7 +141,11 @@ fn field_gauge(
         })
     };
     let Some(on) = &probe.on else {
-        let bodies = BodySet::new(sim.bodies().iter().map(|body| body.id));
+        // The particles of walls have the pressure that the fluid beside them is to feel, which is not that at their places.
+        let all = || sim.bodies().iter();
+        let flows = all().any(|body| body.formulation == "Fluid");
+        let bodies = all().filter(|body| !(flows && body.formulation == "Wall")).map(|body| body.id);
+        let bodies = BodySet::new(bodies);
         let at = probe.at.map_or(glam::DVec3::ZERO, |point| point.0);
         return Ok(Gauge::Point(PointGauge { at, field: choose(&bodies, false)? }));
     };

@@ -1,0 +1,105 @@
+//! Fields that show a flow: vorticity, and where its free surface is.
+
+use glam::DVec3;
+
+use super::cloud::{FlowCloud, Near};
+use super::near::RowPass;
+use super::surroundings::smallest_of;
+use crate::correction::FourMoments;
+use crate::parallel::{Arithmetic, Vector};
+use crate::record::Field;
+use crate::world::{Column, Value, Velocity};
+
+/// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
+const INSIDE: f64 = 0.75;
+/// Smallest eigenvalue below which a particle is part of a surface, a thread or a drop, whatever is around it.
+const ALONE: f64 = 0.2;
+
+/// Vorticity and free surface of fluids.
+pub(super) fn fields() -> [Field; 2] {
+    let needs = || vec![Velocity::NAME];
+    let vorticity = Field::with_input("vorticity", "1/s", DVec3::COMPONENTS, needs(), |input, out| {
+        let (view, _) = input.world.body_view(input.body);
+        let velocity = view.read::<Velocity>()?;
+        let cloud = input.resources.get::<FlowCloud>();
+        let mut rows = vec![DVec3::ZERO; input.rows.len()];
+        cloud.for_each_row(input.rows.start, &mut rows, &Vorticity { cloud: &cloud, velocity: &velocity });
+        out.extend(rows.iter().flat_map(DVec3::to_array));
+        Ok(())
+    });
+    let surface = Field::with_input("free_surface", "1", f64::COMPONENTS, needs(), |input, out| {
+        let cloud = input.resources.get::<FlowCloud>();
+        let mut rows = vec![0.0; input.rows.len()];
+        cloud.for_each_row(input.rows.start, &mut rows, &FreeSurface(&cloud));
+        out.extend(rows);
+        Ok(())
+    });
+    [vorticity, surface].map(|field| field.only_for("Fluid"))
+}
+
+/// `omega_i = sum_j V_j w_ij (M_i^-1 x_ij) x v_ij` over the fluids alone: exact where the velocity is linear, at walls and surfaces as well.
+struct Vorticity<'a> {
+    cloud: &'a FlowCloud,
+    velocity: &'a [Velocity],
+}
+
+impl RowPass for Vorticity<'_> {
+    type Output = DVec3;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+        let mut moment = FourMoments::new(a);
+        let mut gradient = [Vector::zero(a); 3];
+        let own = Vector::splat(a, self.velocity[i].0);
+        for near in self.cloud.fours(a, i, &(0..self.cloud.fluid)) {
+            let weight = near.volume * near.weight;
+            moment.add(weight, near.x_ij);
+            let (weighed, v_ij) = (near.x_ij * weight, near.vector(|j| self.velocity[j].0) - own);
+            gradient[0] = weighed.mul_add(v_ij.x, gradient[0]);
+            gradient[1] = weighed.mul_add(v_ij.y, gradient[1]);
+            gradient[2] = weighed.mul_add(v_ij.z, gradient[2]);
+        }
+        let Some(inverse) = moment.sum().inverse() else { return DVec3::ZERO };
+        let [u, v, w] = gradient.map(|sum| inverse * sum.sum());
+        DVec3::new(w.y - v.z, u.z - w.x, v.x - u.y)
+    }
+}
+
+/// One at a free surface, zero inside: what lies in the mouth of a cone, or of an umbrella at its end, along the outward normal covers a
+/// particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
+struct FreeSurface<'a>(&'a FlowCloud);
+
+impl RowPass for FreeSurface<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn row<A: Arithmetic>(&self, a: A, i: usize) -> f64 {
+        let cloud = self.0;
+        let (mut moment, mut inward) = (FourMoments::new(a), Vector::zero(a));
+        for near in cloud.fours(a, i, &cloud.everything()) {
+            let weight = near.volume * near.weight;
+            moment.add(weight, near.x_ij);
+            inward = near.x_ij.mul_add(weight, inward);
+        }
+        let (moment, inward) = (moment.sum(), inward.sum());
+        let least = smallest_of(moment.matrix(), A::AXES == 2);
+        if least > INSIDE || least < ALONE {
+            return f64::from(u8::from(least < ALONE));
+        }
+        let outward = -moment.inverse().map_or(inward, |inverse| inverse * inward).normalize_or_zero();
+        let h = cloud.kernel.smoothing_length();
+        let covers = |near: &Near| {
+            let height = near.x_ij.dot(outward);
+            let aside = (near.x_ij - outward * height).length();
+            near.volume > 0.0
+                && if near.distance >= std::f64::consts::SQRT_2 * h {
+                    (near.x_ij - outward * h).length() < h
+                } else {
+                    (height - h).abs() + aside < h
+                }
+        };
+        let mut covered = false;
+        cloud.for_each_neighbor(i, |near| covered |= covers(near));
+        f64::from(u8::from(!covered))
+    }
+}

@@ -1,0 +1,19 @@
+//! The force of the fluids on the particles of a body, apart from all other forces on them.
+
+use glam::DVec3;
+
+use super::cloud::FlowCloud;
+use super::pair_force::{ForceRows, PARTS, PairForce};
+use crate::world::{BodyId, Force};
+
+impl FlowCloud {
+    /// Force of the fluids on every particle of a body, and the viscous part of it, N; none for a body that no fluid meets. It is made
+    /// of the particles of the last right-hand side.
+    pub fn forces_on(&self, body: BodyId) -> Option<Vec<(DVec3, DVec3)>> {
+        let group = self.groups.iter().find(|group| group.body == body)?;
+        let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
+        let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
+        PairForce { cloud: self, group, adds: false }.run(ForceRows { total: &mut total, parts: &mut parts });
+        Some(total.iter().zip(parts.iter().step_by(PARTS)).map(|(f, viscous)| (f.0, *viscous)).collect())
+    }
+}

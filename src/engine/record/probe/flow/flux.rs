@@ -1,0 +1,55 @@
+//! Volume of fluid that passes a plane.
+//!
+//! `Q = sum_j V_j v_j.n max(0, 1 - |d_j| / b) / b` with the distance d_j from the plane and b twice the spacing: the mean over the
+//! layers of particles near the plane, which for evenly spread particles is that in the plane.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::FlowCloud;
+use crate::record::probe::measure::Measure;
+use crate::schedule::Resources;
+use crate::shapes::Region;
+use crate::world::{Column, Density, Mass, MissingColumn, Position, Removed, Velocity, World};
+
+/// Half of the width of the layer that counts, over the spacing of the fluid.
+const WIDTH: f64 = 2.0;
+
+/// A part of a plane.
+pub struct FluxGauge {
+    pub(super) at: DVec3,
+    /// Unit normal.
+    pub(super) normal: DVec3,
+    pub(super) within: Option<Box<dyn Region>>,
+}
+
+impl Measure for FluxGauge {
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        vec![("flux".to_owned(), "m3/s")]
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        vec![Position::NAME, Velocity::NAME]
+    }
+
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN]) };
+        let mut flux = 0.0;
+        for group in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
+            let view = world.phase(group.phase);
+            let (position, velocity) = (view.read::<Position>()?, view.read::<Velocity>()?);
+            let (mass, density) = (view.read::<Mass>()?, view.read::<Density>()?);
+            let removed = view.read::<Removed>()?;
+            let width = WIDTH * world.body(group.body).spacing;
+            for row in group.rows.clone().filter(|&row| removed[row] == Removed::NO) {
+                let offset = cloud.offset(self.at, position[row].0);
+                let distance = offset.dot(self.normal);
+                let share = (1.0 - distance.abs() / width) / width;
+                let foot = self.at + offset - self.normal * distance;
+                if share > 0.0 && self.within.as_ref().is_none_or(|region| region.contains(foot)) {
+                    flux += mass[row].0 / density[row].0 * velocity[row].0.dot(self.normal) * share;
+                }
+            }
+        }
+        Ok(vec![flux])
+    }
+}

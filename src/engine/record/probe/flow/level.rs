@@ -1,0 +1,94 @@
+//! Height of the surface of fluids above a point, and how much of the line up from there is wet.
+//!
+//! A place is wet where fluids fill at least half of what walls leave of it: `sum_f V_f W >= (1 - sum_w V_w W) / 2`.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::FlowCloud;
+use crate::record::probe::measure::Measure;
+use crate::schedule::Resources;
+use crate::world::{Column, MissingColumn, Position, World};
+
+/// Steps along the line in a support radius.
+const STEPS: f64 = 12.0;
+/// Least part of a place that fluids fill where it is wet: inside walls none is.
+const LEAST: f64 = 0.1;
+
+/// A line up from a point.
+pub struct LevelGauge {
+    pub(super) at: DVec3,
+    /// Unit vector along the line.
+    pub(super) up: DVec3,
+}
+
+/// A particle near the line.
+struct Near {
+    height: f64,
+    /// Squared distance from the line, m2.
+    aside: f64,
+    volume: f64,
+    fluid: bool,
+}
+
+impl Measure for LevelGauge {
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        vec![("level".to_owned(), "m"), ("wet".to_owned(), "m")]
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        vec![Position::NAME]
+    }
+
+    fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN; 2]) };
+        let near = self.near(&cloud);
+        let top = near.iter().filter(|near| near.fluid).map(|near| near.height).fold(0.0, f64::max);
+        let step = cloud.kernel.support / STEPS;
+        let last = ((top + cloud.kernel.support) / step).ceil() as usize;
+        let excess: Vec<f64> = (0..=last).map(|k| excess(&cloud, &near, k as f64 * step)).collect();
+        let (mut level, mut wet) = (0.0, 0.0);
+        for (k, pair) in excess.windows(2).enumerate() {
+            let (a, b) = (pair[0], pair[1]);
+            wet += step * share_above_zero(a, b);
+            if a > 0.0 && b <= 0.0 {
+                level = step * (k as f64 + a / (a - b));
+            }
+        }
+        Ok(vec![level, wet])
+    }
+}
+
+impl LevelGauge {
+    fn near(&self, cloud: &FlowCloud) -> Vec<Near> {
+        let support = cloud.kernel.support;
+        let of = |(row, record): (usize, &crate::formulations::fluid::Record)| {
+            let offset = cloud.offset(self.at, record.position());
+            let height = offset.dot(self.up);
+            let aside = (offset - self.up * height).length_squared();
+            let within = aside < support * support && height > -support && record.volume() > 0.0;
+            within.then_some(Near { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
+        };
+        cloud.records().iter().enumerate().filter_map(of).collect()
+    }
+}
+
+/// Above zero where the line is wet at that height.
+fn excess(cloud: &FlowCloud, near: &[Near], height: f64) -> f64 {
+    let (mut fluid, mut wall) = (0.0, 0.0);
+    for other in near {
+        let distance = (other.aside + (other.height - height).powi(2)).sqrt();
+        let share = other.volume * cloud.kernel.value(distance);
+        *(if other.fluid { &mut fluid } else { &mut wall }) += share;
+    }
+    (fluid - 0.5 * (1.0 - wall)).min(fluid - LEAST)
+}
+
+/// Part of an interval in which a linear function of these values at its ends is above zero.
+fn share_above_zero(a: f64, b: f64) -> f64 {
+    match (a > 0.0, b > 0.0) {
+        (true, true) => 1.0,
+        (false, false) => 0.0,
+        (true, false) => a / (a - b),
+        (false, true) => b / (b - a),
+    }
+}

@@ -1,0 +1,80 @@
+//! Probes of flows of a scene: what each measures.
+
+use glam::DVec3;
+
+use super::flux::FluxGauge;
+use super::level::LevelGauge;
+use super::reaction::ReactionGauge;
+use super::sensor::SensorGauge;
+use crate::plugin::{Selection, SimBuilder};
+use crate::record::probe::measure::Measure;
+use crate::scene::{self, Dimension, Problem, Quantity, Vec3};
+
+/// The gauge behind a quantity of a flow; none for other quantities. `selected` is what the probe selects.
+pub fn resolve(
+    k: usize,
+    probe: &scene::Probe,
+    selected: impl Fn() -> Result<Selection, Vec<Problem>>,
+    sim: &SimBuilder<'_>,
+) -> Result<Option<Box<dyn Measure>>, Vec<Problem>> {
+    let at = probe.at.map_or(DVec3::ZERO, |point| point.0);
+    let problem = |field: &str, message: &str, help: &str| {
+        let path = format!("probes[{k}].quantity{field}");
+        vec![Problem::at_path(path, message.to_owned()).help(help)]
+    };
+    let unit = |vector: Vec3, field: &str| {
+        let plane = sim.dimension() == Dimension::Two;
+        let direction = vector.0.try_normalize().filter(|unit| !plane || unit.z == 0.0);
+        direction.ok_or_else(|| {
+            problem(
+                field,
+                "this is no direction",
+                "give a vector that is not zero, without z in two dimensions",
+            )
+        })
+    };
+    let gauge: Box<dyn Measure> = match &probe.quantity {
+        Quantity::WaterLevel { along } => {
+            let up = match along {
+                Some(along) => unit(*along, ".along")?,
+                None => (-sim.gravity()).try_normalize().ok_or_else(|| {
+                    problem("", "without gravity there is no direction up", "give the direction as `along`")
+                })?,
+            };
+            Box::new(LevelGauge { at, up })
+        }
+        Quantity::PressureSensor { diameter, normal } => {
+            let normal = unit(*normal, ".normal")?;
+            if !(*diameter >= 0.0 && diameter.is_finite()) {
+                return Err(problem(
+                    ".diameter",
+                    "the diameter of the sensor is below zero",
+                    "give it in m, 0 for a point",
+                ));
+            }
+            let plane = sim.dimension() == Dimension::Two;
+            Box::new(SensorGauge::new(at, *diameter, normal, sim.gravity(), plane))
+        }
+        Quantity::Flux { normal, within } => {
+            let normal = unit(*normal, ".normal")?;
+            let within = within.as_ref().map(|shape| {
+                let path = format!("probes[{k}].quantity.within");
+                shape.region(sim.dimension(), sim.folder(), &path)
+            });
+            let within = within.transpose().map_err(|error| {
+                let problem = Problem::at_path(error.path.clone(), error.kind.to_string());
+                vec![problem.help("give a shape of the scene's dimension")]
+            })?;
+            Box::new(FluxGauge { at, normal, within })
+        }
+        Quantity::FluidForce => Box::new(ReactionGauge { selection: selected()?, about: None }),
+        Quantity::FluidTorque { about } => {
+            Box::new(ReactionGauge { selection: selected()?, about: Some(about.0) })
+        }
+        _ => return Ok(None),
+    };
+    if !sim.bodies().iter().any(|body| body.formulation == "Fluid") {
+        return Err(problem("", "there is no fluid to measure", "add a body with `formulation: Fluid`"));
+    }
+    Ok(Some(gauge))
+}

@@ -1,0 +1,86 @@
+//! The pressure that a sensor in a wall shows: the mean over points of its face of the pressure that a particle of the wall would have there.
+//!
+//! `p = (sum_f p_f W - g . sum_f rho_f x_f W) / sum_f W` with x_f from the point (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075, eq.
+//! 27, and W for the kernel times the volume V_f); zero where no fluid is in front of the point.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::{FlowCloud, Record};
+use crate::record::probe::measure::Measure;
+use crate::schedule::Resources;
+use crate::world::{Column, MissingColumn, Position, World};
+
+/// Least sum of V_f W for which there is fluid in front of a point; a smooth surface has a half.
+const LEAST: f64 = 0.05;
+
+/// A face in a wall.
+pub struct SensorGauge {
+    /// Points of the face, each for an equal part of it.
+    pub(super) points: Vec<DVec3>,
+    /// Unit vector out of the face, into the fluid.
+    pub(super) normal: DVec3,
+    pub(super) gravity: DVec3,
+}
+
+impl SensorGauge {
+    /// A face about `at`: points on a line in two dimensions, on rings of equal area in three.
+    pub(super) fn new(at: DVec3, diameter: f64, normal: DVec3, gravity: DVec3, plane: bool) -> Self {
+        let points = if diameter == 0.0 {
+            vec![at]
+        } else if plane {
+            let along = DVec3::new(-normal.y, normal.x, 0.0) * diameter;
+            (0..8).map(|k| at + along * ((f64::from(k) + 0.5) / 8.0 - 0.5)).collect()
+        } else {
+            let (a, b) = normal.any_orthonormal_pair();
+            let ring = |k: i32| 0.5 * diameter * ((f64::from(k) + 0.5) / 3.0).sqrt();
+            let on = |(k, m): (i32, i32)| {
+                let angle = std::f64::consts::TAU * (f64::from(m) + 0.5 * f64::from(k)) / 8.0;
+                at + ring(k) * (a * angle.cos() + b * angle.sin())
+            };
+            (0..3).flat_map(|k| (0..8).map(move |m| (k, m))).map(on).collect()
+        };
+        Self { points, normal, gravity }
+    }
+
+    fn at(&self, cloud: &FlowCloud, fluid: &[&Record], point: DVec3) -> f64 {
+        let (mut total, mut sum) = (0.0, 0.0);
+        for record in fluid {
+            let x = cloud.offset(point, record.position());
+            if x.dot(self.normal) > 0.0 {
+                let weight = record.volume() * cloud.kernel.value(x.length());
+                total += weight;
+                sum += weight * record.pressure();
+                sum -= weight * self.density(cloud, record) * self.gravity.dot(x);
+            }
+        }
+        if total > LEAST { sum / total } else { 0.0 }
+    }
+
+    fn density(&self, cloud: &FlowCloud, record: &Record) -> f64 {
+        let state = cloud.groups.iter().find_map(|group| group.fluid());
+        state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
+    }
+}
+
+impl Measure for SensorGauge {
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        vec![("pressure".to_owned(), "Pa")]
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        vec![Position::NAME]
+    }
+
+    fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN]) };
+        let reach = cloud.kernel.support;
+        let near = |record: &&Record| {
+            let is_near =
+                |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
+            record.volume() > 0.0 && self.points.iter().any(is_near)
+        };
+        let fluid: Vec<&Record> = cloud.records()[..cloud.fluid].iter().filter(near).collect();
+        let sum: f64 = self.points.iter().map(|&point| self.at(&cloud, &fluid, point)).sum();
+        Ok(vec![sum / self.points.len() as f64])
+    }
+}

@@ -1,0 +1,19 @@
+//! What a probe measures that is neither a field of particles nor an energy.
+
+use crate::schedule::Resources;
+use crate::world::{MissingColumn, World};
+
+/// Numbers that are taken from the particles at an instant.
+pub trait Measure: Send + Sync {
+    /// Name and unit of each number.
+    fn columns(&self) -> Vec<(String, &'static str)>;
+
+    /// Names of the particle columns that it reads.
+    fn needs(&self) -> Vec<&'static str>;
+
+    /// The numbers.
+    ///
+    /// # Errors
+    /// A column is missing.
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn>;
+}
