@@ -96,13 +96,17 @@ fn advance(
             rho.0 = state.density;
             continue;
         }
+        // Half of what pair terms do comes before the flow and half after it: the flow then compresses at the mean of the pressures of the two
+        // kicks, and the books close to second order in the step.
+        let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
         let half = -0.5 * dt * compression[k];
-        let flow = rho.0 * (1.0 + half) / (1.0 - half);
-        rho.0 = flow;
-        if by_terms {
-            rho.0 += dt * rate[k].0;
-            change.dissipated += mass[k].0 * (energy(flow) - energy(rho.0));
+        let before = rho.0 + by_terms;
+        let after = before * (1.0 + half) / (1.0 - half);
+        if by_terms != 0.0 {
+            change.dissipated +=
+                mass[k].0 * (energy(rho.0) - energy(before) + energy(after) - energy(after + by_terms));
         }
+        rho.0 = after + by_terms;
         if change.broken == 0 && !(rho.0 > 0.0 && rho.0.is_finite()) {
             change.broken = first + k + 1;
         }

@@ -1,6 +1,6 @@
 //! Flows against naive second implementations, closed forms, and the books.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::kernels::{Kernel, KernelName};
 use crate::plugin::{Registry, build};
@@ -111,6 +111,29 @@ fn pair_force(a: &Particle, b: &Particle, viscosity: f64, kernel: &Kernel, h: f6
     a.volume * b.volume * (pressure + friction)
 }
 
+/// `mu (grad v)^T` of a particle from all others, with the inverse of the plain moment matrix.
+fn transposed_stress(
+    a: &Particle,
+    all: &[Particle],
+    viscosity: f64,
+    kernel: &Kernel,
+    h: f64,
+    plane: bool,
+) -> DMat3 {
+    let (mut moment, mut stress) = (DMat3::ZERO, DMat3::ZERO);
+    for b in all.iter().filter(|b| b.x != a.x) {
+        let x = b.x - a.x;
+        let weight = -b.volume * kernel.dw_dr(x.length(), h) / x.length();
+        let dyad = |u: DVec3, v: DVec3| DMat3::from_cols(u * v.x, u * v.y, u * v.z);
+        moment += weight * dyad(x, x);
+        stress += weight * dyad(x, b.v - a.v);
+    }
+    if plane {
+        moment.z_axis.z = 1.0;
+    }
+    moment.inverse() * stress * viscosity
+}
+
 #[test]
 fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
     for dimension in [2, 3] {
@@ -124,11 +147,18 @@ fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
             let mass = column::<Mass>(&sim, 0);
             let forces = column::<Force>(&sim, 0);
             let scale = forces.iter().map(|f| f.0.length()).fold(0.0, f64::max);
+            let stress = |a: &Particle| transposed_stress(a, &fluid, 2.0, &kernel, h, dimension == 2);
+            let stresses: Vec<DMat3> = fluid.iter().map(stress).collect();
             for (k, particle) in fluid.iter().enumerate() {
+                let of_surface = fluid.iter().zip(&stresses).map(|(b, stress)| {
+                    let x = b.x - particle.x;
+                    let weight = -kernel.dw_dr(x.length(), h) / x.length().max(1e-300);
+                    particle.volume * b.volume * weight * ((stresses[k] + *stress) * x)
+                });
                 let of_fluid = fluid.iter().map(|other| pair_force(particle, other, 2.0, &kernel, h));
                 let friction = if no_slip { 2.0 } else { 0.0 };
                 let of_wall = walls.iter().map(|other| pair_force(particle, other, friction, &kernel, h));
-                let sum: DVec3 = of_fluid.chain(of_wall).sum();
+                let sum: DVec3 = of_fluid.chain(of_wall).chain(of_surface).sum();
                 let wanted = sum + mass[k].0 * DVec3::new(0.0, -9.81, 0.0);
                 let found = forces[k].0;
                 assert!(found.distance(wanted) < 1e-11 * scale, "{dimension}: {found} {wanted}");

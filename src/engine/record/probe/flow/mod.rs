@@ -5,5 +5,7 @@ mod level;
 mod reaction;
 mod resolve;
 mod sensor;
+#[cfg(test)]
+mod tests;
 
 pub(super) use resolve::resolve;

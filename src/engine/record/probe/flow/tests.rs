@@ -1,0 +1,129 @@
+//! Gauges and fields of flows whose answers are known.
+
+use crate::plugin::{BuildOptions, Registry, build, build_with};
+use crate::scene::{Source, parse};
+
+fn text(bodies: &str, velocity: &str, gravity: &str, probes: &str) -> String {
+    format!(
+        r#"(dimension: Two, gravity: {gravity}, domain: (min: (-1, -1), max: (3, 3)),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: 1.0)}},
+            bodies: [{bodies}],
+            conditions: [InitialVelocity(on: Select(body: "water"), value: ({velocity}))],
+            probes: [{probes}], time: (end: 0.001, step: Fixed(0.001)))"#
+    )
+}
+
+const WATER: &str = r#"(name: "water", material: "water", shape: Box(min: (0, 0), max: (1, 0.5)), spacing: 0.025, formulation: Fluid)"#;
+const TANK: &str = r#"(name: "tank", material: "wall", spacing: 0.025, formulation: Wall(),
+    shape: Difference(Box(min: (-0.1, -0.1), max: (1.1, 0.8)), Box(min: (0, 0), max: (1, 1))))"#;
+
+/// The first row of the series of the probe `p`, with the names of the columns, without time.
+fn first(text: &str) -> Vec<(String, f64)> {
+    let (scene, source) = parse(Source::new("test.ron", text.to_owned())).unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let options = BuildOptions::into_folder(folder.path());
+    let mut sim =
+        build_with(&scene, &source, &Registry::standard(), &options).unwrap_or_else(|e| panic!("{e}"));
+    sim.run(|_| true).unwrap();
+    sim.finish().unwrap();
+    let csv = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
+    let (names, row) = csv.split_once('\n').unwrap();
+    let names = names.split(',').map(|name| name.split('[').next().unwrap_or_default().to_owned());
+    let row = row.lines().next().unwrap().split(',').map(|value| value.parse().unwrap());
+    names.zip(row).skip(1).collect()
+}
+
+fn at(quantity: &str, place: &str) -> String {
+    format!(r#"Probe(name: "p", {place}, quantity: {quantity})"#)
+}
+
+fn near(found: &[(String, f64)], wanted: &[(&str, f64)], margin: f64) {
+    assert_eq!(found.len(), wanted.len(), "{found:?}");
+    for ((name, value), (wanted_name, wanted)) in found.iter().zip(wanted) {
+        assert!(name == wanted_name && (value - wanted).abs() < margin, "{found:?}");
+    }
+}
+
+#[test]
+fn the_level_in_a_tank_is_where_the_water_ends() {
+    let scene = |place: &str| {
+        text(&format!("{WATER}, {TANK}"), r#""0", "0""#, "(0, -9.81)", &at("WaterLevel()", place))
+    };
+    near(&first(&scene("at: (0.37, 0)")), &[("level", 0.5), ("wet", 0.5)], 0.003);
+    near(&first(&scene("at: (0.0, 0.2)")), &[("level", 0.3), ("wet", 0.3)], 0.003);
+    near(&first(&scene("at: (0.4, 0.6)")), &[("level", 0.0), ("wet", 0.0)], 1e-12);
+}
+
+#[test]
+fn a_sensor_shows_the_weight_of_the_water_above_it() {
+    let scene = |place: &str, sensor: &str| {
+        text(&format!("{WATER}, {TANK}"), r#""0", "0""#, "(0, -9.81)", &at(sensor, place))
+    };
+    let floor = first(&scene("at: (0.3, 0)", "PressureSensor(diameter: 0.1, normal: (0, 1))"));
+    near(&floor, &[("pressure", 4905.0)], 15.0);
+    let side = first(&scene("at: (1, 0.2)", "PressureSensor(diameter: 0.05, normal: (-1, 0))"));
+    near(&side, &[("pressure", 2943.0)], 15.0);
+    let dry = first(&scene("at: (1, 0.7)", "PressureSensor(normal: (-1, 0))"));
+    near(&dry, &[("pressure", 0.0)], 1e-12);
+}
+
+#[test]
+fn the_floor_bears_the_weight_and_each_side_half_of_its_square() {
+    let scene = |on: &str, quantity: &str| {
+        text(&format!("{WATER}, {TANK}"), r#""0", "0""#, "(0, -9.81)", &at(quantity, on))
+    };
+    let all = first(&scene(r#"on: Select(body: "tank")"#, "FluidForce"));
+    let weight = 1000.0 * 9.81 * 0.5;
+    assert!((all[1].1 + weight).abs() < 0.02 * weight && all[0].1.abs() < 1e-6 * weight, "{all:?}");
+    let right = r#"on: Select(body: "tank", within: Box(min: (1, -1), max: (2, 2)))"#;
+    let push = 0.5 * 1000.0 * 9.81 * 0.25;
+    let force = first(&scene(right, "FluidForce"));
+    assert!((force[0].1 - push).abs() < 0.05 * push, "{force:?}");
+    // It acts at a third of the depth, to within a part of the spacing.
+    let torque = first(&scene(right, "FluidTorque(about: (1, 0))"));
+    let height = -torque[2].1 / force[0].1;
+    assert!((height - 0.5 / 3.0).abs() < 0.03, "{torque:?}");
+}
+
+#[test]
+fn the_flux_through_a_plane_is_speed_times_height() {
+    let scene = |quantity: &str| text(WATER, r#""2", "1""#, "(0, 0)", &at(quantity, "at: (0.512, 0.1)"));
+    near(&first(&scene("Flux(normal: (1, 0))")), &[("flux", 1.0)], 1e-9);
+    near(&first(&scene("Flux(normal: (0, -3))")), &[("flux", -1.0)], 1e-9);
+    let part = "Flux(normal: (1, 0), within: Box(min: (0, 0.25), max: (1, 1)))";
+    near(&first(&scene(part)), &[("flux", 0.5)], 1e-9);
+}
+
+#[test]
+fn a_turning_box_has_twice_its_rate_as_vorticity_and_its_outer_layer_as_surface() {
+    let probe = |quantity: &str| at(quantity, r#"on: Select(within: Box(min: (0, 0), max: (1, 0.0249)))"#);
+    let scene = |quantity: &str| text(WATER, r#""-3*y", "3*x""#, "(0, 0)", &probe(quantity));
+    near(&first(&scene("Field(\"vorticity.z\")")), &[("vorticity.z", 6.0)], 1e-9);
+    near(&first(&scene("Field(\"free_surface\")")), &[("free_surface", 1.0)], 1e-12);
+    let inside =
+        at("Field(\"free_surface\")", "on: Select(within: Box(min: (0.03, 0.03), max: (0.97, 0.47)))");
+    near(&first(&text(WATER, r#""-3*y", "3*x""#, "(0, 0)", &inside)), &[("free_surface", 0.0)], 1e-12);
+    let tank = at(
+        "Field(\"free_surface\")",
+        r#"on: Select(body: "water", within: Box(min: (0, 0), max: (1, 0.47)))"#,
+    );
+    let full = text(&format!("{WATER}, {TANK}"), r#""0", "0""#, "(0, -9.81)", &tank);
+    near(&first(&full), &[("free_surface", 0.0)], 1e-12);
+}
+
+#[test]
+fn probes_of_flows_that_make_no_sense_are_refused() {
+    let error = |text: &str| {
+        let built = parse(Source::new("test.ron", text.to_owned()))
+            .and_then(|(scene, source)| build(&scene, &source, &Registry::standard()));
+        built.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    let still = |probe: &str| error(&text(WATER, r#""1", "0""#, "(0, 0)", probe));
+    assert!(still(&at("WaterLevel()", "at: (0, 0)")).contains("no direction up"));
+    assert!(still(&at("Flux(normal: (0, 0))", "at: (0, 0)")).contains("no direction"));
+    assert!(
+        still(&at("PressureSensor(diameter: -1.0, normal: (1, 0))", "at: (0, 0)")).contains("below zero")
+    );
+    assert!(still(&at("Flux(normal: (1, 0))", "on: Select()")).contains("has a place"));
+    assert!(still(&at("FluidForce", "at: (0, 0)")).contains("no force at a point"));
+}
