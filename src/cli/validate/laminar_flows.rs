@@ -37,7 +37,9 @@ fn taylor_green(registry: &Registry, across: usize, lattice: Option<&str>) -> Re
         template = template.set("bodies.fluid.lattice", lattice)?;
     }
     let mut simulation = template.build(registry)?;
-    let start_from = if lattice.is_some() { "a square lattice" } else { "an irregular lattice" };
+    // What a lattice loses as it breaks up is noise, which the leapfrog follows less well.
+    let (start_from, most) =
+        if lattice.is_some() { ("a square lattice", 5e-3) } else { ("an irregular lattice", 2e-3) };
     simulation.start()?;
     let kinetic = |simulation: &Simulation| simulation.ledger().total_named("kinetic");
     let start = kinetic(&simulation);
@@ -54,7 +56,7 @@ fn taylor_green(registry: &Registry, across: usize, lattice: Option<&str>) -> Re
             "1/s",
             "8 pi^2 / Re, exact solution",
         ),
-        Check::below(format!("energy balance error on {start_from}"), balance, 5e-3, "energy is conserved"),
+        Check::below(format!("energy balance error on {start_from}"), balance, most, "energy is conserved"),
     ])
 }
 
