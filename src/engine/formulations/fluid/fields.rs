@@ -83,7 +83,7 @@ impl RowPass for FreeSurface<'_> {
         }
         let (moment, inward) = (moment.sum(), inward.sum());
         let least = smallest_of(moment.matrix(), A::AXES == 2);
-        if least > INSIDE || least < ALONE {
+        if !(ALONE..=INSIDE).contains(&least) {
             return f64::from(u8::from(least < ALONE));
         }
         let outward = -moment.inverse().map_or(inward, |inverse| inverse * inward).normalize_or_zero();
