@@ -297,7 +297,7 @@ fn an_interrupted_run_can_go_on() {
     let output = child.wait_with_output().expect("the program ends");
     assert_eq!(output.status.code(), Some(130), "{}{}", out(&output), err(&output));
     assert!(out(&output).contains("meshless resume o"), "{}", out(&output));
-    assert_success(&meshless(&folder, &["resume", "o", "--steps", "1"]));
+    assert_success(&meshless(&folder, &["resume", "o", "--steps", "1", "--threads", "2"]));
 }
 
 #[test]

@@ -29,6 +29,8 @@ pub struct Arguments {
 /// Goes on from the checkpoint, in the folder it is in.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let Arguments { path, until, how } = arguments;
+    // Before the checkpoint is read, which takes threads of its own.
+    how.set_threads()?;
     let file = folder::checkpoint(&path)?;
     let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
     let (mut scene, mut source) = scene::parse(checkpoint.source())?;
@@ -41,7 +43,6 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
             checkpoint.clock().time
         )));
     }
-    how.set_threads()?;
     if let Some(warning) = checkpoint.path_warning() {
         complain(&format!("warning: {warning}"));
     }
