@@ -11,6 +11,7 @@ mod case;
 mod check;
 mod closed_box;
 mod cook_membrane;
+mod dam_break;
 mod disorder;
 mod elliptic_drop;
 mod floating_box;

@@ -59,6 +59,7 @@ macro_rules! for_each_case {
             F2 laminar_flows::CASE;
             F3 elliptic_drop::CASE;
             F4 waves::CASE;
+            F5 dam_break::CASE;
             F8 floating_box::CASE;
             X5 closed_box::CASE;
         }

@@ -9,4 +9,5 @@ mod resolve;
 mod torque;
 
 pub use energies::EnergyColumns;
+pub use flow::pressure_on_face;
 pub use resolve::{Gauge, Probe};

@@ -9,3 +9,4 @@ mod sensor;
 mod tests;
 
 pub(super) use resolve::resolve;
+pub use sensor::pressure_on_face;

@@ -42,6 +42,19 @@ impl SensorGauge {
         Self { points, normal, gravity }
     }
 
+    /// Mean over the points of the face, Pa.
+    fn pressure(&self, cloud: &FlowCloud) -> f64 {
+        let reach = cloud.kernel.support;
+        let near = |record: &&Record| {
+            let is_near =
+                |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
+            record.volume() > 0.0 && self.points.iter().any(is_near)
+        };
+        let fluid: Vec<&Record> = cloud.records()[..cloud.fluid].iter().filter(near).collect();
+        let sum: f64 = self.points.iter().map(|&point| self.at(cloud, &fluid, point)).sum();
+        sum / self.points.len() as f64
+    }
+
     fn at(&self, cloud: &FlowCloud, fluid: &[&Record], point: DVec3) -> f64 {
         let (mut total, mut sum) = (0.0, 0.0);
         for record in fluid {
@@ -62,6 +75,11 @@ impl SensorGauge {
     }
 }
 
+/// The pressure that a small sensor at a point shows, Pa; `normal` is the unit vector out of its face.
+pub fn pressure_on_face(cloud: &FlowCloud, at: DVec3, normal: DVec3, gravity: DVec3) -> f64 {
+    SensorGauge::new(at, 0.0, normal, gravity, true).pressure(cloud)
+}
+
 impl Measure for SensorGauge {
     fn columns(&self) -> Vec<(String, &'static str)> {
         vec![("pressure".to_owned(), "Pa")]
@@ -73,14 +91,6 @@ impl Measure for SensorGauge {
 
     fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN]) };
-        let reach = cloud.kernel.support;
-        let near = |record: &&Record| {
-            let is_near =
-                |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
-            record.volume() > 0.0 && self.points.iter().any(is_near)
-        };
-        let fluid: Vec<&Record> = cloud.records()[..cloud.fluid].iter().filter(near).collect();
-        let sum: f64 = self.points.iter().map(|&point| self.at(&cloud, &fluid, point)).sum();
-        Ok(vec![sum / self.points.len() as f64])
+        Ok(vec![self.pressure(&cloud)])
     }
 }
