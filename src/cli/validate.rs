@@ -43,6 +43,7 @@ mod tensile_failure;
 mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;
+mod upsetting;
 mod waves;
 
 use meshless_engine::plugin::Registry;

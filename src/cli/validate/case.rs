@@ -50,6 +50,7 @@ macro_rules! for_each_case {
             S14 taylor_bars::STEEL;
             S15 taylor_bars::ALUMINIUM;
             S4 punch::CASE;
+            S21 upsetting::CASE;
             S22 bar_impact::CASE;
             C1 hertz::CASE;
             C2 incline::CASE;
