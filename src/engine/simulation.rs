@@ -256,7 +256,7 @@ impl Simulation {
     /// Takes the limit of the next step; in place, so that a step does not allocate.
     fn take_limit(&mut self) {
         if let Some((dt, limit)) = self.sub_steps.limit() {
-            self.limits.propose(dt, || limit.by.clone());
+            self.limits.propose(dt, &limit.by);
         }
         match (self.limits.take(), &mut self.next_limit) {
             (Some(limit), Some(next)) => next.clone_from(limit),

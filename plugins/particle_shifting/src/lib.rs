@@ -86,32 +86,33 @@ impl Run for Shifting {
         let cloud: &FlowCloud = &cloud;
         self.lambda.resize(cloud.fluid, 0.0);
         cloud.for_each_row(0, &mut self.lambda, &SmallestEigenvalue(cloud));
-        for id in self.bodies.clone().iter() {
-            self.shift(step, cloud, id)?;
-            displace(step, id, &self.moves, self.gravity, ParticleShifting::NAME)?;
+        let Self { strength, gravity, bodies, lambda, moves } = self;
+        for id in bodies.iter() {
+            make_moves(step, cloud, id, (*strength, lambda), moves)?;
+            displace(step, id, moves, *gravity, ParticleShifting::NAME)?;
         }
         Ok(())
     }
 }
 
-impl Shifting {
-    fn shift(&mut self, step: &Step<'_>, cloud: &FlowCloud, id: BodyId) -> Result<(), StepError> {
-        let (view, rows) = step.world.body_view(id);
-        let spacing = step.world.body(id).spacing;
-        let velocity = view.read::<Velocity>()?;
-        let fastest = velocity[rows.clone()].iter().map(|v| v.0.length_squared()).fold(0.0, f64::max).sqrt();
-        let factor = -2.0 * self.strength * cloud.kernel.smoothing_length() * fastest * step.clock.dt;
-        self.moves.resize(rows.len(), DVec3::ZERO);
-        let pass = Moves {
-            cloud,
-            lambda: &self.lambda,
-            factor,
-            usual: 1.0 / cloud.kernel.value(spacing),
-            largest: LARGEST * spacing,
-        };
-        cloud.for_each_row(rows.start, &mut self.moves, &pass);
-        Ok(())
-    }
+/// Makes the displacements of a body for a strength, with the smallest eigenvalues of all particles.
+fn make_moves(
+    step: &Step<'_>,
+    cloud: &FlowCloud,
+    id: BodyId,
+    (strength, lambda): (f64, &[f64]),
+    moves: &mut Vec<DVec3>,
+) -> Result<(), StepError> {
+    let (view, rows) = step.world.body_view(id);
+    let spacing = step.world.body(id).spacing;
+    let velocity = view.read::<Velocity>()?;
+    let fastest = velocity[rows.clone()].iter().map(|v| v.0.length_squared()).fold(0.0, f64::max).sqrt();
+    let factor = -2.0 * strength * cloud.kernel.smoothing_length() * fastest * step.clock.dt;
+    moves.resize(rows.len(), DVec3::ZERO);
+    let pass =
+        Moves { cloud, lambda, factor, usual: 1.0 / cloud.kernel.value(spacing), largest: LARGEST * spacing };
+    cloud.for_each_row(rows.start, moves, &pass);
+    Ok(())
 }
 
 /// The displacements of the particles of one body.

@@ -43,13 +43,16 @@ const SWEPT_FACTOR: f64 = 0.25;
 /// of particles that touch at a distance of `reach`, m.
 pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64, speed: f64, reach: f64) {
     let world = step.world;
-    let names = || format!("`{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
+    let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
     if squared > 0.0 {
-        step.limits
-            .propose(FREQUENCY_FACTOR / squared.sqrt(), || format!("stiffness of contact of {}", names()));
+        step.limits.propose(
+            FREQUENCY_FACTOR / squared.sqrt(),
+            format_args!("stiffness of contact of `{one}` and `{other}`"),
+        );
     }
     if speed > 0.0 {
-        step.limits.propose(SWEPT_FACTOR * reach / speed, || format!("speed of approach of {}", names()));
+        let limit = SWEPT_FACTOR * reach / speed;
+        step.limits.propose(limit, format_args!("speed of approach of `{one}` and `{other}`"));
     }
 }
 
@@ -60,8 +63,8 @@ const IMPACT_FACTOR: f64 = 0.05;
 pub(super) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {
     if squared > 0.0 {
         let world = step.world;
-        let by =
-            || format!("contact of rigid `{}` and `{}`", world.body(pair.0).name, world.body(pair.1).name);
-        step.limits.propose(IMPACT_FACTOR / squared.sqrt(), by);
+        let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
+        let limit = IMPACT_FACTOR / squared.sqrt();
+        step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
     }
 }

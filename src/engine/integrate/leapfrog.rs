@@ -172,7 +172,7 @@ impl Run for Kick {
             }
             if sum.acceleration_squared > 0.0 {
                 let limit = ACCELERATION_FACTOR * (body.spacing / sum.acceleration_squared.sqrt()).sqrt();
-                step.limits.propose(limit, || format!("acceleration of `{}`", body.name));
+                step.limits.propose(limit, format_args!("acceleration of `{}`", body.name));
             }
         }
         Ok(())

@@ -188,11 +188,11 @@ impl<S: PairSource> Run for PairPass<S> {
             })?;
             if fastest.damping > 0.0 {
                 let limit = DAMPING_SAFETY / fastest.damping;
-                step.limits.propose(limit, || format!("viscosity of `{}`", body.name));
+                step.limits.propose(limit, format_args!("viscosity of `{}`", body.name));
             }
             if fastest.stiffness > 0.0 {
                 let limit = STIFFNESS_SAFETY * 2.0 / fastest.stiffness.sqrt();
-                step.limits.propose(limit, || format!("pair stiffness of `{}`", body.name));
+                step.limits.propose(limit, format_args!("pair stiffness of `{}`", body.name));
             }
         }
         Ok(())

@@ -162,7 +162,7 @@ impl<'s> SimBuilder<'s> {
             Stage::External,
             format!("{by}_step_limit"),
             move |step: &mut Step<'_>| {
-                step.limits.propose(dt, || by.to_owned());
+                step.limits.propose(dt, by);
                 Ok(())
             },
         ));

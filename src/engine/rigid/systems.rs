@@ -261,5 +261,5 @@ fn propose(body: &RigidBody, end: f64, step: &mut Step<'_>) {
     let acceleration = (body.state.force / body.mass).length() / spacing;
     let rate = (speed / MOTION_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
     let name = &step.world.body(body.id).name;
-    step.limits.propose(1.0 / rate, || format!("motion of `{name}`"));
+    step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));
 }

@@ -1,5 +1,7 @@
 //! The time step: the smallest of all limits that systems propose, and which one it was.
 
+use std::fmt::{Display, Write as _};
+
 use serde::{Deserialize, Serialize};
 
 /// A limit of the time step.
@@ -23,6 +25,13 @@ impl Clone for Limit {
     }
 }
 
+impl Default for Limit {
+    /// No limit.
+    fn default() -> Self {
+        Self { dt: f64::INFINITY, by: String::new() }
+    }
+}
+
 /// Least number of steps for which a limit is kept.
 const MEMORY: u32 = 500;
 
@@ -31,44 +40,50 @@ const MEMORY: u32 = 500;
 /// The step falls at once, but it does not grow before the limit that made it small is `MEMORY` to twice `MEMORY` steps old. The
 /// leapfrog conserves energy over long times only with a constant step; one that follows every oscillation of the
 /// limits in its rhythm feeds the oscillation.
+///
+/// The three limits are infinite where there is none, so that their texts stay in one place of memory.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeStepLimits {
-    proposed: Option<Limit>,
+    proposed: Limit,
     /// Smallest limit of the last `age` steps.
-    recent: Option<Limit>,
+    recent: Limit,
     /// Smallest limit of the `MEMORY` steps before those.
-    older: Option<Limit>,
+    older: Limit,
     age: u32,
 }
 
 impl TimeStepLimits {
-    /// Proposes a limit, dt in s; `by` is asked for its text only where the limit is the smallest so far and smaller
-    /// than those not long ago, so that most steps need no text.
-    pub fn propose(&mut self, dt: f64, by: impl FnOnce() -> String) {
-        if self.proposed.as_ref().is_some_and(|limit| limit.dt <= dt) {
+    /// Proposes a limit, dt in s; the text of `by`, such as [`format_args!`] gives, is written only where the limit is the
+    /// smallest so far and smaller than those not long ago.
+    pub fn propose(&mut self, dt: f64, by: impl Display) {
+        if self.proposed.dt <= dt {
             return;
         }
-        let kept = self.recent.as_ref().is_some_and(|recent| recent.dt <= dt) && self.age < MEMORY;
-        let by = if kept { String::new() } else { by() };
-        self.proposed = Some(Limit { dt, by });
+        let kept = self.recent.dt <= dt && self.age < MEMORY;
+        self.proposed.dt = dt;
+        self.proposed.by.clear();
+        if !kept {
+            let _ = write!(self.proposed.by, "{by}");
+        }
     }
 
     /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this step. What
     /// has been proposed is taken.
     pub fn take(&mut self) -> Option<&Limit> {
-        let proposed = self.proposed.take()?;
+        if self.proposed.dt == f64::INFINITY {
+            return None;
+        }
         if self.age == MEMORY {
-            self.older = self.recent.take();
+            std::mem::swap(&mut self.older, &mut self.recent);
+            self.recent.dt = f64::INFINITY;
             self.age = 0;
         }
         self.age += 1;
-        if self.recent.as_ref().is_none_or(|limit| limit.dt > proposed.dt) {
-            self.recent = Some(proposed);
+        if self.recent.dt > self.proposed.dt || self.recent.dt == f64::INFINITY {
+            std::mem::swap(&mut self.recent, &mut self.proposed);
         }
-        match (&self.older, &self.recent) {
-            (Some(older), Some(recent)) if older.dt < recent.dt => Some(older),
-            (_, recent) => recent.as_ref(),
-        }
+        self.proposed.dt = f64::INFINITY;
+        Some(if self.older.dt < self.recent.dt { &self.older } else { &self.recent })
     }
 }
 
@@ -79,8 +94,8 @@ mod tests {
     fn steps(limits: &mut TimeStepLimits, dt: f64, count: u32) -> f64 {
         let mut last = 0.0;
         for _ in 0..count {
-            limits.propose(2.0 * dt, || "other".into());
-            limits.propose(dt, || "smaller".into());
+            limits.propose(2.0 * dt, "other");
+            limits.propose(dt, "smaller");
             last = limits.take().map_or(f64::NAN, |limit| limit.dt);
         }
         last

@@ -18,6 +18,8 @@ pub(super) struct Neighbors {
     builds: u64,
     /// Whether a viscous fluid had a free surface at the last build.
     free_surface: bool,
+    /// Smallest eigenvalues of the moment matrices: scratch memory.
+    smallest: Vec<f64>,
     sorter: Sorter,
 }
 
@@ -48,7 +50,7 @@ impl Run for Neighbors {
         cloud.pack(step.world)?;
         cloud.average_motion(step.clock.dt);
         if stale {
-            self.free_surface = surface_friction::is_needed(&cloud);
+            self.free_surface = surface_friction::is_needed(&cloud, &mut self.smallest);
         }
         cloud.free_surface = self.free_surface;
         Ok(())

@@ -73,10 +73,10 @@ impl Run for EquationOfState {
                      its density changes are no longer small; a larger `sound_speed` costs a smaller step"
                 ));
             }
-            step.limits.propose(COURANT * h / (sound + speed), || format!("sound speed of `{name}`"));
+            step.limits.propose(COURANT * h / (sound + speed), format_args!("sound speed of `{name}`"));
             if state.viscosity > 0.0 {
                 let limit = VISCOUS * h * h * state.density / state.viscosity;
-                step.limits.propose(limit, || format!("viscosity of `{name}`"));
+                step.limits.propose(limit, format_args!("viscosity of `{name}`"));
             }
         }
         Ok(())

@@ -21,8 +21,8 @@ const AT_SURFACE: f64 = 0.75;
 /// Least kinematic viscosity, in units of c_0 h, whose friction at a surface is made: below it the flow has other losses.
 const LEAST: f64 = 1e-4;
 
-/// Whether a fluid that is viscous enough has a free surface.
-pub(super) fn is_needed(cloud: &FlowCloud) -> bool {
+/// Whether a fluid that is viscous enough has a free surface; `smallest` is scratch memory.
+pub(super) fn is_needed(cloud: &FlowCloud, smallest: &mut Vec<f64>) -> bool {
     let h = cloud.kernel.smoothing_length();
     let viscous = |group: &Group| {
         group.fluid().is_some_and(|state| state.viscosity > LEAST * state.density * state.sound_speed * h)
@@ -30,8 +30,8 @@ pub(super) fn is_needed(cloud: &FlowCloud) -> bool {
     if !cloud.groups.iter().any(viscous) {
         return false;
     }
-    let mut smallest = vec![0.0; cloud.fluid];
-    cloud.for_each_row(0, &mut smallest, &SmallestEigenvalue(cloud));
+    smallest.resize(cloud.fluid, 0.0);
+    cloud.for_each_row(0, smallest, &SmallestEigenvalue(cloud));
     (0..cloud.fluid).any(|i| cloud.volume(i) > 0.0 && smallest[i] < AT_SURFACE)
 }
 

@@ -1,5 +1,6 @@
 //! The system of the first pass: every body with its law, its bond terms and the energies that they report.
 
+use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -176,7 +177,8 @@ impl Run for Deformation {
                 let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
                 law.refresh(&gradient[body.rows.clone()], damage);
             }
-            step.limits.propose(stable_step * law.stretch_factor, || law.limited_by(&body.name));
+            let by = fmt::from_fn(|f| law.write_cause(f, &body.name));
+            step.limits.propose(stable_step * law.stretch_factor, by);
         }
         Ok(())
     }
@@ -241,12 +243,12 @@ impl BodyLaw {
         self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient, damage));
     }
 
-    fn limited_by(&self, body: &str) -> String {
+    fn write_cause(&self, f: &mut fmt::Formatter<'_>, body: &str) -> fmt::Result {
         let cause = if self.estimate.bond_limited() { "bond stiffness" } else { "wave speed" };
         if self.stretch_factor < 0.99 {
-            format!("{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
+            write!(f, "{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
         } else {
-            format!("{cause} of `{body}`")
+            write!(f, "{cause} of `{body}`")
         }
     }
 }
