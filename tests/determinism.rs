@@ -3,6 +3,7 @@
 mod common;
 
 use common::coupled::coupled;
+use common::thin::thin;
 use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
@@ -25,6 +26,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (2, removal()),
         (2, flow(2)),
         (2, coupled()),
+        (2, thin()),
         (3, flow(3)),
         (3, metals()),
         (2, failing()),

@@ -3,6 +3,7 @@
 mod common;
 
 use common::coupled::coupled;
+use common::thin::thin;
 use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
 
 #[test]
@@ -18,6 +19,7 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (flow(2), 500, 15),
         (coupled(), 400, 20),
         (coupled(), 700, 21),
+        (thin(), 300, 22),
         (flow(3), 200, 16),
         (metals(), 200, 17),
         (failing(), 300, 18),

@@ -51,6 +51,9 @@ const TEMPLATES: &[Template] = &templates![
     "dam_break",
     "dam_break_3d",
     "dam_break_obstacle",
+    "elastic_gate",
+    "water_on_plate",
+    "floating_box",
     "sloshing",
     "taylor_green",
 ];

@@ -12,6 +12,7 @@ mod check;
 mod closed_box;
 mod cook_membrane;
 mod dam_break;
+mod dam_break_obstacle;
 mod disorder;
 mod elliptic_drop;
 mod floating_box;
@@ -44,6 +45,7 @@ mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;
 mod upsetting;
+mod water_on_plate;
 mod waves;
 
 use meshless_engine::plugin::Registry;

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test uses a part")]
 
 pub mod coupled;
+pub mod thin;
 
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;

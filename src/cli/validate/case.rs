@@ -62,6 +62,8 @@ macro_rules! for_each_case {
             F4 waves::CASE;
             F5 dam_break::CASE;
             F8 floating_box::CASE;
+            X1 water_on_plate::CASE;
+            X2 dam_break_obstacle::CASE;
             X5 closed_box::CASE;
         }
     };

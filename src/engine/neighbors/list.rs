@@ -30,6 +30,26 @@ impl NeighborList {
         Ok(list)
     }
 
+    /// Leaves out the pairs (i, j) that `keep` refuses.
+    pub fn retain(&mut self, keep: impl Fn(usize, u32) -> bool) {
+        let mut kept = 0;
+        for i in 0..self.rows() {
+            let row = self.range(i);
+            self.offsets[i] = kept;
+            for k in row {
+                let j = self.indices[k];
+                if keep(i, j) {
+                    self.indices[kept] = j;
+                    kept += 1;
+                }
+            }
+        }
+        if let Some(last) = self.offsets.last_mut() {
+            *last = kept;
+        }
+        self.indices.truncate(kept);
+    }
+
     /// Number of target particles.
     pub fn rows(&self) -> usize {
         self.offsets.len() - 1

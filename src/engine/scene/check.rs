@@ -39,6 +39,12 @@ fn check_time(scene: &Scene, problems: &mut Vec<Problem>) {
         ),
         _ => {}
     }
+    if scene.time.sub_steps == 0 {
+        problems.push(
+            Problem::at_path("time.sub_steps", "the number of short steps in a step is 0")
+                .help("1 lets all bodies share one step; leave it out to let each side take its own"),
+        );
+    }
 }
 
 fn check_domain(scene: &Scene, problems: &mut Vec<Problem>) {

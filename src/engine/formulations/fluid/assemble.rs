@@ -8,6 +8,7 @@ use super::formulation::FluidBody;
 use super::kernel::FluidKernel;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
+use super::sides::ThinBody;
 use super::start::{StartPressure, start};
 use super::systems;
 use super::wall::WallBody;
@@ -40,11 +41,6 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let moved = moved_bodies(sim);
     for &id in &moved {
         checks::is_fine(sim.body(id), spacing)?;
-        if let Err(SetupError::Problems(problems)) =
-            checks::wall_is_thick(sim.body(id), spacing, support, &periodic)
-        {
-            problems.iter().for_each(|problem| sim.warn(problem.message.clone()));
-        }
     }
     let mut groups = Vec::new();
     let mut pressures = Vec::new();
@@ -66,9 +62,17 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         };
         groups.push(group(sim.body(*id), Role::Boundary(surface), &groups));
     }
+    let (mut thin, plane) = (Vec::new(), sim.dimension() == Dimension::Two);
     for id in moved {
         let surface = Surface { no_slip: true, suction: false, velocity: DVec3::ZERO, moved: true };
-        groups.push(group(sim.body(id), Role::Boundary(surface), &groups));
+        let body = sim.body(id);
+        groups.push(group(body, Role::Boundary(surface), &groups));
+        if checks::wall_is_thick(body, spacing, support, &periodic).is_err() {
+            let other = group(body, Role::Boundary(surface), &groups);
+            let first = other.cloud.start - body.rows.len()..other.cloud.start;
+            thin.push(ThinBody::new(body, [first, other.cloud.clone()], support, plane)?);
+            groups.push(other);
+        }
     }
     let short = systems::short_phases(&groups, sim);
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
@@ -80,12 +84,12 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         groups: groups.clone(),
         fluid,
         kernel: FluidKernel::new(support, dimension),
-        plane: sim.dimension() == Dimension::Two,
+        plane,
         periods: Periods::new(&periodic),
         positions: vec![DVec3::ZERO; total],
         before: Vec::new(),
         records: vec![Record::default(); total],
-        pairs: FlowPairs::new(support, SKIN * spacing, periodic, ends),
+        pairs: FlowPairs::new(support, SKIN * spacing, periodic, ends, thin),
         free_surface: false,
     };
     sim.add_setup(move |setup| {

@@ -15,7 +15,7 @@ use crate::parallel::{BlockSum, Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
-use crate::world::{BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
+use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
 crate::column! {
     /// Force of the flow in the last long step.
@@ -60,7 +60,14 @@ pub(super) fn add(
         .on_phases([phase])
         .after(weight),
     );
-    let coupling = Coupling { phase, total: Vec::new(), parts: Vec::new(), sums: Vec::new() };
+    let coupling = Coupling {
+        phase,
+        total: Vec::new(),
+        parts: Vec::new(),
+        other_total: Vec::new(),
+        other_parts: Vec::new(),
+        sums: Vec::new(),
+    };
     sim.add_system(
         System::new(Stage::FinalIntegrate, label, coupling)
             .on_phases([phase])
@@ -110,6 +117,9 @@ struct Coupling {
     /// Force on the particles of a body, and its parts, N.
     total: Vec<Force>,
     parts: Vec<DVec3>,
+    /// The same from the other side of a thin body.
+    other_total: Vec<Force>,
+    other_parts: Vec<DVec3>,
     sums: Vec<Exchange>,
 }
 
@@ -132,15 +142,34 @@ impl BlockSum for Exchange {
     }
 }
 
+impl Coupling {
+    /// Sums the forces of the flow on the particles of a body over both of its sides, if it is thin.
+    fn sum_forces(&mut self, cloud: &FlowCloud, body: BodyId) {
+        for (side, group) in cloud.groups.iter().filter(|group| group.body == body).enumerate() {
+            let Self { total, parts, other_total, other_parts, .. } = self;
+            let (to, parts_to) =
+                if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
+            to.resize(group.rows.len(), Force::default());
+            parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
+            PairForce { cloud, group, adds: false }.run(ForceRows { total: &mut *to, parts: &mut *parts_to });
+            if side > 0 {
+                self.total.iter_mut().zip(&self.other_total).for_each(|(sum, other)| sum.0 += other.0);
+                self.parts.iter_mut().zip(&self.other_parts).for_each(|(sum, other)| *sum += *other);
+            }
+        }
+    }
+}
+
 impl Run for Coupling {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let cloud = step.resources.get::<FlowCloud>();
         let rigid = step.resources.try_get::<RigidBodies>().map(|bodies| bodies.clone());
-        for group in cloud.groups.iter().filter(|group| group.phase == self.phase) {
-            self.total.resize(group.rows.len(), Force::default());
-            self.parts.resize(PARTS * group.rows.len(), DVec3::ZERO);
-            PairForce { cloud: &cloud, group, adds: false }
-                .run(ForceRows { total: &mut self.total, parts: &mut self.parts });
+        let (mut last, phase) = (None, self.phase);
+        for group in cloud.groups.iter().filter(|group| group.phase == phase) {
+            if last.replace(group.body) == Some(group.body) {
+                continue;
+            }
+            self.sum_forces(&cloud, group.body);
             let view = step.world.phase(group.phase);
             let rows = group.rows.clone();
             let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);

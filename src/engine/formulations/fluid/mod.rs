@@ -24,6 +24,7 @@ mod pair_rows;
 mod pairs;
 mod reaction;
 mod record;
+mod sides;
 mod sort;
 mod sound_speed;
 mod start;
@@ -33,6 +34,8 @@ mod surroundings;
 mod systems;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod thin_tests;
 mod wall;
 mod wall_pressure;
 mod wall_state;

@@ -4,6 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::sides::{Sides, ThinBody};
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 
 /// Lists that hold every pair within the support as long as no particle has moved more than half the skin.
@@ -21,12 +22,14 @@ pub(super) struct FlowPairs {
     pub boundary: NeighborList,
     /// Positions that the lists were built from, m; empty where they have to be built.
     pub built: Vec<DVec3>,
+    /// Bodies whose sides do not see each other.
+    thin: Vec<ThinBody>,
     /// Number of builds.
     pub builds: u64,
 }
 
 impl FlowPairs {
-    pub fn new(support: f64, skin: f64, periodic: Periodic, groups: Vec<u32>) -> Self {
+    pub fn new(support: f64, skin: f64, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>) -> Self {
         Self {
             support,
             skin,
@@ -36,6 +39,7 @@ impl FlowPairs {
             fluid: NeighborList::default(),
             boundary: NeighborList::default(),
             built: Vec::new(),
+            thin,
             builds: 0,
         }
     }
@@ -63,6 +67,12 @@ impl FlowPairs {
         let (all, wet, dry) = (cloud(positions), cloud(&positions[..fluid]), cloud(&positions[fluid..]));
         self.search.of_first((fluid, &self.groups), all, self.skin, &self.periodic, &mut self.fluid)?;
         self.search.between(dry, wet, self.skin, &self.periodic, &mut self.boundary)?;
+        if !self.thin.is_empty() {
+            let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
+            let all = self.fluid.clone();
+            self.fluid.retain(|i, j| sides.sees(i, j as usize, &all));
+            self.boundary.retain(|j, i| sides.sees(i as usize, fluid + j, &all));
+        }
         self.built.extend_from_slice(positions);
         self.builds += 1;
         Ok(())

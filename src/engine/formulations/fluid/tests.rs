@@ -10,7 +10,7 @@ use crate::world::{
     BodyId, Column, Density, Force, Mass, ParticleId, Position, Pressure, ReferenceVolume, Velocity,
 };
 
-fn simulation(text: &str) -> Simulation {
+pub(super) fn simulation(text: &str) -> Simulation {
     let registry = Registry::standard();
     let built =
         parse(Source::new("test.ron", text)).and_then(|(scene, source)| build(&scene, &source, &registry));
@@ -20,7 +20,7 @@ fn simulation(text: &str) -> Simulation {
     }
 }
 
-fn column<C: Column + Copy>(sim: &Simulation, body: usize) -> Vec<C> {
+pub(super) fn column<C: Column + Copy>(sim: &Simulation, body: usize) -> Vec<C> {
     let (view, rows) = sim.world().body_view(BodyId(body));
     view.read::<C>().expect("a column")[rows].to_vec()
 }
