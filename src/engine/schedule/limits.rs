@@ -44,6 +44,8 @@ const MEMORY: u32 = 500;
 /// The three limits are infinite where there is none, so that their texts stay in one place of memory.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeStepLimits {
+    /// Whether there is a proposal, be it an infinite one: what has failed entirely limits nothing.
+    any: bool,
     proposed: Limit,
     /// Smallest limit of the last `age` steps.
     recent: Limit,
@@ -56,9 +58,10 @@ impl TimeStepLimits {
     /// Proposes a limit, dt in s; the text of `by`, such as [`format_args!`] gives, is written only where the limit is the
     /// smallest so far and smaller than those not long ago.
     pub fn propose(&mut self, dt: f64, by: impl Display) {
-        if self.proposed.dt <= dt {
+        if self.any && self.proposed.dt <= dt {
             return;
         }
+        self.any = true;
         let kept = self.recent.dt <= dt && self.age < MEMORY;
         self.proposed.dt = dt;
         self.proposed.by.clear();
@@ -70,7 +73,7 @@ impl TimeStepLimits {
     /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this step. What
     /// has been proposed is taken.
     pub fn take(&mut self) -> Option<&Limit> {
-        if self.proposed.dt == f64::INFINITY {
+        if !std::mem::take(&mut self.any) {
             return None;
         }
         if self.age == MEMORY {
@@ -82,7 +85,6 @@ impl TimeStepLimits {
         if self.recent.dt > self.proposed.dt || self.recent.dt == f64::INFINITY {
             std::mem::swap(&mut self.recent, &mut self.proposed);
         }
-        self.proposed.dt = f64::INFINITY;
         Some(if self.older.dt < self.recent.dt { &self.older } else { &self.recent })
     }
 }
