@@ -40,7 +40,7 @@ impl Site {
 pub struct PairStress {
     /// The columns of A_i, and the bond stiffness k_i in the last lane of the first column.
     pub columns: [Lanes4; 3],
-    /// q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane. A_i and u_i are those of the [`Frame`] of the body.
+    /// q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane. A_i and u_i are taken in the frame of the body.
     pub pull: Lanes4,
 }
 
