@@ -26,6 +26,7 @@ mod johnson_cook;
 mod kernels;
 mod laminar_flows;
 mod laws;
+mod lid_driven_cavity;
 mod measure;
 mod neighbor_lists;
 mod oscillating_plate;

@@ -61,6 +61,7 @@ macro_rules! for_each_case {
             F3 elliptic_drop::CASE;
             F4 waves::CASE;
             F5 dam_break::CASE;
+            F6 lid_driven_cavity::CASE;
             F8 floating_box::CASE;
             X1 water_on_plate::CASE;
             X2 dam_break_obstacle::CASE;
