@@ -5,14 +5,19 @@ use super::eos::Pressure;
 use super::state::StateRows;
 use crate::world::{ColumnSet, InternalEnergy, PlasticWork, ReachedVolumeRatio};
 
-/// The state columns of a block.
-pub(super) struct EnergyRows<'a> {
+/// The pressure of a block, with its state columns if it depends on the path.
+pub(super) struct PressureRows<'a> {
+    law: &'a Pressure,
+    energies: Option<EnergyRows<'a>>,
+}
+
+struct EnergyRows<'a> {
     internal: &'a mut [InternalEnergy],
     plastic: &'a mut [PlasticWork],
     volume: &'a mut [ReachedVolumeRatio],
 }
 
-impl<'a> EnergyRows<'a> {
+impl<'a> PressureRows<'a> {
     /// Adds the columns, if the pressure needs them.
     pub fn declare(pressure: &Pressure, columns: &mut ColumnSet) {
         if pressure.stored(1.0).is_none() {
@@ -27,22 +32,31 @@ impl<'a> EnergyRows<'a> {
         }
     }
 
-    /// The columns of a block, if the pressure needs them.
+    /// Takes the columns of a block, if the pressure needs them.
     #[inline(always)]
-    pub fn take(pressure: &Pressure, state: &mut StateRows<'a>) -> Option<Self> {
-        pressure.stored(1.0).is_none().then(|| Self {
-            internal: state.take(),
-            plastic: state.take(),
-            volume: state.take(),
-        })
+    pub fn take(law: &'a Pressure, state: &mut StateRows<'a>) -> Self {
+        let columns = || EnergyRows { internal: state.take(), plastic: state.take(), volume: state.take() };
+        Self { law, energies: law.stored(1.0).is_none().then(columns) }
     }
 
+    /// Pressure of row `k` at the volume ratio J, Pa, and the energy stored by the change of volume, J/m3; state advances by `dt`, s,
+    /// and the plastic work of it, J/m3.
+    #[inline(always)]
+    pub fn advance(&mut self, k: usize, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
+        match &mut self.energies {
+            None => (self.law.cold(j), self.law.stored(j).unwrap_or(0.0)),
+            Some(energies) => energies.advance(k, self.law, j, plastic_work, dt),
+        }
+    }
+}
+
+impl EnergyRows<'_> {
     /// Brings row `k` to the volume ratio J; returns the pressure, Pa, and the work stored by the change of volume, J/m3.
     ///
     /// The work is the mean of the pressures before and after times the change of volume; the pressure is linear in the
     /// energy, so that what it is after needs no iteration. All plastic work heats.
     #[inline(always)]
-    pub fn advance(&mut self, k: usize, law: &Pressure, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
+    fn advance(&mut self, k: usize, law: &Pressure, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
         let (internal, plastic, volume) =
             (&mut self.internal[k].0, &mut self.plastic[k].0, &mut self.volume[k].0);
         let gamma = law.gamma();

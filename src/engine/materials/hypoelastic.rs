@@ -6,8 +6,9 @@ use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
 use super::eos::{Pressure, SolidEos};
-use super::eos_state::EnergyRows;
+use super::eos_state::PressureRows;
 use super::hardening::Hardening;
+use super::heat_state::TemperatureRows;
 use super::heating::Heating;
 use super::j2::{Volume, first_piola, require_heating};
 use super::jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
@@ -15,7 +16,7 @@ use super::law::{Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 use super::state::StateRows;
 use super::stretches::Stretches;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
-use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation, Temperature};
+use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation};
 
 /// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is given. The pressure is
 /// K (rho/rho_0 - 1) unless `eos` says otherwise.
@@ -93,18 +94,14 @@ impl SolidLaw for HypoelasticLaw {
 
     fn state(&self, columns: &mut ColumnSet) {
         columns.add::<DeviatoricStress>().add::<ReachedDeformation>().add::<PlasticStrain>();
-        if self.temperature.is_some() {
-            columns.add::<Temperature>();
-        }
-        EnergyRows::declare(&self.pressure, columns);
+        TemperatureRows::declare(self.temperature, columns);
+        PressureRows::declare(&self.pressure, columns);
     }
 
     fn start(&self, mut state: StateRows<'_>) {
         state.take::<ReachedDeformation>().fill(ReachedDeformation(DMat3::IDENTITY));
-        if let Some(temperature) = self.temperature {
-            state.take::<Temperature>().fill(Temperature(temperature));
-        }
-        EnergyRows::start(&self.pressure, &mut state);
+        TemperatureRows::start(self.temperature, &mut state);
+        PressureRows::start(&self.pressure, &mut state);
     }
 
     fn stress(&self, rows: &mut StressRows<'_>) {
@@ -127,8 +124,8 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
         let deviator = state.take::<DeviatoricStress>();
         let reached = state.take::<ReachedDeformation>();
         let strain = state.take::<PlasticStrain>();
-        let mut temperature = law.temperature.map(|_| state.take::<Temperature>());
-        let mut energies = EnergyRows::take(&law.pressure, &mut state);
+        let mut temperature = TemperatureRows::take(law.temperature, &mut state);
+        let mut pressures = PressureRows::take(&law.pressure, &mut state);
         rows.modulus.fill(law.elastic.young);
         let moves = rows.dt > 0.0;
         for k in 0..rows.deformation.len() {
@@ -137,7 +134,7 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
             let mut now = HypoelasticState {
                 deviator: deviator[k].0,
                 plastic_strain: strain[k].0,
-                temperature: temperature.as_deref().map_or(0.0, |temperature| temperature[k].0),
+                temperature: temperature.get(k),
             };
             let change = velocity_gradient_step(&reached[k].0, f);
             reached[k].0 = *f;
@@ -145,20 +142,13 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
                 let gradient = change * (1.0 / rows.dt);
                 rows.plastic_work[k] = volume.ratio * law.shape.advance(&mut now, &gradient, rows.dt);
                 strain[k].0 = now.plastic_strain;
-                if let Some(temperature) = &mut temperature {
-                    temperature[k].0 = now.temperature;
-                }
+                temperature.set(k, now.temperature);
             } else {
                 // Deformed at the start, or bonds are cut: what is beyond yield then flows in the next step.
                 now.deviator = law.shape.elastic(&now.deviator, &change, 1.0);
             }
             deviator[k].0 = now.deviator;
-            let (pressure, stored) = match &mut energies {
-                None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
-                Some(energies) => {
-                    energies.advance(k, &law.pressure, volume.ratio, rows.plastic_work[k], rows.dt)
-                }
-            };
+            let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
             let tau = (now.deviator.plus_diagonal(-pressure)) * volume.ratio;
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             let square = now.deviator.double_dot(&now.deviator);

@@ -14,8 +14,9 @@ use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
 use super::eos::{Pressure, SolidEos};
-use super::eos_state::EnergyRows;
+use super::eos_state::PressureRows;
 use super::hardening::Hardening;
+use super::heat_state::TemperatureRows;
 use super::heating::Heating;
 use super::law::{Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 use super::return_mapping::Trial;
@@ -23,9 +24,7 @@ use super::state::StateRows;
 use super::stretches::Stretches;
 use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
-use crate::world::{
-    ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, Temperature, YieldStress,
-};
+use crate::world::{ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, YieldStress};
 
 /// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate, and temperature.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -135,20 +134,16 @@ impl SolidLaw for PlasticLaw {
     fn state(&self, columns: &mut ColumnSet) {
         columns.add::<PlasticStrain>().add::<InversePlasticCauchyGreen>();
         columns.add::<EquivalentStress>().add::<YieldStress>();
-        if self.temperature.is_some() {
-            columns.add::<Temperature>();
-        }
-        EnergyRows::declare(&self.pressure, columns);
+        TemperatureRows::declare(self.temperature, columns);
+        PressureRows::declare(&self.pressure, columns);
     }
 
     fn start(&self, mut state: StateRows<'_>) {
         state.take::<InversePlasticCauchyGreen>().fill(InversePlasticCauchyGreen(Sym3::IDENTITY));
         let temperature = self.temperature.unwrap_or_default();
         state.take::<YieldStress>().fill(YieldStress(self.hardening.static_stress(0.0, temperature)));
-        if self.temperature.is_some() {
-            state.take::<Temperature>().fill(Temperature(temperature));
-        }
-        EnergyRows::start(&self.pressure, &mut state);
+        TemperatureRows::start(self.temperature, &mut state);
+        PressureRows::start(&self.pressure, &mut state);
     }
 
     fn stress(&self, rows: &mut StressRows<'_>) {
@@ -172,8 +167,8 @@ impl HotLoop for PlasticLoop<'_, '_> {
         let plastic = state.take::<InversePlasticCauchyGreen>();
         let equivalent = state.take::<EquivalentStress>();
         let yield_stress = state.take::<YieldStress>();
-        let mut temperature = law.temperature.map(|_| state.take::<Temperature>());
-        let mut energies = EnergyRows::take(&law.pressure, &mut state);
+        let mut temperature = TemperatureRows::take(law.temperature, &mut state);
+        let mut pressures = PressureRows::take(&law.pressure, &mut state);
         let shear = law.elastic.shear;
         rows.modulus.fill(law.elastic.young);
         for k in 0..rows.deformation.len() {
@@ -186,7 +181,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
             let mut left = 1.0;
             // NaN is not above the yield stress: it goes on into the stress, and the watchdog stops.
             if q > yield_stress[k].0 && rows.dt > 0.0 {
-                let hot = temperature.as_deref().map_or(0.0, |temperature| temperature[k].0);
+                let hot = temperature.get(k);
                 let trial = Trial { stress: q, shear, strain: strain[k].0, temperature: hot, dt: rows.dt };
                 let increment = trial.increment(&law.hardening);
                 left = 1.0 - 3.0 * shear * increment / q;
@@ -197,21 +192,12 @@ impl HotLoop for PlasticLoop<'_, '_> {
                 let work = increment * 0.5 * (equivalent[k].0 + q);
                 strain[k].0 += increment;
                 rows.plastic_work[k] = work;
-                let mut heated = 0.0;
-                if let Some(temperature) = &mut temperature {
-                    temperature[k].0 += law.rise * work;
-                    heated = temperature[k].0;
-                }
-                yield_stress[k].0 = law.hardening.static_stress(strain[k].0, heated);
+                temperature.set(k, hot + law.rise * work);
+                yield_stress[k].0 = law.hardening.static_stress(strain[k].0, temperature.get(k));
             }
             // Also where bonds are cut: what is beyond yield after that flows back from there.
             equivalent[k].0 = q;
-            let (pressure, stored) = match &mut energies {
-                None => (law.pressure.cold(volume.ratio), law.pressure.stored(volume.ratio).unwrap_or(0.0)),
-                Some(energies) => {
-                    energies.advance(k, &law.pressure, volume.ratio, rows.plastic_work[k], rows.dt)
-                }
-            };
+            let (pressure, stored) = pressures.advance(k, volume.ratio, rows.plastic_work[k], rows.dt);
             let tau = (e * (2.0 * shear)).plus_diagonal(-volume.ratio * pressure);
             rows.stress[k] = first_piola(&tau, &volume.cofactor, volume.ratio);
             rows.energy[k] = shear * square * left * left + stored;

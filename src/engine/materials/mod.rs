@@ -8,6 +8,7 @@ mod eos_state;
 mod eos_tests;
 mod fluid;
 mod hardening;
+mod heat_state;
 mod heating;
 mod hypoelastic;
 mod j2;
