@@ -1,30 +1,14 @@
 //! Neo-Hookean law with decoupled shape and volume change.
 
 use glam::DMat3;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
 
-/// Decoupled neo-Hookean elasticity, tau = mu J^(-2/3) (b - tr(b)/3 I) + K J (J - 1) I with b = F F^T.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DecoupledNeoHookean {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
+elastic_parameters! {
+    /// Decoupled neo-Hookean elasticity, tau = mu J^(-2/3) (b - tr(b)/3 I) + K J (J - 1) I with b = F F^T.
+    pub struct DecoupledNeoHookean {}
 }
 
 impl MaterialModel for DecoupledNeoHookean {
@@ -33,8 +17,7 @@ impl MaterialModel for DecoupledNeoHookean {
         "Vidal, Bonet and Huerta 2007, section 2; Bonet and Wood 2008, section 6.5";
 
     fn build(self) -> Result<Material, ParameterError> {
-        ParameterError::require_positive("density", self.density)?;
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         Ok(Material::solid(self.density, DecoupledNeoHookeanLaw(elastic)))
     }
 }

@@ -1,10 +1,9 @@
 //! The hypoelastic law of [`HypoelasticJ2`] for formulations that know the deformation gradient.
 
 use glam::DMat3;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::eos::{Pressure, SolidEos};
 use super::eos_state::PressureRows;
 use super::hardening::Hardening;
@@ -18,34 +17,20 @@ use super::stretches::Stretches;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation};
 
-/// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is given. The pressure is
-/// K (rho/rho_0 - 1) unless `eos` says otherwise.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Hypoelastic {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
-    /// Flow stress; without it there is no plasticity.
-    #[serde(default)]
-    pub hardening: Option<Hardening>,
-    /// Heat from plastic work; without it the temperature plays no part.
-    #[serde(default)]
-    pub heating: Option<Heating>,
-    /// Pressure as a function of volume.
-    #[serde(default)]
-    pub eos: Option<SolidEos>,
+elastic_parameters! {
+    /// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is given. The pressure is
+    /// K (rho/rho_0 - 1) unless `eos` says otherwise.
+    pub struct Hypoelastic {
+        /// Flow stress; without it there is no plasticity.
+        #[serde(default)]
+        pub hardening: Option<Hardening>,
+        /// Heat from plastic work; without it the temperature plays no part.
+        #[serde(default)]
+        pub heating: Option<Heating>,
+        /// Pressure as a function of volume.
+        #[serde(default)]
+        pub eos: Option<SolidEos>,
+    }
 }
 
 impl MaterialModel for Hypoelastic {
@@ -54,8 +39,7 @@ impl MaterialModel for Hypoelastic {
         "Mohseni-Mofidi and Bierwisch 2020, eqs. 13-16 and 22; Hughes and Winget 1980";
 
     fn build(self) -> Result<Material, ParameterError> {
-        ParameterError::require_positive("density", self.density)?;
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         require_heating(self.hardening.as_ref(), self.heating.as_ref())?;
         let pressure = self.eos.unwrap_or(SolidEos::Linear).pressure(elastic.bulk, self.density)?;
         let rise = self.heating.map_or(0.0, |heating| heating.rise(self.density));

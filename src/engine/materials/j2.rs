@@ -9,10 +9,9 @@
 //! of the leapfrog takes out of the motion where the stress keeps its direction, to second order of the step elsewhere.
 
 use glam::DMat3;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::eos::{Pressure, SolidEos};
 use super::eos_state::PressureRows;
 use super::hardening::Hardening;
@@ -26,32 +25,18 @@ use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::{ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, YieldStress};
 
-/// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate, and temperature.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct J2 {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
-    /// Flow stress.
-    pub hardening: Hardening,
-    /// Heat from plastic work; without it the temperature plays no part.
-    #[serde(default)]
-    pub heating: Option<Heating>,
-    /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
-    #[serde(default)]
-    pub eos: Option<SolidEos>,
+elastic_parameters! {
+    /// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate, and temperature.
+    pub struct J2 {
+        /// Flow stress.
+        pub hardening: Hardening,
+        /// Heat from plastic work; without it the temperature plays no part.
+        #[serde(default)]
+        pub heating: Option<Heating>,
+        /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
+        #[serde(default)]
+        pub eos: Option<SolidEos>,
+    }
 }
 
 impl MaterialModel for J2 {
@@ -59,7 +44,7 @@ impl MaterialModel for J2 {
     const REFERENCE: &'static str = "Simo and Hughes 1998, Computational Inelasticity, section 9.3";
 
     fn build(self) -> Result<Material, ParameterError> {
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         require_heating(Some(&self.hardening), self.heating.as_ref())?;
         plastic(self.density, elastic, self.hardening, self.heating, self.eos)
     }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::eos::SolidEos;
 use super::hardening::{Hardening, LEAST_STRAIN};
 use super::heating::Heating;
@@ -114,56 +114,42 @@ impl JohnsonCookFlow {
     }
 }
 
-/// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JohnsonCook {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
-    /// Yield stress A at the reference rate and temperature, Pa.
-    pub a: f64,
-    /// Hardening coefficient B, Pa.
-    pub b: f64,
-    /// Hardening exponent n.
-    pub n: f64,
-    /// Rate coefficient C.
-    #[serde(default)]
-    pub c: f64,
-    /// Thermal exponent m.
-    #[serde(default = "one")]
-    pub m: f64,
-    /// Plastic strain rate at and below which the rate has no influence, 1/s.
-    #[serde(default = "one")]
-    pub reference_rate: f64,
-    /// Temperature at and below which temperature has no influence, K.
-    #[serde(default = "room")]
-    pub reference_temperature: f64,
-    /// Temperature at which the strength is gone, K.
-    pub melt_temperature: f64,
-    /// Specific heat, J/(kg K). Without it plastic work does not heat the metal.
-    #[serde(default)]
-    pub specific_heat: Option<f64>,
-    /// Share of plastic work that becomes heat (Taylor-Quinney), 0 to 1.
-    #[serde(default = "super::heating::usual_share")]
-    pub taylor_quinney: f64,
-    /// Temperature at the start, K; the reference temperature if not given.
-    #[serde(default)]
-    pub temperature: Option<f64>,
-    /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
-    #[serde(default)]
-    pub eos: Option<SolidEos>,
+elastic_parameters! {
+    /// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
+    pub struct JohnsonCook {
+        /// Yield stress A at the reference rate and temperature, Pa.
+        pub a: f64,
+        /// Hardening coefficient B, Pa.
+        pub b: f64,
+        /// Hardening exponent n.
+        pub n: f64,
+        /// Rate coefficient C.
+        #[serde(default)]
+        pub c: f64,
+        /// Thermal exponent m.
+        #[serde(default = "one")]
+        pub m: f64,
+        /// Plastic strain rate at and below which the rate has no influence, 1/s.
+        #[serde(default = "one")]
+        pub reference_rate: f64,
+        /// Temperature at and below which temperature has no influence, K.
+        #[serde(default = "room")]
+        pub reference_temperature: f64,
+        /// Temperature at which the strength is gone, K.
+        pub melt_temperature: f64,
+        /// Specific heat, J/(kg K). Without it plastic work does not heat the metal.
+        #[serde(default)]
+        pub specific_heat: Option<f64>,
+        /// Share of plastic work that becomes heat (Taylor-Quinney), 0 to 1.
+        #[serde(default = "super::heating::usual_share")]
+        pub taylor_quinney: f64,
+        /// Temperature at the start, K; the reference temperature if not given.
+        #[serde(default)]
+        pub temperature: Option<f64>,
+        /// Pressure as a function of volume; without it the Kirchhoff pressure is -K ln J.
+        #[serde(default)]
+        pub eos: Option<SolidEos>,
+    }
 }
 
 impl MaterialModel for JohnsonCook {
@@ -171,7 +157,7 @@ impl MaterialModel for JohnsonCook {
     const REFERENCE: &'static str = "G. R. Johnson and W. H. Cook 1983, 7th Int. Symp. Ballistics; return mapping: Simo and Hughes 1998, section 9.3";
 
     fn build(self) -> Result<Material, ParameterError> {
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         let flow = JohnsonCookFlow {
             a: self.a,
             b: self.b,

@@ -2,6 +2,7 @@
 
 mod decoupled_neo_hookean;
 mod elastic_constants;
+mod elastic_parameters;
 mod eos;
 mod eos_state;
 #[cfg(test)]

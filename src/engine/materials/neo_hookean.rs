@@ -1,30 +1,14 @@
 //! Compressible neo-Hookean law with a logarithmic volume term.
 
 use glam::DMat3;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
 
-/// Compressible neo-Hookean elasticity, P = mu (F - F^-T) + lambda ln J F^-T.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct NeoHookean {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
+elastic_parameters! {
+    /// Compressible neo-Hookean elasticity, P = mu (F - F^-T) + lambda ln J F^-T.
+    pub struct NeoHookean {}
 }
 
 impl MaterialModel for NeoHookean {
@@ -32,8 +16,7 @@ impl MaterialModel for NeoHookean {
     const REFERENCE: &'static str = "Ganzenmueller 2015, eq. 44; Bonet and Wood 2008, eq. 6.28";
 
     fn build(self) -> Result<Material, ParameterError> {
-        ParameterError::require_positive("density", self.density)?;
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         Ok(Material::solid(self.density, NeoHookeanLaw(elastic)))
     }
 }

@@ -1,30 +1,14 @@
 //! St Venant-Kirchhoff: linear between Green-Lagrange strain and second Piola-Kirchhoff stress.
 
 use glam::DMat3;
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 use super::elastic_constants::ElasticConstants;
+use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
 
-/// St Venant-Kirchhoff elasticity, S = lambda tr(E) I + 2 mu E with E = (F^T F - I) / 2.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StVenantKirchhoff {
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-    /// Young's modulus E, Pa. Goes with `poisson`.
-    #[serde(default)]
-    pub young: Option<f64>,
-    /// Poisson's ratio nu, -1 < nu < 0.5. Goes with `young`.
-    #[serde(default)]
-    pub poisson: Option<f64>,
-    /// Bulk modulus K, Pa. Goes with `shear`.
-    #[serde(default)]
-    pub bulk: Option<f64>,
-    /// Shear modulus mu, Pa. Goes with `bulk`.
-    #[serde(default)]
-    pub shear: Option<f64>,
+elastic_parameters! {
+    /// St Venant-Kirchhoff elasticity, S = lambda tr(E) I + 2 mu E with E = (F^T F - I) / 2.
+    pub struct StVenantKirchhoff {}
 }
 
 impl MaterialModel for StVenantKirchhoff {
@@ -33,8 +17,7 @@ impl MaterialModel for StVenantKirchhoff {
         "Ganzenmueller 2015, eqs. 17-19; eq. 19 lacks the identity (see docs/materials.md)";
 
     fn build(self) -> Result<Material, ParameterError> {
-        ParameterError::require_positive("density", self.density)?;
-        let elastic = ElasticConstants::from_parameters(self.young, self.poisson, self.bulk, self.shear)?;
+        let elastic = self.elastic()?;
         Ok(Material::solid(self.density, StVenantKirchhoffLaw(elastic)))
     }
 }
