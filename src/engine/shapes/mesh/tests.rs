@@ -15,6 +15,8 @@ use crate::shapes::region::Region;
 use crate::shapes::surface::Surface;
 use crate::shapes::{Lattice, Shape, fill};
 
+mod moments;
+
 type Soup = Vec<[DVec3; 3]>;
 
 /// The triangles of a grid of points that closes upon itself both ways.
