@@ -14,8 +14,8 @@ pub const WIDTH: u32 = 512;
 const HEIGHT: u32 = 18;
 /// Where the values are.
 const TEXT_AT: f32 = 24.0;
-/// Colour of the values: it can be read on the dark and on the light background of the viewer.
-const LABEL: [u8; 3] = [130, 136, 148];
+/// Colour of the values: the viewer puts them on grey in its dark theme, on light grey in its light one.
+const LABEL: [u8; 3] = [18, 20, 24];
 /// The part of the plane that the view of the bar shows, x and y.
 pub const VISIBLE: [[f64; 2]; 2] = [[-40.0, WIDTH as f64 + 40.0], [-9.0, 58.0]];
 

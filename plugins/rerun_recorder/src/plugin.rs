@@ -1,7 +1,8 @@
 //! The plugin as scenes name it: its parameters, and their check.
 
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::scene::Dimension;
+use meshless_engine::formulations::fluid::Wall;
+use meshless_engine::plugin::{Formulation, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::scene::{Dimension, Scene};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -26,6 +27,9 @@ pub struct RerunRecorder {
     pub range: Option<(f64, f64)>,
     /// Colour map. Default: `Viridis`, or `CoolWarm` where the values lie on both sides of zero.
     pub colormap: Option<Colormap>,
+    /// Bodies drawn in grey, whatever their field, and left out of the range. Default: the walls, so that a fluid can be told from
+    /// its tank.
+    pub grey: Option<Vec<String>>,
     /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
     pub radius_scale: f64,
     /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written all the same.
@@ -34,7 +38,7 @@ pub struct RerunRecorder {
 
 impl Default for RerunRecorder {
     fn default() -> Self {
-        Self { color_by: None, range: None, colormap: None, radius_scale: 1.0, connect: None }
+        Self { color_by: None, range: None, colormap: None, grey: None, radius_scale: 1.0, connect: None }
     }
 }
 
@@ -44,18 +48,35 @@ impl Plugin for RerunRecorder {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         self.check()?;
+        let grey = self.grey_bodies(sim.scene())?;
         let fields = sim.scene().record.fields.clone();
         let gravity = sim.gravity().to_array();
         let up = match sim.dimension() {
             Dimension::Two => [0.0, 1.0, 0.0],
             Dimension::Three => against(gravity),
         };
-        sim.add_recorder(RerunFile::new(self, fields, up));
+        sim.add_recorder(RerunFile::new(self, fields, grey, up));
         Ok(())
     }
 }
 
 impl RerunRecorder {
+    /// Names of the bodies that have no colours.
+    fn grey_bodies(&self, scene: &Scene) -> Result<Vec<String>, SetupError> {
+        let Some(named) = &self.grey else {
+            let walls = scene.bodies.iter().filter(|body| body.formulation.name() == Wall::NAME);
+            return Ok(walls.map(|body| body.name.clone()).collect());
+        };
+        match named.iter().find(|name| scene.bodies.iter().all(|body| body.name != **name)) {
+            None => Ok(named.clone()),
+            Some(unknown) => {
+                let known: Vec<_> = scene.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+                let message = format!("there is no body `{unknown}`");
+                Err(SetupError::parameter("grey", message, format!("the bodies are {}", known.join(", "))))
+            }
+        }
+    }
+
     fn check(&self) -> Result<(), SetupError> {
         if let Some((low, high)) = self.range
             && !(low < high && low.is_finite() && high.is_finite())

@@ -20,6 +20,7 @@ use crate::series::SeriesTable;
 pub struct RerunFile {
     settings: RerunRecorder,
     fields: Vec<String>,
+    grey: Vec<String>,
     up: [f64; 3],
     scale: RunningScale,
     open: Option<Open>,
@@ -40,16 +41,17 @@ struct Open {
     notes: Notes,
 }
 
-/// Particles of a body that does not have the field of the colours.
-const PLAIN: [u8; 3] = [130, 140, 155];
+/// Particles of a body that is grey or does not have the field of the colours.
+const PLAIN: [u8; 3] = [172, 178, 188];
 /// Particles whose value is not a number.
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
 
 impl RerunFile {
-    /// A recorder that keeps the values of `fields`; `up` is the unit vector that points up in the picture.
-    pub fn new(settings: RerunRecorder, fields: Vec<String>, up: [f64; 3]) -> Self {
+    /// A recorder that keeps the values of `fields` and draws the bodies of `grey` without colours; `up` is the unit vector that
+    /// points up in the picture.
+    pub fn new(settings: RerunRecorder, fields: Vec<String>, grey: Vec<String>, up: [f64; 3]) -> Self {
         let scale = RunningScale::new(settings.range);
-        Self { settings, fields, up, scale, open: None }
+        Self { settings, fields, grey, up, scale, open: None }
     }
 
     fn open(&mut self, run: &RunInfo<'_>) -> Result<(), RerunError> {
@@ -109,8 +111,9 @@ impl RerunFile {
         }
         open.output.set_time(frame.step, frame.time);
         let color_by = open.color_by.as_deref().unwrap_or_default();
-        let mut all: Vec<f64> =
-            frame.bodies.iter().flat_map(|body| values(body, color_by)).copied().collect();
+        let has_color = |body: &BodyFrame<'_>| !self.grey.iter().any(|name| name == body.name);
+        let colored = frame.bodies.iter().filter(|body| has_color(body));
+        let mut all: Vec<f64> = colored.flat_map(|body| values(body, color_by)).copied().collect();
         let scale = self.scale.update(&mut all);
         let automatic = if scale.diverging { Colormap::CoolWarm } else { Colormap::Viridis };
         let map = self.settings.colormap.unwrap_or(automatic);
@@ -124,9 +127,10 @@ impl RerunFile {
             legend.show(&open.output, scale, map, beyond)?;
         }
         for body in frame.bodies {
+            let shown = if has_color(body) { values(body, color_by) } else { &[] };
             let radius = Radius::from(body.radius * self.settings.radius_scale as f32);
             let points = Points3D::new(body.positions.iter().copied())
-                .with_colors(colors(values(body, color_by), scale, map))
+                .with_colors(colors(shown, scale, map))
                 .with_radii([radius]);
             open.output.log(&paths::body(body.name), &points)?;
             for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name))

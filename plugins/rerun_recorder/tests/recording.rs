@@ -16,7 +16,7 @@ const SCENE: &str = "Scene(title: \"two particles\")";
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 
 fn recorder(settings: RerunRecorder) -> RerunFile {
-    RerunFile::new(settings, vec!["von_mises".to_owned()], UP)
+    RerunFile::new(settings, vec!["von_mises".to_owned()], Vec::new(), UP)
 }
 
 fn start(recorder: &mut RerunFile, folder: &Path, resumed: bool) -> Result<(), RecordError> {
@@ -109,6 +109,29 @@ fn what_is_recorded_can_be_read_back() {
     assert!(stress[7].is_nan());
     let speed = entity(&[body[0], body[1], "speed"]);
     assert!(store.iter_physical_chunks().all(|chunk| *chunk.entity_path() != speed), "nobody asked for it");
+}
+
+/// Number of colours of the particles in each frame.
+fn colors(grey: Vec<String>) -> Vec<usize> {
+    let folder = TempDir::new().expect("a temporary folder");
+    let mut recorder = RerunFile::new(RerunRecorder::default(), vec!["von_mises".to_owned()], grey, UP);
+    start(&mut recorder, folder.path(), false).expect("it starts");
+    (0..2).for_each(|step| frame(&mut recorder, step).expect("it is written"));
+    recorder.finish(&[]).expect("it ends");
+    let (store, _) = read(&folder.path().join("two.rrd"));
+    let body = entity(&["bodies", "left plate/2"]);
+    let chunks = store.iter_physical_chunks().filter(|chunk| *chunk.entity_path() == body);
+    chunks
+        .flat_map(|chunk| {
+            chunk.iter_slices::<u32>("Points3D:colors".into()).map(<[u32]>::len).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn particles_have_a_colour_each_and_those_of_a_grey_body_have_one() {
+    assert_eq!(colors(Vec::new()), [2, 2]);
+    assert_eq!(colors(vec!["left plate/2".to_owned()]), [1, 1]);
 }
 
 #[test]

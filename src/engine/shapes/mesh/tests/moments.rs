@@ -27,7 +27,7 @@ fn moments_of_a_box_are_those_of_its_sides() {
 fn moments_of_a_tetrahedron_are_those_of_its_corners() {
     // The unit tetrahedron: V = 1/6, centre 1/4, integrals of x^2 and x y from its corner 1/60 and 1/120.
     let [o, x, y, z] = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
-    let faces = vec![[o, y, x], [o, x, z], [o, z, y], [x, y, z]];
+    let faces = [[o, y, x], [o, x, z], [o, z, y], [x, y, z]];
     let (turn, shift) =
         (DQuat::from_rotation_y(0.4) * DQuat::from_rotation_x(1.1), DVec3::new(7.0, -2.0, 0.5));
     let moved: Soup = faces.iter().map(|face| face.map(|corner| turn * corner + shift)).collect();
