@@ -28,7 +28,7 @@ pub struct RerunRecorder {
     /// Colour map. Default: `Viridis`, or `CoolWarm` where the values lie on both sides of zero.
     pub colormap: Option<Colormap>,
     /// Bodies drawn in grey, whatever their field, and left out of the range. Default: the walls, so that a fluid can be told from
-    /// its tank.
+    /// its tank. In three dimensions they are dots, so that one sees into it.
     pub grey: Option<Vec<String>>,
     /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
     pub radius_scale: f64,

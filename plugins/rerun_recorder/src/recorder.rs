@@ -1,6 +1,7 @@
 //! The recorder: frames and samples of a run become entities of a recording.
 
 use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder, RunInfo, Sample};
+use meshless_engine::scene::Dimension;
 use rerun::external::re_sdk_types::components::MediaType;
 use rerun::{Color, EntityPath, Points3D, Radius, Scalars, TextDocument, archetypes::ViewCoordinates};
 
@@ -43,6 +44,8 @@ struct Open {
 
 /// Particles of a body that is grey or does not have the field of the colours.
 const PLAIN: [u8; 3] = [172, 178, 188];
+/// Share of their radius that particles of a grey body have in three dimensions, so that a tank does not hide its fluid.
+const SEEN_THROUGH: f32 = 0.2;
 /// Particles whose value is not a number.
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
 
@@ -128,7 +131,12 @@ impl RerunFile {
         }
         for body in frame.bodies {
             let shown = if has_color(body) { values(body, color_by) } else { &[] };
-            let radius = Radius::from(body.radius * self.settings.radius_scale as f32);
+            let size = if open.layout.dimension == Dimension::Three && !has_color(body) {
+                SEEN_THROUGH
+            } else {
+                1.0
+            };
+            let radius = Radius::from(body.radius * size * self.settings.radius_scale as f32);
             let points = Points3D::new(body.positions.iter().copied())
                 .with_colors(colors(shown, scale, map))
                 .with_radii([radius]);
