@@ -135,9 +135,12 @@ impl Execution {
         }
         let folder = self.folder.display();
         let mut text = format!("files in {folder}: {}", names.join(", "));
-        if names.iter().any(|name| name.ends_with(".rrd")) {
-            text += &format!("\nto look at the recording: meshless view {folder}");
-        }
+        text += &match names.iter().any(|name| name.ends_with(".rrd")) {
+            true => format!("\nto look at the recording: meshless view {folder}"),
+            false => {
+                "\nthere is no recording: `plugins: [rerun_recorder()]` of the scene makes one".to_owned()
+            }
+        };
         if names.iter().any(|name| name == folder::CHECKPOINT) {
             text += &match self.sim.clock().time >= self.sim.end() {
                 false => format!("\nto go on: meshless resume {folder}"),
