@@ -225,10 +225,10 @@ impl Recorder for RerunFile {
         let mut open = self.open.take().ok_or(RerunError::NotOpen)?;
         open.series.send(&open.output).map_err(RecordError::from)?;
         open.output.log_static(&paths::notes(), &open.notes.document(warnings)).map_err(RecordError::from)?;
-        // In the file the camera now has in view where the particles went; a viewer that is watching keeps its own.
-        if open.in_view.is_some_and(|seen| seen != open.bounds) {
-            open.send_layout(true)?;
-        }
+        // In the file the camera now has in view where the particles went, and plots leave out accounts that have stayed empty; a
+        // viewer that is watching keeps its own.
+        open.series.finish();
+        open.send_layout(true)?;
         Ok(open.output.flush()?)
     }
 }

@@ -1,6 +1,6 @@
 //! Time series: which plot each is drawn in, and its name and colour there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rerun::components::{Color, Name, StrokeWidth};
 use rerun::{EntityPath, SeriesLines};
@@ -31,13 +31,17 @@ pub struct SeriesTable {
     known: Vec<(String, String)>,
     /// What has come since the last time that it was sent, series by series: one piece costs little more than one value.
     pending: BTreeMap<String, Vec<TimedValue>>,
+    /// Accounts that have been nothing but zero.
+    idle: BTreeSet<String>,
+    /// Whether the run is over, so that what is idle stays so.
+    over: bool,
 }
 
 /// Values of a series that are held back at most.
 const MOST_PENDING: usize = 1000;
 
-/// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008).
-const COLORS: [[u8; 3]; 7] = [
+/// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008; the last three: P. Tol, 2021).
+const COLORS: [[u8; 3]; 10] = [
     [230, 159, 0],
     [86, 180, 233],
     [0, 158, 115],
@@ -45,12 +49,15 @@ const COLORS: [[u8; 3]; 7] = [
     [204, 121, 167],
     [0, 114, 178],
     [190, 175, 50],
+    [170, 68, 153],
+    [136, 136, 136],
+    [68, 170, 153],
 ];
 
 impl SeriesTable {
     /// The series known at the start, with their units, of a run with these bodies.
     pub fn new(bodies: Vec<String>, dimension: Dimension, known: Vec<(String, String)>) -> Self {
-        Self { bodies, dimension, known, pending: BTreeMap::new() }
+        Self { bodies, dimension, known, pending: BTreeMap::new(), idle: BTreeSet::new(), over: false }
     }
 
     /// Takes values of a step and time, s, to be sent with the others of their series.
@@ -63,6 +70,9 @@ impl SeriesTable {
         let mut most = 0;
         for sample in samples {
             let value = TimedValue { step, time, value: sample.value };
+            if sample.value != 0.0 {
+                self.idle.remove(sample.name);
+            }
             if let Some(values) = self.pending.get_mut(sample.name) {
                 values.push(value);
                 most = most.max(values.len());
@@ -74,6 +84,9 @@ impl SeriesTable {
             }
             output.log_static(&paths::series(sample.name), &self.style(sample.name))?;
             self.pending.insert(sample.name.to_owned(), vec![value]);
+            if sample.value == 0.0 && sample.name.starts_with("energy/") {
+                self.idle.insert(sample.name.to_owned());
+            }
         }
         if most < MOST_PENDING { Ok(()) } else { self.send(output) }
     }
@@ -85,6 +98,16 @@ impl SeriesTable {
             values.clear();
         }
         Ok(())
+    }
+
+    /// The run is over: accounts that have never moved are drawn no more.
+    pub fn finish(&mut self) {
+        self.over = true;
+    }
+
+    /// The accounts that are not drawn.
+    fn hidden(&self) -> impl Iterator<Item = EntityPath> {
+        self.idle.iter().filter(|_| self.over).map(|name| paths::series(name))
     }
 
     fn style(&self, name: &str) -> SeriesLines {
@@ -141,7 +164,7 @@ impl SeriesTable {
         let body_paths = self.bodies.iter().map(|body| paths::entity(["energy", body]));
         let errors = self.groups().into_iter().filter(|group| matches!(group, Group::Error(_)));
         let exclude: Vec<EntityPath> =
-            body_paths.chain(errors.flat_map(|group| self.names(&group))).collect();
+            body_paths.chain(errors.flat_map(|group| self.names(&group))).chain(self.hidden()).collect();
         // An account that opens while the run goes on belongs here, too.
         let all = Plot { title: "Energies [J]".to_owned(), include: vec![paths::series("energy")], exclude };
         let mut plots = Vec::new();
@@ -152,7 +175,7 @@ impl SeriesTable {
             plots.extend(self.bodies.iter().filter(|body| self.has_energies(body)).map(|body| Plot {
                 title: format!("{body} [J]"),
                 include: vec![paths::entity(["energy", body])],
-                exclude: Vec::new(),
+                exclude: self.hidden().collect(),
             }));
         }
         plots
@@ -220,6 +243,7 @@ enum Group {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use meshless_engine::record::Existing;
 
     fn table(bodies: &[&str], known: &[(&str, &str)]) -> SeriesTable {
         let owned = |(name, unit): &(&str, &str)| ((*name).to_owned(), (*unit).to_owned());
@@ -257,6 +281,27 @@ mod tests {
         for path in ["energy/plate", "energy/ball", "energy/balance_error", "energy/relative_error"] {
             assert!(excluded.contains(&paths::series(path)), "{path}");
         }
+    }
+
+    #[test]
+    fn accounts_that_never_move_are_left_out_in_the_end() {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = output.expect("a recording");
+        let names = ["energy/kinetic", "energy/friction", "energy/gravity"];
+        let mut table = table(&["plate"], &names.map(|name| (name, "J")));
+        for (step, values) in [[0.0, 0.0, 0.0], [2.0, 0.0, 1.0], [0.0, 0.0, 0.0]].iter().enumerate() {
+            let samples: Vec<Sample<'_>> =
+                names.iter().zip(values).map(|(&name, &value)| Sample { name, unit: "J", value }).collect();
+            table.take(&output, (step as u64, step as f64), &samples).expect("they are taken");
+        }
+        let friction = paths::series("energy/friction");
+        assert!(!table.energies()[0].exclude.contains(&friction), "it may move yet");
+        table.finish();
+        let excluded = &table.energies()[0].exclude;
+        assert!(excluded.contains(&friction));
+        assert!(!excluded.contains(&paths::series("energy/kinetic")));
+        assert!(!excluded.contains(&paths::series("energy/gravity")));
     }
 
     #[test]
