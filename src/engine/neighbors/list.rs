@@ -50,6 +50,34 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
+    /// Counts neighbours from `by` on, as rows of a larger set of particles.
+    pub fn shift(&mut self, by: u32) {
+        self.indices.iter_mut().for_each(|j| *j += by);
+    }
+
+    /// The same pairs from the other side: row k of `other` has the rows of this list, ascending, that hold the k-th of `rows`.
+    pub fn turn(&self, rows: Range<usize>, other: &mut Self) {
+        let Self { offsets, indices } = other;
+        offsets.clear();
+        offsets.resize(rows.len() + 2, 0);
+        for &j in &self.indices {
+            offsets[j as usize - rows.start + 2] += 1;
+        }
+        for k in 2..offsets.len() {
+            offsets[k] += offsets[k - 1];
+        }
+        indices.resize(self.indices.len(), 0);
+        // The start of each row moves to its end, where the next one starts.
+        for i in 0..self.rows() {
+            for &j in self.row(i) {
+                let at = &mut offsets[j as usize - rows.start + 1];
+                indices[*at] = i as u32;
+                *at += 1;
+            }
+        }
+        offsets.pop();
+    }
+
     /// Number of target particles.
     pub fn rows(&self) -> usize {
         self.offsets.len() - 1

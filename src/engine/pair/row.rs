@@ -60,6 +60,12 @@ pub struct Room<'a> {
 }
 
 impl PairRow {
+    /// Takes all neighbours out.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.fours = 0;
+    }
+
     /// Makes room for that many neighbours, to be filled by the caller.
     #[inline]
     pub fn room(&mut self, neighbors: usize, with_reference: bool, with_mirrors: bool) -> Room<'_> {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 
-use super::pass::{BodyTerms, MAX_TERMS};
+use super::of_phase::{BodyTerms, MAX_TERMS};
 use crate::integrate::{DRIFT, KICK};
 use crate::parallel::{BlockSum, Split, for_each_block};
 use crate::plugin::SimBuilder;

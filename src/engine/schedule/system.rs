@@ -162,6 +162,12 @@ impl System {
         self
     }
 
+    /// Declares access to several.
+    pub fn touches_all(mut self, access: impl IntoIterator<Item = Access>) -> Self {
+        self.access.extend(access);
+        self
+    }
+
     /// Declares that only these phases are touched: systems of different phases never conflict.
     pub fn on_phases(mut self, phases: impl IntoIterator<Item = PhaseId>) -> Self {
         self.phases = Some(phases.into_iter().collect());

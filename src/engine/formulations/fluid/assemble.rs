@@ -4,8 +4,10 @@ use glam::DVec3;
 
 use super::checks;
 use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
+use super::drift::Skins;
 use super::formulation::FluidBody;
 use super::kernel::FluidKernel;
+use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
 use super::sides::ThinBody;
@@ -19,8 +21,10 @@ use crate::rigid::Rigid;
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
 
-/// Skin of the neighbour lists over the spacing of the fluid.
+/// Skin of the neighbour lists of fluids over their spacing.
 const SKIN: f64 = 0.4;
+/// The same of fluids and what bounds them: fluids slide along walls, and few particles are near one.
+const WALL_SKIN: f64 = 0.8;
 
 /// Adds the systems of all fluids and walls of the scene; nothing where there are none.
 ///
@@ -77,6 +81,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let short = systems::short_phases(&groups, sim);
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
+    let skins = Skins { support, fluid: SKIN * spacing, walls: WALL_SKIN * spacing };
     let dimension = sim.dimension().count();
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
@@ -89,7 +94,11 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         positions: vec![DVec3::ZERO; total],
         before: Vec::new(),
         records: vec![Record::default(); total],
-        pairs: FlowPairs::new(support, SKIN * spacing, periodic, ends, thin),
+        pairs: FlowPairs::new(skins, periodic, ends, thin),
+        lists_are_new: false,
+        near: NearRows::default(),
+        near_boundary: NearRows::default(),
+        compression: Vec::new(),
         free_surface: false,
     };
     sim.add_setup(move |setup| {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::kernel::FluidKernel;
+use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
 use crate::materials::EquationOfState;
@@ -119,6 +120,14 @@ pub struct FlowCloud {
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,
+    /// Whether the lists were built in this step.
+    pub(super) lists_are_new: bool,
+    /// Neighbours of fluid particles within the support.
+    pub(super) near: NearRows,
+    /// Fluid neighbours within the support of every particle that is no fluid.
+    pub(super) near_boundary: NearRows,
+    /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
+    pub(super) compression: Vec<f64>,
     /// Whether a viscous fluid had a free surface when the lists were built.
     pub(super) free_surface: bool,
 }
@@ -197,7 +206,7 @@ impl FlowCloud {
     pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
         let own = self.records[i].position();
         let limit = self.kernel.support * self.kernel.support;
-        for &j in self.pairs.fluid.row(i) {
+        for &j in self.near.row(i) {
             let row = j as usize;
             let other = &self.records[row];
             let x_ij = self.pairs.periodic().minimal_image(other.position() - own);
@@ -238,7 +247,8 @@ impl FlowCloud {
 
     /// Number of directed pairs in the lists.
     pub fn pairs(&self) -> usize {
-        self.pairs.fluid.pairs() + self.pairs.boundary.pairs()
+        let FlowPairs { fluid, walls, boundary, .. } = &self.pairs;
+        fluid.pairs() + walls.pairs() + boundary.pairs()
     }
 
     /// How often the lists have been built.

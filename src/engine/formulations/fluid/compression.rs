@@ -1,60 +1,135 @@
-//! First pass over pairs: the rate of compression.
+//! First pass over pairs: who is within the support, and the rate of compression.
 //!
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
-//! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`.
+//! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
 
 use super::cloud::FlowCloud;
-use super::record::{Four, dot, padded};
+use super::near_rows::{NearRow, NearWriter};
+use super::record::{Four, Record, as_rows, dot, filled_up};
+use super::surface_friction;
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::schedule::{Run, Step, StepError};
 
-/// The pass over all fluid particles.
-pub(super) struct Compression<'a> {
-    pub cloud: &'a FlowCloud,
-    /// Length of the step, s.
-    pub dt: f64,
+/// Runs the pass.
+#[derive(Default)]
+pub(super) struct Compression {
+    /// Whether a viscous fluid had a free surface when the lists were built.
+    free_surface: bool,
+    /// Smallest eigenvalues of the moment matrices: scratch memory.
+    smallest: Vec<f64>,
 }
 
-impl Compression<'_> {
-    /// Writes D of every fluid particle, 1/s.
-    pub fn run(&self, out: &mut [f64]) {
-        for_each_block(out, &mut Vec::new(), &|first, out: &mut [f64]| {
-            run_hot_in(self.cloud.plane, Rows { pass: self, first, out });
+impl Run for Compression {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        cloud.compress(step.clock.dt);
+        if cloud.lists_are_new {
+            self.free_surface = surface_friction::is_needed(&cloud, &mut self.smallest);
+        }
+        cloud.free_surface = self.free_surface;
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        vec![u8::from(self.free_surface)]
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        self.free_surface = state == [1];
+        state.len() == 1
+    }
+}
+
+impl FlowCloud {
+    /// Finds the neighbours within the support of every fluid particle, and its D, 1/s, in a step of that length, s.
+    fn compress(&mut self, dt: f64) {
+        let (mut near, mut rates) = (std::mem::take(&mut self.near), std::mem::take(&mut self.compression));
+        rates.resize(self.fluid, 0.0);
+        for_each_block((&mut rates[..], near.writer()), &mut Vec::new(), &|first, (out, near)| {
+            run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, near });
         });
+        (self.near, self.compression) = (near, rates);
     }
 }
 
 struct Rows<'a> {
-    pass: &'a Compression<'a>,
+    cloud: &'a FlowCloud,
+    /// Time from the end of the step to its middle, s.
+    back: f64,
     first: usize,
     out: &'a mut [f64],
+    near: NearWriter<'a>,
 }
 
 impl PlaneOrSolid for Rows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
+        if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
 impl Rows<'_> {
     #[inline(always)]
-    fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
-        let FlowCloud { records, pairs, kernel, periods, .. } = self.pass.cloud;
-        let back = -0.5 * self.pass.dt;
+    fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
+        let FlowCloud { records, pairs, .. } = self.cloud;
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
-            let own = &records[i];
-            let mut sum = Lanes4::ZERO;
-            for chunk in pairs.fluid.row(i).chunks(4) {
-                let four = Four::<D>::gather::<A, P>(a, records, own, padded(chunk, i), periods);
-                let mut x = four.x;
-                for axis in 0..D {
-                    x[axis] = a.scale_add(back, four.v[axis], x[axis]);
-                }
-                let weight = kernel.weights(a, a.sqrt(dot(a, &x, &x)));
-                sum = a.times_add(a.times(weight, four.volume), dot(a, &four.v, &x), sum);
-            }
+            let of_i = Pairs { cloud: self.cloud, i, own: &records[i], back: self.back };
+            let mut near = self.near.row(k);
+            let sum = of_i.add::<A, D, P>(a, pairs.fluid.row(i), &mut near, Lanes4::ZERO);
+            let sum = of_i.add::<A, D, P>(a, pairs.walls.row(i), &mut near, sum);
+            near.close();
             *out = sum.sum();
         }
+    }
+}
+
+/// The neighbours of one list.
+struct Pairs<'a> {
+    cloud: &'a FlowCloud,
+    i: usize,
+    own: &'a Record,
+    back: f64,
+}
+
+impl Pairs<'_> {
+    #[inline(always)]
+    fn add<A: Arithmetic, const D: usize, const P: bool>(
+        &self,
+        a: A,
+        row: &[u32],
+        near: &mut NearRow<'_>,
+        mut sum: Lanes4,
+    ) -> Lanes4 {
+        let (fours, rest) = row.as_chunks();
+        for four in fours {
+            sum = self.add_four::<A, D, P>(a, *four, 4, near, sum);
+        }
+        if !rest.is_empty() {
+            sum = self.add_four::<A, D, P>(a, filled_up(rest, self.i), rest.len(), near, sum);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn add_four<A: Arithmetic, const D: usize, const P: bool>(
+        &self,
+        a: A,
+        rows: [u32; 4],
+        count: usize,
+        near: &mut NearRow<'_>,
+        sum: Lanes4,
+    ) -> Lanes4 {
+        let Self { cloud: FlowCloud { records, kernel, periods, .. }, own, back, .. } = *self;
+        let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
+        let limit = Lanes4::splat(kernel.support * kernel.support);
+        let within = a.below(dot(a, &four.x, &four.x), limit) & ((1 << count) - 1);
+        near.push(a, rows, within);
+        let mut x = four.x;
+        for axis in 0..D {
+            x[axis] = a.scale_add(back, four.v[axis], x[axis]);
+        }
+        let weight = kernel.weights(a, a.sqrt(dot(a, &x, &x)));
+        a.times_add(a.times(weight, four.volume), dot(a, &four.v, &x), sum)
     }
 }

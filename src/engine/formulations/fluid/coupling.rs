@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::cloud::{FlowCloud, Group, Role};
 use super::force::ACCOUNTS;
 use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
-use super::pair_force::{ForceRows, PARTS, PairForce};
+use super::pair_force::{PARTS, PairForce};
 use crate::parallel::{BlockSum, Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -151,7 +151,7 @@ impl Coupling {
                 if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
             to.resize(group.rows.len(), Force::default());
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
-            PairForce { cloud, group, adds: false }.run(ForceRows { total: &mut *to, parts: &mut *parts_to });
+            PairForce { cloud, group, adds: false }.run(to, parts_to);
             if side > 0 {
                 self.total.iter_mut().zip(&self.other_total).for_each(|(sum, other)| sum.0 += other.0);
                 self.parts.iter_mut().zip(&self.other_parts).for_each(|(sum, other)| *sum += *other);

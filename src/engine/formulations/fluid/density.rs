@@ -1,7 +1,6 @@
 //! The density of fluids at the end of the step, by continuity.
 
 use super::cloud::{FlowCloud, FluidState};
-use super::compression::Compression;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -11,7 +10,6 @@ use crate::world::{Density, DensityRate, Mass, Removed};
 pub(super) struct Continuity {
     /// Account of the energy that pair terms take out by changing the density; none where no term does.
     pub account: Option<String>,
-    pub compression: Vec<f64>,
     pub sums: Vec<Change>,
 }
 
@@ -43,8 +41,6 @@ impl Run for Continuity {
             return Ok(());
         }
         let cloud = step.resources.get::<FlowCloud>();
-        self.compression.resize(cloud.fluid, 0.0);
-        Compression { cloud: &cloud, dt }.run(&mut self.compression);
         let by_terms = self.account.is_some();
         for group in &cloud.groups {
             let Some(state) = group.fluid() else { break };
@@ -55,7 +51,7 @@ impl Run for Continuity {
             let rows = group.rows.clone();
             let slices = (
                 &mut density[rows.clone()],
-                &self.compression[group.cloud.clone()],
+                &cloud.compression[group.cloud.clone()],
                 &rate[rows.clone()],
                 &mass[rows.clone()],
                 &removed[rows],

@@ -5,9 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Role};
-use super::pair_force::{ForceRows, PARTS, PairForce};
+use super::pair_force::{PARTS, PairForce};
 use super::surface_friction::SurfaceFriction;
-use crate::pair::BodyTerms;
+use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::for_each_block;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId, Removed};
@@ -26,6 +26,8 @@ pub(super) struct FlowForce {
     pub parts: Arc<Mutex<Vec<BodyTerms>>>,
     /// What friction lacks at a free surface.
     pub friction: SurfaceFriction,
+    /// Pair terms of plugins, run in the same pass.
+    pub terms: Option<PhaseTerms>,
 }
 
 impl Run for FlowForce {
@@ -43,7 +45,10 @@ impl Run for FlowForce {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
             let pass = PairForce { cloud: &cloud, group, adds: self.gravity.is_none() };
-            pass.run(ForceRows { total: &mut *total, parts: &mut *forces });
+            match self.terms.as_mut().filter(|terms| terms.act_on(group.body)) {
+                Some(terms) => pass.run_with(terms, step, total, forces)?,
+                None => pass.run(total, forces),
+            }
             self.friction.add(&cloud, group, total, forces);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);

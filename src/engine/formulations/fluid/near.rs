@@ -105,7 +105,7 @@ impl FlowCloud {
     /// fluids, the rows of a body those of its own, and [`FlowCloud::everything`] also what bounds the fluid.
     #[inline(always)]
     pub fn fours<A: Arithmetic>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
-        let row = self.pairs.fluid.row(i);
+        let row = self.near.row(i);
         Fours { cloud: self, i, chunks: part(row, among).chunks(4), arithmetic: a }
     }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::cloud::FlowCloud;
 use super::sort::{BUILDS, Sorter};
-use super::surface_friction;
+use crate::neighbors::NeighborError;
 use crate::schedule::{Run, Step, StepError};
 
 /// Keeps the lists and the packed rows of the cloud, and sorts the fluids at times.
@@ -16,61 +16,64 @@ pub(super) struct Neighbors {
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
-    /// Whether a viscous fluid had a free surface at the last build.
-    free_surface: bool,
-    /// Smallest eigenvalues of the moment matrices: scratch memory.
-    smallest: Vec<f64>,
     sorter: Sorter,
+}
+
+impl FlowCloud {
+    /// Builds the lists from these positions, and the room for the neighbours within the support.
+    fn build_lists(&mut self, positions: &[DVec3]) -> Result<(), NeighborError> {
+        let Self { pairs, near, near_boundary, fluid, .. } = self;
+        pairs.build(positions, *fluid)?;
+        near.make_room(&[&pairs.fluid, &pairs.walls]);
+        near_boundary.make_room(&[&pairs.boundary]);
+        Ok(())
+    }
 }
 
 impl Run for Neighbors {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         cloud.read_positions(step.world)?;
-        let failed = |error: crate::neighbors::NeighborError| StepError::System {
+        let failed = |error: NeighborError| StepError::System {
             system: super::systems::NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
-        let fluid = cloud.fluid;
         if self.restored.len() == cloud.positions.len() {
             // Sums run in the order of the lists, four neighbours at a time: the same lists give the same bits.
-            cloud.pairs.build(&std::mem::take(&mut self.restored), fluid).map_err(failed)?;
+            cloud.build_lists(&std::mem::take(&mut self.restored)).map_err(failed)?;
         }
-        let stale = cloud.pairs.is_stale(&cloud.positions);
+        let FlowCloud { pairs, positions, fluid, .. } = &mut *cloud;
+        let stale = pairs.is_stale(positions, *fluid);
         if stale {
             if self.builds >= BUILDS && self.sorter.sort(&cloud, step.world) {
                 self.builds = 0;
                 cloud.read_positions(step.world)?;
             }
-            let FlowCloud { positions, pairs, .. } = &mut *cloud;
-            pairs.build(positions, fluid).map_err(failed)?;
-            self.built.clone_from(&pairs.built);
+            let positions = std::mem::take(&mut cloud.positions);
+            cloud.build_lists(&positions).map_err(failed)?;
+            cloud.positions = positions;
+            self.built.clone_from(&cloud.pairs.built);
             self.builds += 1;
         }
+        cloud.lists_are_new = stale;
         cloud.pack(step.world)?;
         cloud.average_motion(step.clock.dt);
-        if stale {
-            self.free_surface = surface_friction::is_needed(&cloud, &mut self.smallest);
-        }
-        cloud.free_surface = self.free_surface;
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
         let mut bytes = self.builds.to_le_bytes().to_vec();
-        bytes.push(u8::from(self.free_surface));
         bytes.extend_from_slice(bytemuck::cast_slice(&self.built));
         bytes
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Some((builds, [free_surface, positions @ ..])) = state.split_first_chunk() else { return false };
+        let Some((builds, positions)) = state.split_first_chunk() else { return false };
         let size = size_of::<DVec3>();
         if !positions.len().is_multiple_of(size) {
             return false;
         }
         self.builds = u64::from_le_bytes(*builds);
-        self.free_surface = *free_surface != 0;
         self.restored = positions.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect();
         self.built.clone_from(&self.restored);
         true

@@ -10,8 +10,11 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group, Role};
-use super::record::{Four, Record, dot, padded, sums};
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot_in};
+use super::pair_sums::Pairs;
+use super::record::sums;
+use crate::pair::{BoundTerms, Fastest, PairRow, PhaseTerms, TermRows, with_row};
+use crate::parallel::{Arithmetic, BlockSum, PlaneOrSolid, Split, for_each_block, run_hot_in};
+use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
 /// Forces that are kept apart: viscous, and of the pressure of boundaries.
@@ -25,30 +28,55 @@ pub(super) struct PairForce<'a> {
     pub adds: bool,
 }
 
-/// What the pass writes: the force, and [`PARTS`] parts of it for every particle.
-pub(super) struct ForceRows<'a> {
-    pub total: &'a mut [Force],
-    pub parts: &'a mut [DVec3],
+/// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every particle.
+struct ForceRows<'a> {
+    written: TermRows<'a>,
+    parts: &'a mut [DVec3],
 }
 
 impl Split for ForceRows<'_> {
     fn rows(&self) -> usize {
-        self.total.len()
+        self.written.rows()
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        let (total, total_rest) = self.total.split_at_mut(at);
+        let (written, written_rest) = self.written.split(at);
         let (parts, parts_rest) = self.parts.split_at_mut(PARTS * at);
-        (Self { total, parts }, Self { total: total_rest, parts: parts_rest })
+        (Self { written, parts }, Self { written: written_rest, parts: parts_rest })
     }
 }
 
 impl PairForce<'_> {
-    /// Writes the forces on all particles of the group, N.
-    pub fn run(&self, rows: ForceRows<'_>) {
+    /// Writes the forces on all particles of the group and [`PARTS`] parts of each, N.
+    pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
+        let rows = ForceRows { written: TermRows::without_terms(total), parts };
         for_each_block(rows, &mut Vec::new(), &|first, rows| {
-            run_hot_in(self.cloud.plane, Rows { pass: self, first, rows });
+            run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms: None });
         });
+    }
+
+    /// The same with the pair terms of the body, which get the geometry of each row as the pass has made it.
+    pub fn run_with(
+        &self,
+        terms: &mut PhaseTerms,
+        step: &mut Step<'_>,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) -> Result<(), StepError> {
+        let body = self.group.body;
+        let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
+            let rows = ForceRows { written, parts: &mut *parts };
+            for_each_block(rows, sums, &|first, rows| {
+                let mut fastest = Fastest::default();
+                with_row(|row| {
+                    let terms = Some(Terms { terms, row, fastest: &mut fastest });
+                    run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms });
+                });
+                fastest
+            })
+        })?;
+        fastest.limit(step, body);
+        Ok(())
     }
 }
 
@@ -56,6 +84,14 @@ struct Rows<'a> {
     pass: &'a PairForce<'a>,
     first: usize,
     rows: ForceRows<'a>,
+    terms: Option<Terms<'a>>,
+}
+
+/// The pair terms of the group, and the row that they are given.
+struct Terms<'a> {
+    terms: &'a BoundTerms<'a>,
+    row: &'a mut PairRow,
+    fastest: &'a mut Fastest,
 }
 
 impl PlaneOrSolid for Rows<'_> {
@@ -63,16 +99,6 @@ impl PlaneOrSolid for Rows<'_> {
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
         if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
-}
-
-/// Sums over the neighbours of one particle in one group.
-struct Sums<const D: usize> {
-    /// sum V_j w x_ij.
-    gradient: [Lanes4; D],
-    /// sum V_j p_j w x_ij.
-    pressure: [Lanes4; D],
-    /// sum V_j 2 mu w v_ij.
-    viscous: [Lanes4; D],
 }
 
 /// Twice the viscosity between two groups, Pa s.
@@ -95,16 +121,18 @@ impl Rows<'_> {
     #[inline(always)]
     fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
         let PairForce { cloud, group, adds } = *self.pass;
-        let ForceRows { total, parts } = self.rows;
+        let ForceRows { mut written, parts } = self.rows;
+        let mut terms = self.terms;
         let own_is_fluid = group.fluid().is_some();
-        for (k, total) in total.iter_mut().enumerate() {
+        for k in 0..written.total.len() {
             let i = group.cloud.start + self.first + k;
             let own = &cloud.records[i];
-            let mut rest = if own_is_fluid {
-                cloud.pairs.fluid.row(i)
-            } else {
-                cloud.pairs.boundary.row(i - cloud.fluid)
-            };
+            if let Some(Terms { row, .. }) = &mut terms {
+                row.volume_i = own.volume();
+                row.clear();
+            }
+            let mut rest =
+                if own_is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
             let (mut pressure, mut viscous, mut wall) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
             for other in &cloud.groups {
                 let Some(&last) = rest.last() else { break };
@@ -116,15 +144,20 @@ impl Rows<'_> {
                     continue;
                 }
                 let viscosity = pair_viscosity(&group.role, &other.role);
-                let sum = if viscosity > 0.0 {
-                    self.pass.sum::<A, D, P, true>(a, i, own, row, viscosity)
-                } else {
-                    self.pass.sum::<A, D, P, false>(a, i, own, row, 0.0)
+                let pairs = Pairs { cloud, i, own, row, viscosity };
+                let sum = match &mut terms {
+                    Some(terms) if other.cloud.start == group.cloud.start && own.volume() > 0.0 => {
+                        let room = terms.row.room(row.len(), false, false);
+                        let before = (group.cloud.start - group.rows.start) as u32;
+                        pairs.sum_and_keep::<A, D, P>(a, room, before, terms.terms.with_kernel)
+                    }
+                    _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, D, P, true>(a),
+                    _ => pairs.sum::<A, D, P, false>(a),
                 };
                 let of_i = sums(&sum.gradient) * own.pressure();
                 let of_j = sums(&sum.pressure);
                 match (own_is_fluid, other.fluid().is_some()) {
-                    (true, true) => pressure += of_i + of_j,
+                    (true, true) => pressure += of_j,
                     (true, false) => {
                         pressure += of_i;
                         wall += of_j;
@@ -138,42 +171,14 @@ impl Rows<'_> {
             }
             let volume = own.volume();
             let force = (viscous - pressure - wall) * volume;
+            let total = &mut written.total[k];
             total.0 = if adds { total.0 + force } else { force };
             parts[PARTS * k] = viscous * volume;
             parts[PARTS * k + 1] = wall * -volume;
-        }
-    }
-}
-
-impl PairForce<'_> {
-    #[inline(always)]
-    fn sum<A: Arithmetic, const D: usize, const P: bool, const VISCOUS: bool>(
-        &self,
-        a: A,
-        i: usize,
-        own: &Record,
-        row: &[u32],
-        viscosity: f64,
-    ) -> Sums<D> {
-        let FlowCloud { records, kernel, periods, .. } = self.cloud;
-        let zero = [Lanes4::ZERO; D];
-        let mut sum = Sums { gradient: zero, pressure: zero, viscous: zero };
-        for chunk in row.chunks(4) {
-            let four = Four::<D>::gather::<A, P>(a, records, own, padded(chunk, i), periods);
-            let square = dot(a, &four.x, &four.x);
-            let weight = a.times(kernel.weights(a, a.sqrt(square)), four.volume);
-            let pressure = a.times(weight, four.pressure);
-            for axis in 0..D {
-                sum.gradient[axis] = a.times_add(weight, four.x[axis], sum.gradient[axis]);
-                sum.pressure[axis] = a.times_add(pressure, four.x[axis], sum.pressure[axis]);
-            }
-            if VISCOUS {
-                let friction = a.scale(viscosity, weight);
-                for axis in 0..D {
-                    sum.viscous[axis] = a.times_add(friction, four.v[axis], sum.viscous[axis]);
-                }
+            if let Some(Terms { terms, row, fastest }) = &mut terms {
+                let before = group.cloud.start - group.rows.start;
+                fastest.add(&terms.run(i - before, row, k, &mut written));
             }
         }
-        sum
     }
 }

@@ -2,22 +2,27 @@
 //! fluid.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
+use super::drift::{Drift, Skins};
 use super::sides::{Sides, ThinBody};
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 
-/// Lists that hold every pair within the support as long as no particle has moved more than half the skin.
+/// Length of the cells in which particles move together, over the support.
+const CELL: f64 = 2.0;
+
+/// Lists that hold every pair within the support as long as particles have not moved more than the skins against those around them.
 #[derive(Debug)]
 pub(super) struct FlowPairs {
-    support: f64,
-    skin: f64,
+    skins: Skins,
+    drift: Drift,
     periodic: Periodic,
     /// Where the bodies end, as rows of the cloud: rows of the lists are ordered by them.
     groups: Vec<u32>,
     search: NeighborSearch,
-    /// Neighbours of each fluid particle as rows of the cloud.
+    /// Fluid neighbours of each fluid particle.
     pub fluid: NeighborList,
+    /// Neighbours of each fluid particle among what bounds it, as rows of the cloud.
+    pub walls: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,
     /// Positions that the lists were built from, m; empty where they have to be built.
@@ -29,14 +34,15 @@ pub(super) struct FlowPairs {
 }
 
 impl FlowPairs {
-    pub fn new(support: f64, skin: f64, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>) -> Self {
+    pub fn new(skins: Skins, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>) -> Self {
         Self {
-            support,
-            skin,
+            skins,
+            drift: Drift::default(),
             periodic,
             groups,
             search: NeighborSearch::default(),
             fluid: NeighborList::default(),
+            walls: NeighborList::default(),
             boundary: NeighborList::default(),
             built: Vec::new(),
             thin,
@@ -49,30 +55,29 @@ impl FlowPairs {
         &self.periodic
     }
 
-    /// Whether a particle is farther than half the skin from where it was when the lists were built, or they never were.
-    pub fn is_stale(&self, positions: &[DVec3]) -> bool {
-        let limit = 0.25 * self.skin * self.skin;
-        let periodic = &self.periodic;
-        self.built.len() != positions.len()
-            || self.built.par_iter().with_min_len(4096).zip(positions).any(|(then, now)| {
-                let moved = periodic.minimal_image(*now - *then).length_squared();
-                moved > limit || moved.is_nan()
-            })
+    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` positions are those of the fluid.
+    pub fn is_stale(&mut self, positions: &[DVec3], fluid: usize) -> bool {
+        let Self { drift, built, skins, periodic, .. } = self;
+        built.len() != positions.len() || !drift.is_small((built, positions), fluid, *skins, periodic)
     }
 
     /// Builds the lists; the first `fluid` positions are those of the fluid.
     pub fn build(&mut self, positions: &[DVec3], fluid: usize) -> Result<(), NeighborError> {
         self.built.clear();
-        let cloud = |positions| Cloud::uniform(positions, self.support);
-        let (all, wet, dry) = (cloud(positions), cloud(&positions[..fluid]), cloud(&positions[fluid..]));
-        self.search.of_first((fluid, &self.groups), all, self.skin, &self.periodic, &mut self.fluid)?;
-        self.search.between(dry, wet, self.skin, &self.periodic, &mut self.boundary)?;
+        let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
+        let cloud = |positions| Cloud::uniform(positions, support);
+        let (wet, dry) = (cloud(&positions[..fluid]), cloud(&positions[fluid..]));
+        self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
+        self.search.between(wet, dry, wall_skin, &self.periodic, &mut self.walls)?;
+        self.walls.shift(fluid as u32);
         if !self.thin.is_empty() {
             let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
-            let all = self.fluid.clone();
-            self.fluid.retain(|i, j| sides.sees(i, j as usize, &all));
-            self.boundary.retain(|j, i| sides.sees(i as usize, fluid + j, &all));
+            let walls = self.walls.clone();
+            self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
+            self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
         }
+        self.walls.turn(fluid..positions.len(), &mut self.boundary);
+        self.drift.sort(positions, CELL * support, &self.periodic);
         self.built.extend_from_slice(positions);
         self.builds += 1;
         Ok(())

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::cloud::FlowCloud;
-use super::pair_force::{ForceRows, PARTS, PairForce};
+use super::pair_force::{PARTS, PairForce};
 use crate::world::{BodyId, Force};
 
 impl FlowCloud {
@@ -15,8 +15,7 @@ impl FlowCloud {
         for group in self.groups.iter().filter(|group| group.body == body) {
             let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
             let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
-            PairForce { cloud: self, group, adds: false }
-                .run(ForceRows { total: &mut total, parts: &mut parts });
+            PairForce { cloud: self, group, adds: false }.run(&mut total, &mut parts);
             let sum = sum.get_or_insert_with(|| vec![Default::default(); total.len()]);
             for (k, (all, viscous)) in sum.iter_mut().enumerate() {
                 *all += total[k].0;

@@ -92,11 +92,24 @@ pub(super) struct Four<const D: usize> {
 /// Neighbours j of a row, four at a time; the last ones are filled up with i itself, whose differences are zero.
 #[inline(always)]
 pub(super) fn padded(chunk: &[u32], i: usize) -> [usize; 4] {
+    as_rows(filled_up(chunk, i))
+}
+
+/// Written out: a closure would be called.
+#[inline(always)]
+pub(super) fn as_rows([j, k, l, m]: [u32; 4]) -> [usize; 4] {
+    [j as usize, k as usize, l as usize, m as usize]
+}
+
+/// The same as they stand in the lists.
+#[inline(always)]
+pub(super) fn filled_up(chunk: &[u32], i: usize) -> [u32; 4] {
+    let i = i as u32;
     match *chunk {
-        [j, k, l, m, ..] => [j as usize, k as usize, l as usize, m as usize],
-        [j, k, l] => [j as usize, k as usize, l as usize, i],
-        [j, k] => [j as usize, k as usize, i, i],
-        [j] => [j as usize, i, i, i],
+        [j, k, l, m, ..] => [j, k, l, m],
+        [j, k, l] => [j, k, l, i],
+        [j, k] => [j, k, i, i],
+        [j] => [j, i, i, i],
         [] => [i; 4],
     }
 }

@@ -114,12 +114,12 @@ pub(super) struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Whether fluid particle `i` sees particle `j` of the cloud; `all` holds the neighbours of fluid particles, seen or not.
-    pub fn sees(&self, i: usize, j: usize, all: &NeighborList) -> bool {
+    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds what is near fluid particles and no fluid, seen or not.
+    pub fn sees(&self, i: usize, j: usize, walls: &NeighborList) -> bool {
         if j < self.fluid {
             return i == j
-                || !(self.is_hidden(i.min(j), i.max(j), i, all)
-                    || self.is_hidden(i.min(j), i.max(j), j, all));
+                || !(self.is_hidden(i.min(j), i.max(j), i, walls)
+                    || self.is_hidden(i.min(j), i.max(j), j, walls));
         }
         for body in self.thin {
             for (copy, positive) in body.copies.iter().zip([true, false]) {
@@ -138,9 +138,8 @@ impl Sides<'_> {
     }
 
     /// Whether a thin body near `at` lies between two fluid particles.
-    fn is_hidden(&self, i: usize, k: usize, at: usize, all: &NeighborList) -> bool {
-        let near = all.row(at).iter().map(|&j| j as usize);
-        near.filter(|&j| j >= self.fluid).any(|j| {
+    fn is_hidden(&self, i: usize, k: usize, at: usize, walls: &NeighborList) -> bool {
+        walls.row(at).iter().map(|&j| j as usize).any(|j| {
             let Some(body) = self.thin.iter().find(|body| body.copies[0].contains(&j)) else { return false };
             let normal = body.normal(j - body.copies[0].start, self.positions);
             let (first, second) = (self.from(j, i), self.from(j, k));

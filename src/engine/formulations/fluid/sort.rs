@@ -7,8 +7,8 @@ use super::cloud::{FlowCloud, Group};
 use crate::shapes::MortonSort;
 use crate::world::World;
 
-/// Lists that are built before the particles are sorted anew: the fastest has then moved some six spacings.
-pub(super) const BUILDS: u64 = 32;
+/// Lists that are built before the particles are sorted anew: the fastest has then moved some six spacings along a wall.
+pub(super) const BUILDS: u64 = 8;
 
 /// Memory for sorting.
 #[derive(Default)]

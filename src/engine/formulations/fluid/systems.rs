@@ -3,19 +3,19 @@
 use std::sync::{Arc, Mutex};
 
 use super::cloud::{Group, Role};
+use super::compression::Compression;
 use super::coupling;
 use super::density::Continuity;
 use super::fields::fields;
 use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
 use super::neighbors::Neighbors;
-use super::pair_rows::FluidPairs;
 use super::state::EquationOfState;
 use super::surface_friction::SurfaceFriction;
 use super::wall::{PreviousVelocity, WALL_WEIGHT, Wall};
 use super::wall_state::WallState;
 use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
 use crate::integrate::KICK;
-use crate::pair::{BodyTerms, add_pair_systems, add_work_systems};
+use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{Formulation, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::rigid::{RIGID_KICK, RIGID_WEIGHT, Rigid};
@@ -54,13 +54,19 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
     phases.dedup();
     let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
-    let account = add_pair_systems(sim, fluid, FLUID_FORCE, FluidPairs)?;
+    let terms = PhaseTerms::take(sim, fluid)?;
+    let account = terms.as_ref().and_then(|terms| terms.of_density.clone());
     // Sorting permutes all columns.
     let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
     let lists =
         System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default()).on_phases(phases).after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
-    let continuity = Continuity { account, compression: Vec::new(), sums: Vec::new() };
+    sim.add_system(
+        System::new(Stage::Neighbors, "fluid_compression", Compression::default())
+            .on_phases([fluid])
+            .after(NEIGHBORS),
+    );
+    let continuity = Continuity { account, sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)
             .on_phases([fluid])
@@ -83,7 +89,7 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     );
     fields().into_iter().for_each(|field| sim.add_field(field));
     let gravity = sim.gravity();
-    add_force(sim, groups, fluid, FLUID_FORCE);
+    add_force(sim, groups, fluid, FLUID_FORCE, terms);
     if !boundaries.is_empty() {
         sim.add_system(
             System::new(Stage::Boundary, "wall_pressure", WallState { gravity, beside: Vec::new() })
@@ -105,27 +111,34 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
         if groups.iter().any(|group| group.phase == phase && group.short) {
             coupling::add(sim, groups, phase, label, [weight, kick]);
         } else {
-            add_force(sim, groups, phase, label);
+            add_force(sim, groups, phase, label, None);
         }
     }
     Ok(())
 }
 
-/// Adds the force on particles that take long steps; those that flow get their weight with it.
-fn add_force(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, label: &'static str) {
+/// Adds the force on particles that take long steps; those that flow get their weight and their pair terms with it.
+fn add_force(
+    sim: &mut SimBuilder<'_>,
+    groups: &[Group],
+    phase: PhaseId,
+    label: &'static str,
+    terms: Option<PhaseTerms>,
+) {
     let of_phase = || groups.iter().filter(|group| group.phase == phase);
-    let terms = |group: &Group| BodyTerms {
+    let own = |group: &Group| BodyTerms {
         id: group.body,
         terms: (0..ACCOUNTS.len()).collect(),
         forces: Vec::new(),
     };
-    let parts = Arc::new(Mutex::new(of_phase().map(terms).collect()));
+    let parts = Arc::new(Mutex::new(of_phase().map(own).collect()));
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
     let friction = SurfaceFriction::default();
-    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), friction };
-    let system =
-        System::new(Stage::Rates, label, force).on_phases([phase]).reads::<Mass>().reads::<Removed>();
+    let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
+    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), friction, terms };
+    let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
+    let system = system.reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.after(WALL_WEIGHT).adds::<Force>() });
     add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
 }

@@ -6,7 +6,8 @@
 use glam::DVec3;
 
 use super::cloud::FlowCloud;
-use super::record::{Four, dot, padded, sums};
+use super::near_rows::{NearRows, NearWriter};
+use super::record::{Four, as_rows, dot, filled_up, sums};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 
 /// Least sum of V_f W for which there is fluid beside a wall.
@@ -29,10 +30,11 @@ pub(super) struct WallPressure<'a> {
 }
 
 impl WallPressure<'_> {
-    /// Writes what is beside every particle of a boundary.
-    pub fn run(&self, out: &mut [Beside]) {
-        for_each_block(out, &mut Vec::new(), &|first, out: &mut [Beside]| {
-            run_hot_in(self.cloud.plane, Rows { cloud: self.cloud, first, out });
+    /// Writes what is beside every particle of a boundary, and its neighbours within the support.
+    pub fn run(&self, out: &mut [Beside], near: &mut NearRows) {
+        let rows = (out, near.writer());
+        for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
+            run_hot_in(self.cloud.plane, Rows { cloud: self.cloud, first, out, near });
         });
     }
 }
@@ -41,6 +43,7 @@ struct Rows<'a> {
     cloud: &'a FlowCloud,
     first: usize,
     out: &'a mut [Beside],
+    near: NearWriter<'a>,
 }
 
 impl PlaneOrSolid for Rows<'_> {
@@ -61,11 +64,13 @@ const MASKS: [Lanes4; 5] = [
 
 impl Rows<'_> {
     #[inline(always)]
-    fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
+    fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
         let cloud = self.cloud;
+        let limit = Lanes4::splat(cloud.kernel.support * cloud.kernel.support);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = cloud.fluid + self.first + k;
             let own = &cloud.records[i];
+            let mut near = self.near.row(k);
             let mut rest = cloud.pairs.boundary.row(self.first + k);
             let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
             let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
@@ -76,9 +81,12 @@ impl Rows<'_> {
                 rest = tail;
                 let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
                 for chunk in row.chunks(4) {
+                    let rows = filled_up(chunk, i);
                     let four =
-                        Four::<D>::gather::<A, P>(a, &cloud.records, own, padded(chunk, i), &cloud.periods);
-                    let distance = a.sqrt(dot(a, &four.x, &four.x));
+                        Four::<D>::gather::<A, P>(a, &cloud.records, own, as_rows(rows), &cloud.periods);
+                    let square = dot(a, &four.x, &four.x);
+                    near.push(a, rows, a.below(square, limit) & ((1 << chunk.len()) - 1));
+                    let distance = a.sqrt(square);
                     let volume = a.times(four.volume, MASKS[chunk.len()]);
                     let value = a.times(cloud.kernel.values(a, distance), volume);
                     // rho = rho_0 + p / c_0^2 to first order in the compression.
@@ -92,6 +100,7 @@ impl Rows<'_> {
                     }
                 }
             }
+            near.close();
             let total = total.sum();
             *out = Beside::default();
             if total > LEAST_SHARE {

@@ -23,7 +23,9 @@ impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         self.beside.resize(cloud.positions.len() - cloud.fluid, Beside::default());
-        WallPressure { cloud: &cloud }.run(&mut self.beside);
+        let mut near = std::mem::take(&mut cloud.near_boundary);
+        WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
+        cloud.near_boundary = near;
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };

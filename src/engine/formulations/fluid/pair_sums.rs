@@ -1,0 +1,146 @@
+//! Sums over the pairs of one particle with the particles of one body: what the forces of the second pass are made of.
+
+use super::cloud::FlowCloud;
+use super::record::{FILLS, Four, Record, as_rows, dot, filled_up};
+use crate::pair::{FourPairs, Room};
+use crate::parallel::{Arithmetic, Lanes4};
+
+/// The pairs of particle `i` with the neighbours in `row`.
+pub(super) struct Pairs<'a> {
+    pub cloud: &'a FlowCloud,
+    pub i: usize,
+    pub own: &'a Record,
+    pub row: &'a [u32],
+    /// Twice the viscosity between the two, Pa s.
+    pub viscosity: f64,
+}
+
+/// Sums over the neighbours.
+pub(super) struct Sums<const D: usize> {
+    /// sum V_j w x_ij; zero between fluids.
+    pub gradient: [Lanes4; D],
+    /// sum V_j p_j w x_ij; between fluids sum V_j (p_i + p_j) w x_ij.
+    pub pressure: [Lanes4; D],
+    /// sum V_j 2 mu w v_ij.
+    pub viscous: [Lanes4; D],
+}
+
+impl<const D: usize> Sums<D> {
+    const ZERO: Self =
+        Self { gradient: [Lanes4::ZERO; D], pressure: [Lanes4::ZERO; D], viscous: [Lanes4::ZERO; D] };
+
+    #[inline(always)]
+    fn add<A: Arithmetic, const FLUIDS: bool, const VISCOUS: bool>(
+        &mut self,
+        a: A,
+        four: &Four<D>,
+        weight: Lanes4,
+        Pairs { own, viscosity, .. }: &Pairs<'_>,
+    ) {
+        let mut pressure = four.pressure;
+        if FLUIDS {
+            pressure = a.plus(pressure, Lanes4::splat(own.pressure()));
+        }
+        let pressure = a.times(weight, pressure);
+        for axis in 0..D {
+            self.pressure[axis] = a.times_add(pressure, four.x[axis], self.pressure[axis]);
+            if !FLUIDS {
+                self.gradient[axis] = a.times_add(weight, four.x[axis], self.gradient[axis]);
+            }
+        }
+        if VISCOUS {
+            let friction = a.scale(*viscosity, weight);
+            for axis in 0..D {
+                self.viscous[axis] = a.times_add(friction, four.v[axis], self.viscous[axis]);
+            }
+        }
+    }
+}
+
+impl Pairs<'_> {
+    /// The sums.
+    #[inline(always)]
+    pub fn sum<A: Arithmetic, const D: usize, const P: bool, const FLUIDS: bool>(&self, a: A) -> Sums<D> {
+        if self.viscosity > 0.0 {
+            self.sum_all::<A, D, P, FLUIDS, true>(a)
+        } else {
+            self.sum_all::<A, D, P, FLUIDS, false>(a)
+        }
+    }
+
+    #[inline(always)]
+    fn sum_all<A: Arithmetic, const D: usize, const P: bool, const FLUIDS: bool, const VISCOUS: bool>(
+        &self,
+        a: A,
+    ) -> Sums<D> {
+        let FlowCloud { records, kernel, periods, .. } = self.cloud;
+        let mut sum = Sums::ZERO;
+        for chunk in self.row.chunks(4) {
+            let rows = as_rows(filled_up(chunk, self.i));
+            let four = Four::<D>::gather::<A, P>(a, records, self.own, rows, periods);
+            let distance = a.sqrt(dot(a, &four.x, &four.x));
+            let weight = a.times(kernel.weights(a, distance), four.volume);
+            sum.add::<A, FLUIDS, VISCOUS>(a, &four, weight, self);
+        }
+        sum
+    }
+
+    /// The same between fluids, with the geometry of the pairs put into `room`, rows counted from `before` on.
+    #[inline(always)]
+    pub fn sum_and_keep<A: Arithmetic, const D: usize, const P: bool>(
+        &self,
+        a: A,
+        Room { pairs, rows, .. }: Room<'_>,
+        before: u32,
+        with_kernel: bool,
+    ) -> Sums<D> {
+        let mut sum = Sums::ZERO;
+        let (fours, rest) = self.row.as_chunks();
+        // Chained iterators would be called in the loop, off the instruction path.
+        for k in 0..fours.len() {
+            self.keep::<A, D, P>(a, fours[k], 4, &mut pairs[k], &mut sum);
+            rows[k] = counted_from(before, fours[k]);
+        }
+        if !rest.is_empty() {
+            let (k, last) = (fours.len(), filled_up(rest, self.i));
+            self.keep::<A, D, P>(a, last, rest.len(), &mut pairs[k], &mut sum);
+            rows[k] = counted_from(before, last);
+        }
+        if with_kernel {
+            for four in pairs {
+                four.kernel = self.cloud.kernel.values(a, four.current.length);
+            }
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn keep<A: Arithmetic, const D: usize, const P: bool>(
+        &self,
+        a: A,
+        rows: [u32; 4],
+        count: usize,
+        kept: &mut FourPairs,
+        sum: &mut Sums<D>,
+    ) {
+        let FlowCloud { records, kernel, periods, .. } = self.cloud;
+        let four = Four::<D>::gather::<A, P>(a, records, self.own, as_rows(rows), periods);
+        let square = dot(a, &four.x, &four.x);
+        let (square, volume) = kernel.within(a, square, FILLS[count], four.volume);
+        let distance = a.sqrt(square);
+        let weight = kernel.weights(a, distance);
+        sum.add::<A, true, true>(a, &four, a.times(weight, volume), self);
+        for axis in 0..D {
+            kept.current.vector[axis] = four.x[axis];
+        }
+        kept.current.length = distance;
+        kept.weight = weight;
+        kept.support = Lanes4::splat(kernel.support);
+        kept.volume_j = volume;
+    }
+}
+
+#[inline(always)]
+fn counted_from(before: u32, [j, k, l, m]: [u32; 4]) -> [u32; 4] {
+    [j - before, k - before, l - before, m - before]
+}

@@ -1,0 +1,218 @@
+//! The pair terms of the bodies of a phase, and what they make.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use super::bound::{Chain, ErasedTerm, bind_all};
+use super::row::PairRow;
+use super::term::{BodyPairTerm, RowRates};
+use super::work;
+use crate::parallel::{BlockSum, Split};
+use crate::plugin::{SetupError, SimBuilder};
+use crate::scene::Dimension;
+use crate::schedule::{Access, Mode, Step, StepError};
+use crate::world::{BodyId, Column, DensityRate, Force, PhaseId};
+
+/// Largest number of pair terms on one body.
+pub(super) const MAX_TERMS: usize = 8;
+/// Share of the critical step that is used where a stiff pair term limits it.
+const STIFFNESS_SAFETY: f64 = 0.65;
+/// Share of the step at which a damping pair term would turn a velocity around.
+const DAMPING_SAFETY: f64 = 0.5;
+
+/// The terms of one body, and the force of each on every particle of it: row by row, one entry a term. The forces are
+/// made anew in every step, so no checkpoint holds them.
+pub(crate) struct BodyTerms {
+    pub id: BodyId,
+    pub terms: Vec<usize>,
+    pub forces: Vec<DVec3>,
+}
+
+/// The terms of all bodies of a phase.
+pub(crate) struct PhaseTerms {
+    terms: Vec<Box<dyn ErasedTerm>>,
+    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+    sums: Vec<Fastest>,
+    /// Account of the first term that changes the density.
+    pub of_density: Option<String>,
+}
+
+impl PhaseTerms {
+    /// Takes the pair terms of the bodies of a phase out of the builder, and adds the booking of their work; none where there are no
+    /// terms. They are to be run in a system that declares what they touch.
+    pub fn take(sim: &mut SimBuilder<'_>, phase: PhaseId) -> Result<Option<Self>, SetupError> {
+        let (own, others): (Vec<BodyPairTerm>, Vec<BodyPairTerm>) = sim
+            .take_extensions::<BodyPairTerm>()
+            .into_iter()
+            .partition(|term| term.bodies.iter().any(|id| sim.body(id).phase == phase));
+        others.into_iter().for_each(|term| sim.extend(term));
+        if own.is_empty() {
+            return Ok(None);
+        }
+        let of_density = own.iter().find(|term| term.term.changes_density()).map(|term| term.account.clone());
+        let ids: Vec<BodyId> =
+            sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id).collect();
+        let mut bodies = Vec::new();
+        for id in ids {
+            let terms: Vec<usize> = (0..own.len()).filter(|&k| own[k].bodies.contains(id)).collect();
+            if terms.len() > MAX_TERMS {
+                let name = &sim.body(id).name;
+                let message = format!("body `{name}` has {} pair terms, more than {MAX_TERMS}", terms.len());
+                return Err(SetupError::parameter("", message, "remove plugins that add pair terms"));
+            }
+            if !terms.is_empty() {
+                bodies.push(BodyTerms { id, terms, forces: Vec::new() });
+            }
+        }
+        let accounts = own.iter().map(|term| term.account.clone()).collect();
+        let terms = own.into_iter().map(|term| term.term).collect();
+        let bodies = Arc::new(Mutex::new(bodies));
+        work::add_work_systems(sim, phase, accounts, Arc::clone(&bodies));
+        Ok(Some(Self { terms, bodies, sums: Vec::new(), of_density }))
+    }
+
+    /// What the terms read, and the density rates that they write.
+    pub fn access(&self, sim: &SimBuilder<'_>, phase: PhaseId) -> Vec<Access> {
+        let rates = sim.columns(phase).get(DensityRate::NAME).is_some();
+        let rates = rates.then_some(Access { column: DensityRate::NAME, mode: Mode::Writes });
+        rates.into_iter().chain(self.terms.iter().flat_map(|term| term.access())).collect()
+    }
+
+    /// Whether a body has terms.
+    pub fn act_on(&self, id: BodyId) -> bool {
+        self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|body| body.id == id)
+    }
+
+    /// The bodies that have terms.
+    pub fn bodies(&self) -> Vec<BodyId> {
+        self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|body| body.id).collect()
+    }
+
+    /// Binds the terms of a body and calls `run` with them, with the rows that they write, and with scratch memory for the largest rates
+    /// of all blocks of these, which it returns. Without terms nothing is called.
+    pub fn on_body(
+        &mut self,
+        step: &Step<'_>,
+        id: BodyId,
+        force: &mut [Force],
+        run: &mut dyn FnMut(&BoundTerms<'_>, TermRows<'_>, &mut Vec<Fastest>) -> Fastest,
+    ) -> Result<Fastest, StepError> {
+        let mut fastest = Fastest::default();
+        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let body = bodies.iter_mut().find(|body| body.id == id);
+        let Some(BodyTerms { terms: indices, forces, .. }) = body else { return Ok(fastest) };
+        let Some(&first) = indices.first() else { return Ok(fastest) };
+        let mut slots = [&*self.terms[first]; MAX_TERMS];
+        slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k]);
+        let terms = &slots[..indices.len()];
+        let (view, rows) = step.world.body_view(id);
+        let mut density = if view.has::<DensityRate>() { Some(view.write::<DensityRate>()?) } else { None };
+        forces.resize(rows.len() * terms.len(), DVec3::ZERO);
+        let with_kernel = terms.iter().any(|term| term.reads_kernel());
+        let plane = step.world.dimension() == Dimension::Two;
+        let sums = &mut self.sums;
+        bind_all(terms, &view, None, &mut |chain| {
+            let written = TermRows {
+                total: &mut *force,
+                by_term: forces,
+                terms: terms.len(),
+                density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
+            };
+            fastest = run(&BoundTerms { chain, with_kernel, plane }, written, sums);
+        })?;
+        Ok(fastest)
+    }
+}
+
+/// The terms of a body, bound to the columns of its phase.
+#[derive(Clone, Copy)]
+pub(crate) struct BoundTerms<'a> {
+    chain: &'a Chain<'a>,
+    /// Whether a term reads kernel values.
+    pub with_kernel: bool,
+    plane: bool,
+}
+
+impl BoundTerms<'_> {
+    /// Runs all terms on the neighbours of particle `i`, its row in the phase, and writes what they make into row `k` of a block.
+    pub fn run(&self, i: usize, row: &PairRow, k: usize, block: &mut TermRows<'_>) -> Fastest {
+        let mut rates = [RowRates::default(); MAX_TERMS];
+        let rates = &mut rates[..block.terms];
+        self.chain.row(i, row, self.plane, rates);
+        if let Some(density) = block.density.get_mut(k) {
+            density.0 = rates.iter().map(|rates| rates.density).sum();
+        }
+        let mut sum = Fastest::default();
+        for (rates, force) in rates.iter().zip(&mut block.by_term[k * block.terms..]) {
+            *force = rates.force;
+            block.total[k].0 += rates.force;
+            sum.damping += rates.damping;
+            sum.stiffness += rates.stiffness;
+        }
+        sum
+    }
+}
+
+/// The largest rates of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fastest {
+    damping: f64,
+    stiffness: f64,
+}
+
+impl Fastest {
+    /// Limits the step.
+    pub fn limit(&self, step: &mut Step<'_>, id: BodyId) {
+        let name = &step.world.body(id).name;
+        if self.damping > 0.0 {
+            let limit = DAMPING_SAFETY / self.damping;
+            step.limits.propose(limit, format_args!("viscosity of `{name}`"));
+        }
+        if self.stiffness > 0.0 {
+            let limit = STIFFNESS_SAFETY * 2.0 / self.stiffness.sqrt();
+            step.limits.propose(limit, format_args!("pair stiffness of `{name}`"));
+        }
+    }
+}
+
+impl BlockSum for Fastest {
+    #[inline]
+    fn add(&mut self, next: &Self) {
+        self.damping = self.damping.max(next.damping);
+        self.stiffness = self.stiffness.max(next.stiffness);
+    }
+}
+
+/// What the terms write for a block: the total force, to which they add, and that of every term.
+pub(crate) struct TermRows<'a> {
+    pub total: &'a mut [Force],
+    by_term: &'a mut [DVec3],
+    terms: usize,
+    /// Density rates; empty where the phase has none.
+    density: &'a mut [DensityRate],
+}
+
+impl<'a> TermRows<'a> {
+    /// Rows of bodies without terms.
+    pub fn without_terms(total: &'a mut [Force]) -> Self {
+        Self { total, by_term: &mut [], terms: 0, density: &mut [] }
+    }
+}
+
+impl Split for TermRows<'_> {
+    fn rows(&self) -> usize {
+        self.total.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let terms = self.terms;
+        let (total, total_rest) = self.total.split_at_mut(at);
+        let (by_term, by_term_rest) = self.by_term.split_at_mut(at * terms);
+        let (density, density_rest) = self.density.split_at_mut(at.min(self.density.len()));
+        (
+            Self { total, by_term, terms, density },
+            Self { total: total_rest, by_term: by_term_rest, terms, density: density_rest },
+        )
+    }
+}
