@@ -4,7 +4,7 @@ mod common;
 
 use common::coupled::coupled;
 use common::thin::thin;
-use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
+use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -31,6 +31,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (3, metals()),
         (2, failing()),
         (2, failing_metals()),
+        (2, crash()),
     ];
     for (dimension, source) in scenes {
         let one = hash_after(&source, 1, 150);

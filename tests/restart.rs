@@ -4,7 +4,7 @@ mod common;
 
 use common::coupled::coupled;
 use common::thin::thin;
-use common::{all_plugins, failing, failing_metals, flow, metals, removal, simulation};
+use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -26,6 +26,7 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (failing(), 300, 19),
         (failing_metals(), 400, 20),
         (failing_metals(), 400, 21),
+        (crash(), 200, 22),
     ];
     for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);

@@ -172,6 +172,26 @@ pub fn failing() -> Source {
     Source::new("failing.ron", text)
 }
 
+/// Half of two blocks, of metal and of rubber, that crash into each other and rub.
+pub fn crash() -> Source {
+    let text = r#"(dimension: Two,
+        materials: {"metal": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Linear(yield_stress: 2e8, modulus: 5e8)),
+                    "rubber": NeoHookean(density: 2000, young: 20e9, poisson: 0.3)},
+        bodies: [
+            (name: "metal", material: "metal", shape: Box(min: (0, 0), max: (0.02, 0.01)), spacing: 1e-3, formulation: TotalLagrangian,
+             plugins: [hourglass_control()]),
+            (name: "rubber", material: "rubber", shape: Box(min: (0, 0.0102), max: (0.0153, 0.0202)), spacing: 1e-3,
+             formulation: TotalLagrangian, velocity: (0, -400), plugins: [hourglass_control()]),
+        ],
+        contacts: [Contact(between: ("metal", "rubber"), law: Penalty(), friction: 0.3, restitution: 0.6)],
+        conditions: [
+            InitialVelocity(on: Select(body: "rubber"), value: ("5000*x", "-400")),
+            Symmetry(plane: X, at: 0.0, side: Above),
+        ],
+        time: (end: 10.0))"#;
+    Source::new("crash.ron", text.to_owned())
+}
+
 /// Strips of metal that flow and break, each by another law and in another way, and touch each other.
 pub fn failing_metals() -> Source {
     let strip = |name: &str, at: f64, control: &str, failure: &str| {

@@ -4,7 +4,7 @@
 //! second: a force on the first goes mirrored, with opposite sign, to the source of the image. Of the two pairs of the whole problem, one is
 //! the mirror image of the other, and one is in the half that is solved.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::formulations::total_lagrangian::MirrorPlane;
 use crate::neighbors::Periodic;
@@ -30,6 +30,12 @@ impl Mirror {
     /// A vector of the image; and a vector at the image, at its source.
     pub fn turn(&self, v: DVec3) -> DVec3 {
         self.signs * v
+    }
+
+    /// A deformation gradient of the image.
+    pub fn map(&self, f: DMat3) -> DMat3 {
+        let signs = DMat3::from_diagonal(self.signs);
+        signs * f * signs
     }
 
     fn and(mut self, plane: &MirrorPlane) -> Self {

@@ -33,7 +33,7 @@ impl ContactPair {
 /// Where two surfaces overlap.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
-    /// Depth of the overlap d, m; positive.
+    /// Depth of the overlap d, m; positive. Between particles that deform it is that in the reference configuration.
     pub overlap: f64,
     /// Radius of a sphere on a plane with the same gap, `1/R = 1/R_1 + 1/R_2`, m.
     pub radius: f64,
@@ -50,6 +50,14 @@ pub struct Spring {
     pub stiffness: f64,
     /// Energy stored, J.
     pub energy: f64,
+}
+
+impl Spring {
+    /// The spring along a way of which `scale` times as much is overlap.
+    pub(super) fn along(self, scale: f64) -> Self {
+        let Self { force, stiffness, energy } = self;
+        Self { force: scale * force, stiffness: scale * scale * stiffness, energy }
+    }
 }
 
 /// An elastic normal force. Damping and friction are added to any law from its tangent stiffness.

@@ -15,12 +15,19 @@ pub(super) struct Memory {
     pub stiffness: f64,
     /// Force of the dashpots on the first side, N.
     pub dashpot: DVec3,
+    /// From the particles of both sides to where the forces act, in the reference configuration, m.
+    pub arms: [DVec3; 2],
 }
 
 impl Memory {
     /// Energy in the tangential spring, J.
     pub fn energy(&self) -> f64 {
         if self.stiffness > 0.0 { 0.5 * self.spring.length_squared() / self.stiffness } else { 0.0 }
+    }
+
+    /// Whether there is nothing but an elastic force.
+    pub fn is_elastic(&self) -> bool {
+        self.spring == DVec3::ZERO && self.dashpot == DVec3::ZERO
     }
 }
 

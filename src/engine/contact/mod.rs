@@ -3,6 +3,7 @@
 mod hertz;
 mod images;
 mod law;
+mod members;
 mod memory;
 mod node_view;
 mod particles;
@@ -11,6 +12,7 @@ mod plan;
 mod response;
 mod restitution;
 mod search;
+mod shape;
 mod sides;
 mod start;
 mod stiffness;

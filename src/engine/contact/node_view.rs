@@ -2,20 +2,14 @@
 
 use glam::DVec3;
 
+use super::members::Members;
+use super::shape::{Nearness, on_surface};
 use crate::rigid::RigidBody;
-use crate::world::{Mobility, Position, Removed, Velocity};
 
 /// The nodes of a body as they are now.
 pub(super) enum NodeView<'a> {
     /// Particles.
-    Particles {
-        position: &'a [Position],
-        velocity: &'a [Velocity],
-        mobility: &'a [Mobility],
-        removed: &'a [Removed],
-        /// Radius of each, m.
-        radius: &'a [f64],
-    },
+    Particles(Members<'a>),
     /// The points of a rigid body.
     Rigid(&'a RigidBody),
 }
@@ -24,7 +18,7 @@ impl NodeView<'_> {
     /// Number of nodes.
     pub fn len(&self) -> usize {
         match self {
-            Self::Particles { position, .. } => position.len(),
+            Self::Particles(members) => members.len(),
             Self::Rigid(body) => body.nodes.points.len(),
         }
     }
@@ -32,7 +26,7 @@ impl NodeView<'_> {
     /// Whether a node takes part: a removed particle does not.
     pub fn is_there(&self, i: usize) -> bool {
         match self {
-            Self::Particles { removed, .. } => removed[i] == Removed::NO,
+            Self::Particles(members) => members.is_there(i),
             Self::Rigid(_) => true,
         }
     }
@@ -40,15 +34,15 @@ impl NodeView<'_> {
     /// Where a node is, m.
     pub fn position(&self, i: usize) -> DVec3 {
         match self {
-            Self::Particles { position, .. } => position[i].0,
+            Self::Particles(members) => members.position(i),
             Self::Rigid(body) => body.place(body.nodes.points[i]),
         }
     }
 
-    /// Radius of a node, m.
+    /// Radius of a node in the reference configuration, m.
     pub fn radius(&self, i: usize) -> f64 {
         match self {
-            Self::Particles { radius, .. } => radius[i],
+            Self::Particles(members) => members.radius(i),
             Self::Rigid(body) => body.nodes.radius,
         }
     }
@@ -56,40 +50,41 @@ impl NodeView<'_> {
     /// Length that a node stands for, m.
     pub fn size(&self, i: usize) -> f64 {
         match self {
-            Self::Particles { radius, .. } => 2.0 * radius[i],
+            Self::Particles(members) => 2.0 * members.radius(i),
             Self::Rigid(body) => body.nodes.spacing,
         }
     }
 
-    /// Least radius of all nodes, m.
-    pub fn least_radius(&self) -> f64 {
-        match self {
-            Self::Particles { radius, .. } => radius.iter().copied().fold(f64::INFINITY, f64::min),
-            Self::Rigid(body) => body.nodes.radius,
-        }
+    /// How near a node is to a surface at a signed distance, m, with that outward normal.
+    pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Nearness {
+        let shape = match self {
+            Self::Particles(members) => members.shape(i),
+            Self::Rigid(body) => (body.nodes.radius, None),
+        };
+        on_surface(distance, normal, shape)
     }
 
-    /// The place at which both bodies are pushed. A particle has no spin: it is pushed where it is, so that angular momentum
-    /// is kept; a rigid body is pushed at the surface.
-    pub fn place(&self, position: DVec3, on_surface: impl FnOnce() -> DVec3) -> DVec3 {
+    /// The place at which both bodies are pushed: where the material touches, `arm` beside the particle in the reference configuration. A sphere
+    /// has no spin: it is pushed where it is, so that angular momentum is kept; a rigid body is pushed at the surface.
+    pub fn place(&self, i: usize, position: DVec3, arm: DVec3, on_surface: impl FnOnce() -> DVec3) -> DVec3 {
         match self {
-            Self::Particles { .. } => position,
+            Self::Particles(members) => position + members.carry(i, arm),
             Self::Rigid(_) => on_surface(),
         }
     }
 
-    /// Velocity of the material of a node at `place`, m/s.
-    pub fn velocity(&self, i: usize, place: DVec3) -> DVec3 {
+    /// Velocity of the material of a node at `place`, which is `arm` beside a particle, m/s.
+    pub fn velocity(&self, i: usize, arm: DVec3, place: DVec3) -> DVec3 {
         match self {
-            Self::Particles { velocity, .. } => velocity[i].0,
+            Self::Particles(members) => members.velocity(i, arm),
             Self::Rigid(body) => body.velocity_at(place),
         }
     }
 
     /// Inverse mass of a node at `place` along a direction, 1/kg.
-    pub fn inverse_mass(&self, i: usize, place: DVec3, direction: DVec3) -> f64 {
+    pub fn inverse_mass(&self, i: usize, arm: DVec3, place: DVec3, direction: DVec3) -> f64 {
         match self {
-            Self::Particles { mobility, .. } => direction.dot(mobility[i].0 * direction),
+            Self::Particles(members) => members.inverse_mass(i, arm, direction),
             Self::Rigid(body) => body.inverse_mass_at(place, direction),
         }
     }

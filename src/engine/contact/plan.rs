@@ -2,7 +2,8 @@
 
 use super::images::{mirrors, periodic};
 use super::law::{ContactPair, NormalForce};
-use super::particles::{ParticleContact, radii};
+use super::members::Particles;
+use super::particles::ParticleContact;
 use super::response::Interaction;
 use super::restitution::damping_ratio;
 use super::sides::{Nodes, Sides};
@@ -91,7 +92,7 @@ fn pairs_of(
             tangential: 2.0 * (1.0 - poisson) / (2.0 - poisson),
         })
     };
-    let particles = |body| Nodes::Particles(radii(body, sim.dimension()));
+    let particles = |body| Nodes::Particles(Particles::of(body, sim.dimension()));
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
         Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
@@ -104,9 +105,8 @@ fn pairs_of(
         (false, false) => {
             let mut pairs = Vec::new();
             for mirror in mirrors(planes, first.id, second.id) {
-                let bodies = (first, second);
-                let pair =
-                    ParticleContact::new(interaction()?, bodies, mirror, periodic(sim), sim.dimension());
+                let bodies = [first, second].map(|body| Particles::of(body, sim.dimension()));
+                let pair = ParticleContact::new(interaction()?, bodies, mirror, periodic(sim));
                 refuse_short_periods(&pair, number, sim)?;
                 pairs.push(Touching::Particles(Box::new(pair)));
             }

@@ -25,7 +25,11 @@ pub(super) struct Meeting {
     pub touch: Touch,
     /// Unit vector from the second side to the first.
     pub normal: DVec3,
-    /// Velocity of the first side relative to the second at mid-step, m/s.
+    /// Overlap per way along the normal.
+    pub scale: f64,
+    /// From the particles of both sides to the point of contact, in the reference configuration, m.
+    pub arms: [DVec3; 2],
+    /// Velocity of the first side relative to the second at that point at mid-step, m/s.
     pub velocity: DVec3,
 }
 
@@ -53,11 +57,11 @@ impl Interaction {
         dt: f64,
         before: &Memory,
     ) -> Response {
-        let Meeting { touch, normal, velocity } = meeting;
-        let spring = self.law.at(touch);
+        let Meeting { touch, normal, velocity, scale, arms } = meeting;
+        let spring = self.law.at(touch).along(*scale);
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
-        let begun = self.share_of_first_step(touch, approach, dt, before);
+        let begun = self.share_of_first_step(touch, scale * approach, dt, before);
         let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force, dt);
         let pressure = (spring.force + pull).max(0.0);
         let (tangential, drag) =
@@ -67,7 +71,7 @@ impl Interaction {
         Response {
             force: pressure * *normal + tangential + drag,
             spring,
-            memory: Memory { spring: tangential, stiffness, dashpot },
+            memory: Memory { spring: tangential, stiffness, dashpot, arms: *arms },
         }
     }
 
@@ -128,15 +132,16 @@ impl Interaction {
 }
 
 impl Losses {
-    /// Adds the losses of a contact over the step to `now`; the two kicks put half of each force into the motion.
-    pub fn add(&mut self, before: &Memory, now: &Memory, velocity: DVec3, dt: f64) {
-        self.add_share(1.0, before, now, velocity, dt);
+    /// Adds what the forces of a contact took at one end of the step, where the first side moves against the second at that velocity, m/s:
+    /// one of the two kicks puts half of each force into the motion.
+    pub fn add_work(&mut self, share: f64, memory: &Memory, velocity: DVec3, dt: f64) {
+        let half = 0.5 * share * dt * velocity;
+        self.damping -= memory.dashpot.dot(half);
+        self.friction -= memory.spring.dot(half);
     }
 
-    /// Adds a share of the losses of a contact.
-    pub fn add_share(&mut self, share: f64, before: &Memory, now: &Memory, velocity: DVec3, dt: f64) {
-        let half = 0.5 * dt * velocity;
-        self.damping -= share * (before.dashpot + now.dashpot).dot(half);
-        self.friction -= share * ((before.spring + now.spring).dot(half) + now.energy() - before.energy());
+    /// Adds that the tangential spring keeps a part of it.
+    pub fn keep(&mut self, share: f64, before: &Memory, now: &Memory) {
+        self.friction -= share * (now.energy() - before.energy());
     }
 }

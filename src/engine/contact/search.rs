@@ -34,6 +34,8 @@ pub(super) struct Search {
     /// How far the two bodies may move together before the list is made again, m; how far they have.
     budget: f64,
     travelled: f64,
+    /// How far particles were stretched at most when the list was made.
+    stretch: f64,
     regions: [Region; 2],
     search: NeighborSearch,
     list: NeighborList,
@@ -49,7 +51,7 @@ struct Region {
 }
 
 impl Region {
-    fn collect(&mut self, crowd: Crowd<'_>, within: Option<&Aabb>) {
+    fn collect(&mut self, crowd: Crowd<'_>, stretch: f64, within: Option<&Aabb>) {
         self.numbers.clear();
         self.position.clear();
         self.reach.clear();
@@ -58,7 +60,7 @@ impl Region {
             if within.is_none_or(|within| x.cmpge(within.min).all() && x.cmple(within.max).all()) {
                 self.numbers.push(k as u32);
                 self.position.push(x);
-                self.reach.push(2.0 * radius);
+                self.reach.push(2.0 * stretch * radius);
             }
         }
     }
@@ -78,6 +80,7 @@ impl Search {
             periodic,
             budget: -1.0,
             travelled: 0.0,
+            stretch: 1.0,
             regions: Default::default(),
             search: NeighborSearch::default(),
             list: NeighborList::default(),
@@ -85,11 +88,18 @@ impl Search {
         }
     }
 
-    /// Takes in how far the two bodies may have moved together, m, and says whether the list has to be made again.
-    pub fn moved(&mut self, distance: f64) -> bool {
+    /// Takes in how far the two bodies may have moved together, m, and how far their particles are stretched at most, and says whether
+    /// the list has to be made again. It is then made for this stretch.
+    pub fn moved(&mut self, distance: f64, stretch: f64) -> bool {
         self.travelled += distance;
+        let grown = (self.largest[0] + self.largest[1]) * (stretch - self.stretch).max(0.0);
+        let used = self.travelled + grown;
         // A distance that is not a number must not keep an old list.
-        self.travelled.is_nan() || self.travelled > self.budget
+        let is_old = used.is_nan() || used > self.budget;
+        if is_old {
+            self.stretch = stretch;
+        }
+        is_old
     }
 
     /// Least period with which each particle sees one image of another, m.
@@ -106,7 +116,7 @@ impl Search {
     pub fn between(&mut self, first: Crowd<'_>, second: Crowd<'_>) -> Result<(), NeighborError> {
         self.pairs.clear();
         self.travelled = 0.0;
-        let reach = self.largest[0] + self.largest[1];
+        let reach = self.stretch * (self.largest[0] + self.largest[1]);
         let boxes = [first, second].map(|crowd| self.around(crowd));
         let gap = (boxes[0].min - boxes[1].max).max(boxes[1].min - boxes[0].max).max(DVec3::ZERO).length();
         self.budget = self.skin.max(gap - reach);
@@ -117,7 +127,7 @@ impl Search {
         for (k, crowd) in [first, second].into_iter().enumerate() {
             let other = boxes[1 - k];
             let within = Aabb { min: other.min - margin, max: other.max + margin };
-            self.regions[k].collect(crowd, Some(&within));
+            self.regions[k].collect(crowd, self.stretch, Some(&within));
         }
         let [targets, sources] = &self.regions;
         if targets.numbers.is_empty() || sources.numbers.is_empty() {
@@ -148,7 +158,7 @@ impl Search {
         self.pairs.clear();
         self.travelled = 0.0;
         self.budget = self.skin;
-        self.regions[0].collect(own, None);
+        self.regions[0].collect(own, self.stretch, None);
         self.search.within(self.regions[0].cloud(), self.skin, &self.periodic, &mut self.list)?;
         for i in 0..own.position.len() as u32 {
             let others = self.list.row(i as usize).iter().filter(|&&j| i < j && apart(i, j));

@@ -2,19 +2,30 @@
 
 use glam::DVec3;
 
+use super::members::{Members, Particles};
 use super::node_view::NodeView;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
-use crate::schedule::StepError;
-use crate::world::{BodyId, Mobility, Position, Removed, Velocity, World};
+use crate::schedule::{Resources, StepError};
+use crate::world::{BodyId, World};
 
 /// Where the nodes are.
 #[derive(Clone)]
 pub(super) enum Nodes {
-    /// Particles with these radii, m.
-    Particles(Vec<f64>),
+    /// Particles.
+    Particles(Particles),
     /// The points of a rigid body.
     Rigid,
+}
+
+impl Nodes {
+    /// The particles, if they are.
+    pub fn particles(&self) -> Option<&Particles> {
+        match self {
+            Self::Particles(particles) => Some(particles),
+            Self::Rigid => None,
+        }
+    }
 }
 
 /// The nodes of one body and the surface of another.
@@ -38,25 +49,15 @@ impl Sides {
     pub fn with<T>(
         &self,
         world: &World,
+        resources: &Resources,
         bodies: &[RigidBody],
         f: impl FnOnce(&NodeView<'_>, &RigidBody) -> T,
     ) -> Result<T, StepError> {
         let tool = find(bodies, self.second)?;
         Ok(match &self.nodes {
             Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
-            Nodes::Particles(radius) => {
-                let (view, rows) = world.body_view(self.first);
-                let (x, v, m) =
-                    (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Mobility>()?);
-                let gone = view.read::<Removed>()?;
-                let view = NodeView::Particles {
-                    position: &x[rows.clone()],
-                    velocity: &v[rows.clone()],
-                    mobility: &m[rows.clone()],
-                    removed: &gone[rows],
-                    radius,
-                };
-                f(&view, tool)
+            Nodes::Particles(particles) => {
+                f(&NodeView::Particles(Members::new(particles, world, resources)?), tool)
             }
         })
     }

@@ -4,12 +4,14 @@
 use glam::DVec3;
 
 use super::law::Touch;
-use super::memory::Memories;
+use super::memory::{Memories, Memory, PairKey};
 use super::node_view::NodeView;
 use super::response::{Interaction, Losses, Meeting};
 use super::sides::{Nodes, Sides};
 use super::stiffness::{self, NodeStiffness};
+use super::system::Pace;
 use super::tally::Tally;
+use crate::formulations::total_lagrangian::Families;
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
@@ -28,6 +30,9 @@ pub(super) struct SurfaceContact {
     candidates: Vec<u32>,
     budget: f64,
     travelled: f64,
+    /// Largest radius of a node, m, and how far nodes were stretched at most when the candidates were found.
+    largest: f64,
+    stretch: f64,
     stiffness: NodeStiffness,
     /// The nodes that touch now.
     forces: Vec<Push>,
@@ -36,53 +41,65 @@ pub(super) struct SurfaceContact {
 /// What a contact does to both sides.
 struct Push {
     node: u32,
+    /// From the node to where it is pushed, in the reference configuration, m.
+    arm: DVec3,
     /// Where the surface is pushed, m.
     place: DVec3,
     /// From there to where the node is pushed: zero, or a period.
     shift: DVec3,
     /// Force on the node, N.
     force: DVec3,
+    /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the normal turns as it moves, N.
+    center: DVec3,
+    turning: DVec3,
 }
 
 /// Stiffness over mass of the contacts of a step, 1/s2.
-#[derive(Default)]
 struct Frequencies {
     /// Of the rigid bodies.
     rigid: f64,
     /// The largest of a particle.
     particle: f64,
+    /// Least way to the centre of a particle that just touches, m.
+    least: f64,
 }
 
 impl SurfaceContact {
     /// Contact of the nodes of a body with the surface of another.
     pub fn new(interaction: Interaction, sides: Sides, gravity: f64) -> Self {
-        let count = if let Nodes::Particles(radius) = &sides.nodes { radius.len() } else { 0 };
+        let (count, largest) = match &sides.nodes {
+            Nodes::Particles(particles) => (particles.radius.len(), particles.largest()),
+            Nodes::Rigid => (0, 0.0),
+        };
         Self {
             interaction,
             sides,
             gravity,
             memories: Memories::default(),
-            candidates: Vec::new(),
+            candidates: Vec::with_capacity(count),
             budget: -1.0,
             travelled: 0.0,
+            largest,
+            stretch: 1.0,
             stiffness: NodeStiffness::new(count),
             forces: Vec::new(),
         }
     }
 
-    /// Adds the forces of all nodes that touch; `speeds` are the largest of each body, m/s.
-    pub fn run(&mut self, step: &mut Step<'_>, speeds: [f64; 2]) -> Result<Tally, StepError> {
+    /// Adds the forces of all nodes that touch.
+    pub fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
         let shared = step.resources.get::<RigidBodies>().clone();
         let mut bodies = shared.lock();
-        let speed = speeds[0] + speeds[1];
+        let speed = paces[0].speed + paces[1].speed;
         self.travelled += speed * step.clock.dt;
+        let used = self.travelled + self.largest * (paces[0].stretch - self.stretch).max(0.0);
         // A distance that is not a number must not keep old candidates.
-        if self.travelled.is_nan() || self.travelled > self.budget {
-            self.travelled = 0.0;
+        if used.is_nan() || used > self.budget {
+            (self.travelled, self.stretch) = (0.0, paces[0].stretch);
             let mut candidates = std::mem::take(&mut self.candidates);
-            self.budget = self
-                .sides
-                .with(step.world, &bodies, |nodes, tool| self.candidates(nodes, tool, &mut candidates))?;
+            self.budget = self.sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+                self.candidates(nodes, tool, &mut candidates)
+            })?;
             self.candidates = candidates;
         }
         let mut memories = std::mem::take(&mut self.memories);
@@ -90,11 +107,12 @@ impl SurfaceContact {
         let mut sums = std::mem::replace(&mut self.stiffness, NodeStiffness::new(0));
         forces.clear();
         let dt = step.clock.dt;
-        let (tally, mut frequencies, least) = self.sides.with(step.world, &bodies, |nodes, tool| {
-            let (tally, frequencies) = self.evaluate(nodes, tool, dt, &mut memories, &mut forces, &mut sums);
-            let least = self.expected(nodes, tool, speed);
-            (tally, frequencies, least)
-        })?;
+        let (tally, mut frequencies, expected) =
+            self.sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+                let (tally, frequencies) =
+                    self.evaluate(nodes, tool, dt, &mut memories, &mut forces, &mut sums);
+                (tally, frequencies, self.expected(nodes, tool, speed))
+            })?;
         (self.memories, self.forces) = (memories, forces);
         for push in &self.forces {
             if matches!(self.sides.nodes, Nodes::Particles(_)) {
@@ -107,16 +125,19 @@ impl SurfaceContact {
         let pair = (self.sides.first, self.sides.second);
         let squared = frequencies.rigid + frequencies.particle;
         match &self.sides.nodes {
-            Nodes::Particles(_) => stiffness::propose(step, pair, squared, speed, 2.0 * least),
-            Nodes::Rigid => stiffness::propose_rigid(step, pair, squared.max(least)),
+            Nodes::Particles(particles) => {
+                let least = frequencies.least.min(particles.least());
+                stiffness::propose(step, pair, squared, speed, 2.0 * least);
+            }
+            Nodes::Rigid => stiffness::propose_rigid(step, pair, squared.max(expected)),
         }
         Ok(tally)
     }
 
-    /// For particles their least radius, m; for a rigid body the squared frequency of the impact that it may make at
-    /// `speed`, 1/s2: a spring that gets stiffer with depth must not come as a surprise.
+    /// The squared frequency of the impact that a rigid body may make at `speed`, 1/s2: a spring that gets stiffer with depth must
+    /// not come as a surprise.
     fn expected(&self, nodes: &NodeView<'_>, tool: &RigidBody, speed: f64) -> f64 {
-        let NodeView::Rigid(body) = nodes else { return nodes.least_radius() };
+        let NodeView::Rigid(body) = nodes else { return 0.0 };
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
         let inverse_mass = inverse(body) + inverse(tool);
         if inverse_mass == 0.0 {
@@ -141,52 +162,74 @@ impl SurfaceContact {
     ) -> (Tally, Frequencies) {
         let mut tally = Tally::default();
         let mut losses = Losses::default();
-        let mut frequencies = Frequencies::default();
-        let slip = |node: u32, place: DVec3, shift: DVec3| {
-            nodes.velocity(node as usize, place + shift) - tool.velocity_at(place)
+        let mut frequencies = Frequencies { rigid: 0.0, particle: 0.0, least: f64::INFINITY };
+        let slip = |node: u32, arm: DVec3, place: DVec3, shift: DVec3| {
+            nodes.velocity(node as usize, arm, place + shift) - tool.velocity_at(place)
         };
-        let ended = |node: u32| {
-            let own_place = nodes.position(node as usize);
-            let place = self.sides.near(own_place, tool);
-            slip(node, place, own_place - place)
+        // The forces of the last step on the motion of this one, where they act: at the node and, for a particle, `arm` beside it.
+        let work_before = |losses: &mut Losses, node: u32, memory: &Memory| {
+            if !memory.is_elastic() {
+                let (i, arm) = (node as usize, memory.arms[0]);
+                let own_place = nodes.position(i);
+                let x = self.sides.near(own_place, tool);
+                let surface = || tool.place(tool.surface.closest(tool.reference(x)).point);
+                let velocity = slip(node, arm, nodes.place(i, x, arm, surface), own_place - x);
+                losses.add_work(1.0, memory, velocity, dt);
+            }
+        };
+        let end = |losses: &mut Losses, (node, _): PairKey, memory: &Memory| {
+            work_before(losses, node, memory);
+            losses.keep(1.0, memory, &Memory::default());
         };
         for &node in &self.candidates {
             let i = node as usize;
             let own_place = nodes.position(i);
             let x = self.sides.near(own_place, tool);
             let nearest = tool.surface.closest(tool.reference(x));
-            let overlap = nodes.radius(i) - nearest.signed_distance;
-            if overlap <= 0.0 || !nodes.is_there(i) {
+            let normal = tool.state.rotation * nearest.normal;
+            let near = nodes.nearness(i, nearest.signed_distance, normal);
+            frequencies.least = frequencies.least.min(nodes.radius(i) / near.scale);
+            if near.overlap <= 0.0 || !nodes.is_there(i) {
                 continue;
             }
             while let Some((old, memory)) = memories.ended_before(Some((node, 0))) {
-                losses.add(&memory, &Default::default(), ended(old.0), dt);
+                end(&mut losses, old, &memory);
             }
             let before = memories.of((node, 0));
-            let place = nodes.place(x, || tool.place(nearest.point));
+            work_before(&mut losses, node, &before);
+            let arm = near.arms[0];
+            let place = nodes.place(i, x, arm, || tool.place(nearest.point));
             // Where the body of the node has it, a period away from the image that touches.
             let shift = own_place - x;
             let meeting = Meeting {
-                touch: touch_of(nodes, i, tool, overlap),
-                normal: tool.state.rotation * nearest.normal,
-                velocity: slip(node, place, shift),
+                touch: touch_of(nodes, i, tool, near.overlap),
+                normal,
+                scale: near.scale,
+                arms: near.arms,
+                velocity: slip(node, arm, place, shift),
             };
-            let own = |n: DVec3| nodes.inverse_mass(i, place + shift, n);
+            let own = |n: DVec3| nodes.inverse_mass(i, arm, place + shift, n);
             let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
             let response = self.interaction.respond(&meeting, inverse_mass, dt, &before);
-            losses.add(&before, &response.memory, meeting.velocity, dt);
+            losses.add_work(1.0, &response.memory, meeting.velocity, dt);
+            losses.keep(1.0, &before, &response.memory);
             tally.stored += response.spring.energy + response.memory.energy();
             let stiffness = response.spring.stiffness;
             frequencies.rigid += stiffness * tool.inverse_mass_at(place, meeting.normal);
             match nodes {
-                NodeView::Particles { .. } => sums.add(i, stiffness * own(meeting.normal)),
+                NodeView::Particles(_) => sums.add(i, stiffness * own(meeting.normal)),
                 NodeView::Rigid(_) => frequencies.rigid += stiffness * own(meeting.normal),
             }
             memories.keep((node, 0), response.memory);
-            forces.push(Push { node, place, shift, force: response.force });
+            let turning = if arm == DVec3::ZERO {
+                DVec3::ZERO
+            } else {
+                -response.spring.force * turn_of_normal(tool, x, normal, x - place)
+            };
+            forces.push(Push { node, arm, place, shift, force: response.force, center: x, turning });
         }
         while let Some((old, memory)) = memories.ended_before(None) {
-            losses.add(&memory, &Default::default(), ended(old.0), dt);
+            end(&mut losses, old, &memory);
         }
         memories.turn();
         tally.losses = losses;
@@ -198,14 +241,18 @@ impl SurfaceContact {
         if let Nodes::Particles(_) = self.sides.nodes {
             let (view, rows) = step.world.body_view(self.sides.first);
             let mut column = view.write::<Force>()?;
+            let families = Families::of(step.resources);
             for push in &self.forces {
-                column[rows.start + push.node as usize].0 += push.force;
+                let row = rows.start + push.node as usize;
+                families.push(&mut column, row, push.arm, push.force);
+                column[row].0 += push.turning;
             }
         }
         for body in bodies.iter_mut() {
-            for Push { place, shift, force, .. } in &self.forces {
+            for Push { place, center, shift, force, turning, .. } in &self.forces {
                 if body.id == self.sides.second {
                     body.push(*place, -*force);
+                    body.push(*center, -*turning);
                 } else if body.id == self.sides.first {
                     body.push(*place + *shift, *force);
                 }
@@ -221,7 +268,7 @@ impl SurfaceContact {
         let mut budget = f64::INFINITY;
         for i in 0..nodes.len() {
             let x = tool.reference(self.sides.near(nodes.position(i), tool));
-            let (reach, skin) = (nodes.radius(i), SKIN * nodes.size(i));
+            let (reach, skin) = (self.stretch * nodes.radius(i), SKIN * nodes.size(i));
             let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
             if gap < skin {
                 budget = budget.min(skin);
@@ -234,6 +281,16 @@ impl SurfaceContact {
         }
         budget
     }
+}
+
+/// How the normal of a surface turns as a particle moves along the part of `p` that is across it: on curved surfaces and beside edges the overlap
+/// depends on that, because the reach of the particle does. Half-way inside a body normals jump, and there is no such thing.
+fn turn_of_normal(tool: &RigidBody, x: DVec3, normal: DVec3, p: DVec3) -> DVec3 {
+    const STEP: f64 = 1e-4;
+    let across = p - p.dot(normal) * normal;
+    let at = |s: f64| tool.surface.closest(tool.reference(x + s * across)).normal;
+    let change = at(STEP) - at(-STEP);
+    if change.length_squared() < 0.01 { tool.state.rotation * change / (2.0 * STEP) } else { DVec3::ZERO }
 }
 
 fn touch_of(nodes: &NodeView<'_>, i: usize, tool: &RigidBody, overlap: f64) -> Touch {

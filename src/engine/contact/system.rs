@@ -1,5 +1,6 @@
 //! The system of all contacts of a scene.
 
+use super::members::Particles;
 use super::memory::{Memories, Memory, PairKey};
 use super::particles::ParticleContact;
 use super::start;
@@ -9,7 +10,9 @@ use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, BodySet, Force, Mobility, Position, ReferencePosition, Removed, Velocity};
+use crate::world::{
+    BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed, Velocity,
+};
 
 /// Label of the system that makes the forces of contact.
 pub const CONTACT: &str = "contact";
@@ -24,16 +27,25 @@ impl Touching {
     /// The two bodies.
     pub fn bodies(&self) -> [BodyId; 2] {
         match self {
-            Self::Particles(contact) => [contact.first, contact.second],
+            Self::Particles(contact) => [contact.first.body, contact.second.body],
             Self::Surface(contact) => [contact.sides.first, contact.sides.second],
         }
     }
 
-    fn run(&mut self, step: &mut Step<'_>, speeds: [f64; 2]) -> Result<Tally, StepError> {
+    fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
         match self {
-            Self::Particles(contact) => contact.run(step, speeds),
-            Self::Surface(contact) => contact.run(step, speeds),
+            Self::Particles(contact) => contact.run(step, paces),
+            Self::Surface(contact) => contact.run(step, paces),
         }
+    }
+
+    /// The particles of both.
+    fn particles(&self) -> impl Iterator<Item = &Particles> {
+        let (first, second) = match self {
+            Self::Particles(contact) => (Some(&contact.first), Some(&contact.second)),
+            Self::Surface(contact) => (contact.sides.nodes.particles(), None),
+        };
+        first.into_iter().chain(second)
     }
 
     fn memories(&self) -> &Memories {
@@ -51,17 +63,29 @@ impl Touching {
     }
 }
 
+/// How fast a body is at most, m/s, and a bound of how far it is stretched.
+#[derive(Clone, Copy)]
+pub(super) struct Pace {
+    pub speed: f64,
+    pub stretch: f64,
+}
+
 /// Adds the system of the pairs; `numbers` are those of their contacts in the scene.
 pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Vec<usize>, bodies: &BodySet) {
     start::refuse_bodies_within_others(sim, &touching, numbers);
     let phases = sim.phases_of(bodies);
     let contacts = Contacts {
-        bodies: bodies.iter().map(|body| (body, 0.0)).collect(),
+        bodies: bodies.iter().map(|body| (body, Pace { speed: 0.0, stretch: 1.0 })).collect(),
         tallies: Vec::with_capacity(touching.len()),
         touching,
     };
+    let deforms = contacts.touching.iter().flat_map(Touching::particles).any(|particles| particles.deform);
+    let mut system = System::new(Stage::External, CONTACT, contacts);
+    if deforms {
+        system = system.reads::<DeformationGradient>().touches("pair_stress", Mode::Reads);
+    }
     sim.add_system(
-        System::new(Stage::External, CONTACT, contacts)
+        system
             .on_phases(phases)
             .reads::<Position>()
             .reads::<ReferencePosition>()
@@ -74,8 +98,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
 }
 
 struct Contacts {
-    /// Bodies with their largest speed, m/s.
-    bodies: Vec<(BodyId, f64)>,
+    bodies: Vec<(BodyId, Pace)>,
     touching: Vec<Touching>,
     tallies: Vec<((BodyId, BodyId), Tally)>,
 }
@@ -109,15 +132,20 @@ fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {
 
 impl Run for Contacts {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        for (body, speed) in &mut self.bodies {
-            *speed = largest_speed(step, *body)?;
+        for (body, pace) in &mut self.bodies {
+            pace.speed = largest_speed(step, *body)?;
+            let of_body = |particles: &&Particles| particles.body == *body;
+            let particles = self.touching.iter().flat_map(Touching::particles).find(of_body);
+            pace.stretch = particles.map_or(Ok(1.0), |particles| particles.stretch(step.world))?;
         }
-        let speed_of =
-            |body: BodyId| self.bodies.iter().find(|(id, _)| *id == body).map_or(0.0, |entry| entry.1);
+        let pace_of = |body: BodyId| {
+            let known = self.bodies.iter().find(|(id, _)| *id == body);
+            known.map_or(Pace { speed: 0.0, stretch: 1.0 }, |entry| entry.1)
+        };
         self.tallies.clear();
         for pair in &mut self.touching {
             let [first, second] = pair.bodies();
-            let tally = pair.run(step, [speed_of(first), speed_of(second)])?;
+            let tally = pair.run(step, [pace_of(first), pace_of(second)])?;
             self.tallies.push(((first, second), tally));
         }
         tally::book(step, &self.tallies);

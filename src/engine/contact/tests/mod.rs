@@ -1,5 +1,6 @@
 //! Contact in small scenes, against closed forms and invariants.
 
+mod deformed;
 mod images;
 mod laws;
 mod long;
@@ -26,6 +27,18 @@ fn momentum(sim: &Simulation) -> DVec3 {
         let (view, rows) = sim.world().body_view(BodyId(k));
         let (m, v) = (view.read::<Mass>().unwrap(), view.read::<Velocity>().unwrap());
         total += rows.map(|row| m[row].0 * v[row].0).sum::<DVec3>();
+    }
+    total
+}
+
+/// Angular momentum of all bodies about the origin, kg m2/s.
+fn angular_momentum(sim: &Simulation) -> DVec3 {
+    let mut total = DVec3::ZERO;
+    for k in 0..sim.world().bodies().len() {
+        let (view, rows) = sim.world().body_view(BodyId(k));
+        let (m, v) = (view.read::<Mass>().unwrap(), view.read::<Velocity>().unwrap());
+        let x = view.read::<Position>().unwrap();
+        total += rows.map(|row| m[row].0 * x[row].0.cross(v[row].0)).sum::<DVec3>();
     }
     total
 }

@@ -8,6 +8,7 @@ mod bond_terms;
 mod bonds;
 mod constitutive;
 mod deformation;
+mod families;
 mod fields;
 mod formulation;
 mod frame;
@@ -26,6 +27,7 @@ mod support;
 
 pub use bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
+pub(crate) use families::Families;
 pub use formulation::{BodyBondTerm, INTERNAL_FORCE, TotalLagrangian};
 pub use images::Images;
 pub(crate) use images::MirrorPlane;

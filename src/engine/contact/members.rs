@@ -1,0 +1,131 @@
+//! The particles of a body in contact, as they are now.
+
+use glam::{DMat3, DVec3};
+use hecs::ArchetypeColumn;
+
+use super::shape::{Shape, largest_stretch};
+use crate::formulations::total_lagrangian::{Families, TotalLagrangian};
+use crate::plugin::{BodyPlan, Formulation};
+use crate::scene::Dimension;
+use crate::schedule::Resources;
+use crate::world::{
+    BodyId, Column, ColumnSet, Damage, DeformationGradient, MissingColumn, Mobility, Position, Removed,
+    Velocity, World,
+};
+
+/// What the particles of a body bring into contact.
+#[derive(Clone)]
+pub(super) struct Particles {
+    pub body: BodyId,
+    /// Radius of every particle in the reference configuration, m: half the side of the square or cube of its volume.
+    pub radius: Vec<f64>,
+    /// Whether their shapes follow their deformation. In a body that may fail they stay spheres: the deformation gradient
+    /// of what has failed is that of a crack.
+    pub deform: bool,
+}
+
+impl Particles {
+    /// Those of a body.
+    pub fn of(body: &BodyPlan, dimension: Dimension) -> Self {
+        let root = |volume: f64| if dimension == Dimension::Two { volume.sqrt() } else { volume.cbrt() };
+        let radius = body.sites.iter().map(|site| 0.5 * root(site.volume)).collect();
+        let mut state = ColumnSet::default();
+        if let Ok(law) = body.solid_law() {
+            law.state(&mut state);
+        }
+        let deform = body.formulation == TotalLagrangian::NAME && state.get(Damage::NAME).is_none();
+        Self { body: body.id, radius, deform }
+    }
+
+    /// The largest radius, m.
+    pub fn largest(&self) -> f64 {
+        self.radius.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The least radius, m.
+    pub fn least(&self) -> f64 {
+        self.radius.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// A bound of how far any of them is stretched: in tenths, so that lists are seldom made for another one.
+    pub fn stretch(&self, world: &World) -> Result<f64, MissingColumn> {
+        if !self.deform {
+            return Ok(1.0);
+        }
+        let (view, rows) = world.body_view(self.body);
+        Ok(0.1 + 0.1 * (10.0 * largest_stretch(&view.read::<DeformationGradient>()?[rows])).floor())
+    }
+}
+
+/// The particles of a body in this step.
+pub(super) struct Members<'a> {
+    pub first_row: usize,
+    particles: &'a Particles,
+    position: ArchetypeColumn<'a, Position>,
+    velocity: ArchetypeColumn<'a, Velocity>,
+    mobility: ArchetypeColumn<'a, Mobility>,
+    removed: ArchetypeColumn<'a, Removed>,
+    gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
+    families: Families<'a>,
+}
+
+impl<'a> Members<'a> {
+    /// Those of a body.
+    pub fn new(
+        particles: &'a Particles,
+        world: &'a World,
+        resources: &'a Resources,
+    ) -> Result<Self, MissingColumn> {
+        let (view, rows) = world.body_view(particles.body);
+        Ok(Self {
+            first_row: rows.start,
+            particles,
+            position: view.read()?,
+            velocity: view.read()?,
+            mobility: view.read()?,
+            removed: view.read()?,
+            gradient: if particles.deform { Some(view.read()?) } else { None },
+            families: Families::of(resources),
+        })
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.particles.radius.len()
+    }
+
+    /// Whether a particle takes part: a removed one does not.
+    pub fn is_there(&self, i: usize) -> bool {
+        self.removed[self.first_row + i] == Removed::NO
+    }
+
+    /// Where a particle is, m.
+    pub fn position(&self, i: usize) -> DVec3 {
+        self.position[self.first_row + i].0
+    }
+
+    /// Radius of a particle in the reference configuration, m.
+    pub fn radius(&self, i: usize) -> f64 {
+        self.particles.radius[i]
+    }
+
+    /// What has become of a particle.
+    pub fn shape(&self, i: usize) -> Shape {
+        (self.radius(i), self.gradient.as_ref().map(|f| f[self.first_row + i].0))
+    }
+
+    /// Where the point `arm` beside a particle in the reference configuration is now, from the particle, m.
+    pub fn carry(&self, i: usize, arm: DVec3) -> DVec3 {
+        self.gradient.as_ref().map_or(DMat3::IDENTITY, |f| f[self.first_row + i].0) * arm
+    }
+
+    /// Velocity of the material at the point `arm` beside a particle, m/s.
+    pub fn velocity(&self, i: usize, arm: DVec3) -> DVec3 {
+        self.families.velocity(&self.velocity, self.first_row + i, arm)
+    }
+
+    /// Inverse mass of that point along a direction, 1/kg.
+    pub fn inverse_mass(&self, i: usize, arm: DVec3, direction: DVec3) -> f64 {
+        self.families.inverse_mass(&self.mobility, self.first_row + i, arm, direction)
+    }
+}

@@ -1,0 +1,80 @@
+//! The shapes of particles in contact: ellipsoids, what the deformation gradients have made of spheres of half a spacing.
+//!
+//! Overlaps are measured in the reference configuration, d = r (1 - s), where s is how far the other side is away over how far it would be where
+//! both just touch. So contact is at the surface of the body however flat its particles are pressed, a particle that turns keeps its shape, and
+//! the spring of a particle gets stiffer as it gets thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the
+//! point of contact `x_i + F_i A_i` and not at the particle (see [`Families`](crate::formulations::total_lagrangian::Families)).
+
+use glam::{DMat3, DVec3};
+
+use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::world::DeformationGradient;
+
+/// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a sphere.
+pub(super) type Shape = (f64, Option<DMat3>);
+
+/// Where two sides are near each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearness {
+    /// Overlap d, m; negative where there is none.
+    pub overlap: f64,
+    /// Unit vector from the second side to the first.
+    pub normal: DVec3,
+    /// Overlap per way along the normal.
+    pub scale: f64,
+    /// From the particles to the point of contact, in the reference configuration, m: A_i.
+    pub arms: [DVec3; 2],
+}
+
+/// The ellipsoids of two particles; `x_ij` leads from the first to the second. The sum of both is taken for the ellipsoid of
+/// `Q = (r_i + r_j) (r_i F_i F_i^T + r_j F_j F_j^T)`, which is exact where both have one deformation gradient, and s^2 = x . Q^-1 x. The point of
+/// contact is the same seen from both: F_i A_i - F_j A_j = Q Q^-1 x = x.
+pub(super) fn of_pair(x_ij: DVec3, first: Shape, second: Shape) -> Nearness {
+    let reach = first.0 + second.0;
+    let square = |(radius, f): Shape| f.map_or(DMat3::IDENTITY, |f| f * f.transpose()) * (reach * radius);
+    let y = (square(first) + square(second)).inverse() * x_ij;
+    let (s, length) = (x_ij.dot(y).sqrt(), y.length());
+    let arm = |(radius, f): Shape| f.map_or(DVec3::ZERO, |f| f.transpose() * y * (reach * radius));
+    Nearness {
+        overlap: reach * (1.0 - s),
+        normal: -y / length,
+        scale: reach * length / s,
+        arms: [arm(first), -arm(second)],
+    }
+}
+
+/// The ellipsoid of a particle and a surface at a signed distance along its outward normal: s = distance / (r |F^T n|). The point of contact is
+/// on the surface.
+pub(super) fn on_surface(distance: f64, normal: DVec3, (radius, f): Shape) -> Nearness {
+    let along = f.map_or(normal, |f| f.transpose() * normal);
+    let stretch = along.length();
+    let arm = if f.is_some() { -along * (distance / (stretch * stretch)) } else { DVec3::ZERO };
+    Nearness { overlap: radius - distance / stretch, normal, scale: 1.0 / stretch, arms: [arm, DVec3::ZERO] }
+}
+
+#[derive(Clone, Copy, Default)]
+struct Largest(f64);
+
+impl BlockSum for Largest {
+    fn add(&mut self, next: &Self) {
+        if next.0.is_nan() || next.0 > self.0 {
+            self.0 = next.0;
+        }
+    }
+}
+
+/// A bound of the stretches of particles: the root of the largest sum over a row of F F^T, exact without shear.
+pub(super) fn largest_stretch(gradient: &[DeformationGradient]) -> f64 {
+    let squared = sum_over_blocks(gradient, &|_, rows: &[DeformationGradient]| {
+        rows.iter().fold(Largest::default(), |mut largest, row| {
+            let f = row.0.transpose();
+            let (xy, xz, yz) = (f.x_axis.dot(f.y_axis), f.x_axis.dot(f.z_axis), f.y_axis.dot(f.z_axis));
+            let diagonal =
+                DVec3::new(f.x_axis.length_squared(), f.y_axis.length_squared(), f.z_axis.length_squared());
+            let (xy, xz, yz) = (xy.abs(), xz.abs(), yz.abs());
+            largest.add(&Largest((diagonal + DVec3::new(xy + xz, xy + yz, xz + yz)).max_element()));
+            largest
+        })
+    });
+    squared.0.sqrt()
+}
