@@ -16,7 +16,8 @@ pub struct Probe {
     #[serde(default)]
     pub on: Option<Select>,
     /// The point in space at which it measures \[m\]. Either this or `on`. A field there is interpolated from the bodies that have
-    /// it, walls left out: their particles stand for the fluid beside them.
+    /// it, walls left out: their particles stand for the fluid beside them. Of fluids, solids and rigid bodies only those count to which the
+    /// particle nearest to the point belongs.
     #[serde(default)]
     pub at: Option<Vec3>,
     /// What is measured.

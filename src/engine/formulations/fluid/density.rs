@@ -6,6 +6,14 @@ use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
 
+crate::column! {
+    /// What the density of a fluid has yet to follow of a displacement that is no motion: by the next step it does.
+    pub struct DensityShift(f64) = "density_shift", "rho_s", "kg/m^3";
+}
+
+/// Account of the energy that displacements take out of fluids, by their weight and by the density that follows.
+pub const SHIFTING_ENERGY: &str = "particle_shifting";
+
 /// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
 pub(super) struct Continuity {
     /// Account of the energy that pair terms take out by changing the density; none where no term does.
@@ -18,6 +26,8 @@ pub(super) struct Continuity {
 pub(super) struct Change {
     /// Energy of compression that pair terms take out, J.
     dissipated: f64,
+    /// Energy of compression that displacements take out, J.
+    shifted: f64,
     /// Energy of compression that leaves with removed particles, J.
     removed: f64,
     /// First row, counted from one, whose density is not above zero.
@@ -27,6 +37,7 @@ pub(super) struct Change {
 impl BlockSum for Change {
     fn add(&mut self, next: &Self) {
         self.dissipated += next.dissipated;
+        self.shifted += next.shifted;
         self.removed += next.removed;
         if self.broken == 0 {
             self.broken = next.broken;
@@ -49,6 +60,8 @@ impl Run for Continuity {
             let (rate, mass) = (view.read::<DensityRate>()?, view.read::<Mass>()?);
             let removed = view.read::<Removed>()?;
             let rows = group.rows.clone();
+            let shift = if view.has::<DensityShift>() { Some(view.read::<DensityShift>()?) } else { None };
+            let shift = shift.as_ref().map(|shift| &shift[rows.clone()]);
             let slices = (
                 &mut density[rows.clone()],
                 &cloud.compression[group.cloud.clone()],
@@ -57,7 +70,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                advance(state, dt, by_terms, first, rows)
+                advance(state, dt, (by_terms, shift), first, rows)
             });
             if change.broken > 0 {
                 return Err(step.unstable("density is not above zero", group.body, change.broken - 1));
@@ -65,6 +78,10 @@ impl Run for Continuity {
             if change.removed != 0.0 {
                 let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.removed);
+            }
+            if shift.is_some() {
+                let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.shifted);
             }
             if let Some(name) = &self.account {
                 let account = step.ledger.account(name, AccountKind::Dissipated);
@@ -80,7 +97,7 @@ type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'
 fn advance(
     state: &FluidState,
     dt: f64,
-    by_terms: bool,
+    (by_terms, shift): (bool, Option<&[DensityShift]>),
     first: usize,
     (density, compression, rate, mass, removed): Rows<'_>,
 ) -> Change {
@@ -92,17 +109,23 @@ fn advance(
             rho.0 = state.density;
             continue;
         }
-        // Half of what pair terms do comes before the flow and half after it: the flow then compresses at the mean of the pressures of the two
-        // kicks, and the books close to second order in the step.
+        // Half of what pair terms and displacements do comes before the flow and half after it: the flow then compresses at the mean of the
+        // pressures of the two kicks, and the books close to second order in the step.
         let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
+        let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
         let half = -0.5 * dt * compression[k];
-        let before = rho.0 + by_terms;
+        let before = rho.0 + by_terms + shift;
         let after = before * (1.0 + half) / (1.0 - half);
-        if by_terms != 0.0 {
-            change.dissipated +=
-                mass[k].0 * (energy(rho.0) - energy(before) + energy(after) - energy(after + by_terms));
+        if shift != 0.0 {
+            change.shifted +=
+                mass[k].0 * (energy(before - shift) - energy(before) + energy(after) - energy(after + shift));
         }
-        rho.0 = after + by_terms;
+        if by_terms != 0.0 {
+            change.dissipated += mass[k].0
+                * (energy(rho.0) - energy(before - shift) + energy(after + shift)
+                    - energy(after + shift + by_terms));
+        }
+        rho.0 = after + shift + by_terms;
         if change.broken == 0 && !(rho.0 > 0.0 && rho.0.is_finite()) {
             change.broken = first + k + 1;
         }

@@ -44,6 +44,7 @@ mod wall_state;
 
 pub use assemble::add_systems;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
+pub use density::{DensityShift, SHIFTING_ENERGY};
 pub use displace::displace;
 pub use force::FLUID_FORCE;
 pub use formulation::Fluid;

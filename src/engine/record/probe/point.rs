@@ -11,12 +11,13 @@ use rayon::prelude::*;
 use crate::correction::MomentMatrix;
 use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
-use crate::world::{BodyId, MissingColumn, Position, Removed, World};
+use crate::world::{BodyId, MissingColumn, PhaseId, Position, Removed, World};
 
 /// Reach of the average over the spacing of a body: less would leave a single particle at a corner.
 const REACH: f64 = 2.0;
 
-/// A field interpolated at a point of space, from the bodies that have it.
+/// A field interpolated at a point of space, from the bodies that have it and are of the phase of the nearest particle: a solid and the fluid
+/// beside it have their own pressure and velocity, and no mean of the two is that of either.
 pub struct PointGauge {
     pub(super) at: DVec3,
     pub(super) field: ChosenField,
@@ -24,6 +25,7 @@ pub struct PointGauge {
 
 /// A particle near the point.
 struct Near {
+    phase: PhaseId,
     weight: f64,
     offset: DVec3,
     values: Vec<f64>,
@@ -49,7 +51,7 @@ impl PointGauge {
         Ok((0..self.field.width()).map(component).collect())
     }
 
-    /// Particles within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.
+    /// Particles of one phase within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.
     fn near(&self, world: &World, resources: &Resources) -> Result<Vec<Near>, MissingColumn> {
         let mut near = Vec::new();
         for (k, body) in world.bodies().iter().enumerate().filter(|(k, _)| self.field.is_in(BodyId(*k))) {
@@ -69,8 +71,13 @@ impl PointGauge {
             for (row, offset) in found {
                 let weight = volume * (1.0 - offset.length() / reach).powi(2);
                 let values = self.field.read(world, resources, BodyId(k), row..row + 1)?;
-                near.push(Near { weight, offset, values });
+                near.push(Near { phase: body.phase, weight, offset, values });
             }
+        }
+        let distance = |particle: &Near| particle.offset.length_squared();
+        let nearest = near.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        if let Some(phase) = nearest.map(|particle| particle.phase) {
+            near.retain(|particle| particle.phase == phase);
         }
         Ok(near)
     }

@@ -6,7 +6,7 @@ use crate::scene::{Source, parse};
 fn text(bodies: &str, velocity: &str, gravity: &str, probes: &str) -> String {
     format!(
         r#"(dimension: Two, gravity: {gravity}, domain: (min: (-1, -1), max: (3, 3)),
-            materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: 1.0)}},
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: 1.0), "rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
             bodies: [{bodies}],
             conditions: [InitialVelocity(on: Select(body: "water"), value: ({velocity}))],
             probes: [{probes}], time: (end: 0.001, step: Fixed(0.001)))"#
@@ -126,4 +126,16 @@ fn probes_of_flows_that_make_no_sense_are_refused() {
     );
     assert!(still(&at("Flux(normal: (1, 0))", "on: Select()")).contains("has a place"));
     assert!(still(&at("FluidForce", "at: (0, 0)")).contains("no force at a point"));
+}
+
+/// Fluid and solid meet at x = 1: a point on either side shows its own velocity, though its reach goes across.
+#[test]
+fn a_field_at_a_point_is_that_of_one_phase() {
+    let block = r#"(name: "block", material: "rubber", shape: Box(min: (1, 0), max: (1.3, 0.5)), spacing: 0.025, formulation: TotalLagrangian)"#;
+    let speed = |place: &str| {
+        let probe = at(r#"Field("velocity.x")"#, place);
+        first(&text(&format!("{WATER}, {block}"), r#""2", "0""#, "(0, 0)", &probe))[0].1
+    };
+    let (fluid, solid) = (speed("at: (0.98, 0.25)"), speed("at: (1.02, 0.25)"));
+    assert!((fluid - 2.0).abs() < 1e-9 && solid.abs() < 1e-9, "{fluid} {solid}");
 }
