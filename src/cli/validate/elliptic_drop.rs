@@ -13,8 +13,8 @@ use super::template::Template;
 pub(super) const CASE: Case = Case {
     id: "F3",
     title: "elliptic drop",
-    resolutions: &[20, 40, 80],
-    ci_resolution: 20,
+    resolutions: &[40, 80, 160],
+    ci_resolution: 40,
     run: elliptic_drop,
 };
 
