@@ -68,7 +68,7 @@ impl Plugin for ParticleShifting {
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_phases(phases)
-                .after("local_damping")
+                .after_any("local_damping")
                 .reads::<Velocity>()
                 .reads::<Mass>()
                 .reads::<Density>()

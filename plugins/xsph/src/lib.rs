@@ -53,7 +53,7 @@ impl Plugin for Xsph {
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_phases(phases)
-                .after("local_damping")
+                .after_any("local_damping")
                 .reads::<Velocity>()
                 .reads::<Mass>()
                 .adds::<Position>(),

@@ -176,10 +176,11 @@ fn stated_order(stage: Stage, systems: &[System]) -> Result<Vec<Vec<bool>>, Sche
     let n = systems.len();
     let mut precedes = vec![vec![false; n]; n];
     for (k, system) in systems.iter().enumerate() {
-        for (labels, side) in [(&system.before, "before"), (&system.after, "after")] {
+        let stated = [(&system.before, "before"), (&system.after, "after"), (&system.after_any, "")];
+        for (labels, side) in stated {
             for label in labels {
                 let named: Vec<usize> = (0..n).filter(|&m| systems[m].label == *label).collect();
-                if named.is_empty() {
+                if named.is_empty() && !side.is_empty() {
                     return Err(ScheduleError::UnknownLabel {
                         system: system.label.clone(),
                         side,

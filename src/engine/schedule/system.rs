@@ -68,6 +68,7 @@ pub struct System {
     by_body: bool,
     pub(super) before: Vec<String>,
     pub(super) after: Vec<String>,
+    pub(super) after_any: Vec<String>,
     pub(super) work: Box<dyn Run>,
 }
 
@@ -84,6 +85,7 @@ impl System {
             by_body: false,
             before: Vec::new(),
             after: Vec::new(),
+            after_any: Vec::new(),
             work: Box::new(work),
         }
     }
@@ -196,6 +198,12 @@ impl System {
     /// Runs after every system of its stage with that label.
     pub fn after(mut self, label: impl Into<String>) -> Self {
         self.after.push(label.into());
+        self
+    }
+
+    /// Runs after every system of its stage with that label, if there are any: a plugin need not be in the scene.
+    pub fn after_any(mut self, label: impl Into<String>) -> Self {
+        self.after_any.push(label.into());
         self
     }
 
