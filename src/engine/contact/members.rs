@@ -124,8 +124,8 @@ impl<'a> Members<'a> {
         self.families.velocity(&self.velocity, self.first_row + i, arm)
     }
 
-    /// Inverse mass of that point along a direction, 1/kg.
-    pub fn inverse_mass(&self, i: usize, arm: DVec3, direction: DVec3) -> f64 {
-        self.families.inverse_mass(&self.mobility, self.first_row + i, arm, direction)
+    /// Velocity of that point, and its mobility along each axis, 1/kg.
+    pub fn motion(&self, i: usize, arm: DVec3) -> (DVec3, DVec3) {
+        self.families.motion(&self.velocity, &self.mobility, self.first_row + i, arm)
     }
 }

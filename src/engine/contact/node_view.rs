@@ -81,11 +81,16 @@ impl NodeView<'_> {
         }
     }
 
-    /// Inverse mass of a node at `place` along a direction, 1/kg.
-    pub fn inverse_mass(&self, i: usize, arm: DVec3, place: DVec3, direction: DVec3) -> f64 {
-        match self {
-            Self::Particles(members) => members.inverse_mass(i, arm, direction),
-            Self::Rigid(body) => body.inverse_mass_at(place, direction),
-        }
+    /// Velocity as above, m/s, and the inverse mass there along a direction, 1/kg.
+    pub fn motion(&self, i: usize, arm: DVec3, place: DVec3) -> (DVec3, impl Fn(DVec3) -> f64) {
+        let (velocity, mobility) = match self {
+            Self::Particles(members) => members.motion(i, arm),
+            Self::Rigid(body) => (body.velocity_at(place), DVec3::ZERO),
+        };
+        let inverse_mass = move |n: DVec3| match self {
+            Self::Particles(_) => mobility.dot(n * n),
+            Self::Rigid(body) => body.inverse_mass_at(place, n),
+        };
+        (velocity, inverse_mass)
     }
 }

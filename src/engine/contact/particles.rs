@@ -162,22 +162,23 @@ impl ParticleContact {
             let before = self.memories.of(key);
             work_before(&mut losses, key, &before);
             let radius = first.radius(i) * second.radius(j) / reach;
+            let (v, of_first) = first.motion(i, near.arms[0]);
+            let (u, of_second) = second.motion(j, mirror.turn(near.arms[1]));
             let meeting = Meeting {
                 touch: Touch { overlap: near.overlap, radius, length: reach },
                 normal: near.normal,
                 scale: near.scale,
                 arms: near.arms,
-                velocity: slip(key, near.arms),
+                velocity: v - mirror.turn(u),
             };
-            let of_first = |n: DVec3| first.inverse_mass(i, near.arms[0], n);
-            let of_second = |n: DVec3| second.inverse_mass(j, mirror.turn(near.arms[1]), mirror.turn(n));
-            let inverse_mass = |n| of_first(n) + of_second(n);
+            let inverse_mass = |n: DVec3| (of_first + of_second).dot(n * n);
             let response = self.interaction.respond(&meeting, inverse_mass, dt, &before);
             losses.add_work(share(key), &response.memory, meeting.velocity, dt);
             losses.keep(share(key), &before, &response.memory);
             tally.stored += share(key) * (response.spring.energy + response.memory.energy());
-            self.stiffness[0].add(i, response.spring.stiffness * of_first(near.normal));
-            self.stiffness[other_side].add(j, response.spring.stiffness * of_second(near.normal));
+            self.stiffness[0].add(i, response.spring.stiffness * of_first.dot(near.normal * near.normal));
+            self.stiffness[other_side]
+                .add(j, response.spring.stiffness * of_second.dot(near.normal * near.normal));
             self.memories.keep(key, response.memory);
             self.forces.push(Push { pair: key, arms: near.arms, force: share(key) * response.force });
         }

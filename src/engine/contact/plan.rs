@@ -105,7 +105,10 @@ fn pairs_of(
         (false, false) => {
             let mut pairs = Vec::new();
             for mirror in mirrors(planes, first.id, second.id) {
-                let bodies = [first, second].map(|body| Particles::of(body, sim.dimension()));
+                let mut bodies = [first, second].map(|body| Particles::of(body, sim.dimension()));
+                // Beside spheres the other side keeps spheres, too: then forces act along the line of the centres.
+                let deform = bodies.iter().all(|particles| particles.deform);
+                bodies.iter_mut().for_each(|particles| particles.deform = deform);
                 let pair = ParticleContact::new(interaction()?, bodies, mirror, periodic(sim));
                 refuse_short_periods(&pair, number, sim)?;
                 pairs.push(Touching::Particles(Box::new(pair)));

@@ -201,14 +201,14 @@ impl SurfaceContact {
             let place = nodes.place(i, x, arm, || tool.place(nearest.point));
             // Where the body of the node has it, a period away from the image that touches.
             let shift = own_place - x;
+            let (velocity, own) = nodes.motion(i, arm, place + shift);
             let meeting = Meeting {
                 touch: touch_of(nodes, i, tool, near.overlap),
                 normal,
                 scale: near.scale,
                 arms: near.arms,
-                velocity: slip(node, arm, place, shift),
+                velocity: velocity - tool.velocity_at(place),
             };
-            let own = |n: DVec3| nodes.inverse_mass(i, arm, place + shift, n);
             let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
             let response = self.interaction.respond(&meeting, inverse_mass, dt, &before);
             losses.add_work(1.0, &response.memory, meeting.velocity, dt);

@@ -134,7 +134,7 @@ impl Run for Contacts {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for (body, pace) in &mut self.bodies {
             pace.speed = largest_speed(step, *body)?;
-            let of_body = |particles: &&Particles| particles.body == *body;
+            let of_body = |particles: &&Particles| particles.deform && particles.body == *body;
             let particles = self.touching.iter().flat_map(Touching::particles).find(of_body);
             pace.stretch = particles.map_or(Ok(1.0), |particles| particles.stretch(step.world))?;
         }

@@ -51,11 +51,19 @@ impl<'a> Families<'a> {
         sum
     }
 
-    /// How much a force on the point along `direction` speeds it up along it, 1/kg.
-    pub fn inverse_mass(&self, mobility: &[Mobility], row: usize, arm: DVec3, direction: DVec3) -> f64 {
-        let square = direction * direction;
-        let mut sum = 0.0;
-        self.each(row, arm, |j, _, weight| sum += square.dot(mobility[j].0) * weight * weight);
+    /// Velocity of the point, m/s, and its mobility along each axis, 1/kg: how much a force on it speeds it up.
+    pub fn motion(
+        &self,
+        velocity: &[Velocity],
+        mobility: &[Mobility],
+        row: usize,
+        arm: DVec3,
+    ) -> (DVec3, DVec3) {
+        let mut sum = (DVec3::ZERO, DVec3::ZERO);
+        self.each(row, arm, |j, signs, weight| {
+            sum.0 += signs * velocity[j].0 * weight;
+            sum.1 += mobility[j].0 * (weight * weight);
+        });
         sum
     }
 
