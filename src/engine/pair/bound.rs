@@ -37,13 +37,21 @@ impl<T: PairTerm> HotLoop for Row<'_, '_, T> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) -> RowRates {
+        if self.row.is_plain() { self.sum::<A, true>(a) } else { self.sum::<A, false>(a) }
+    }
+}
+
+impl<T: PairTerm> Row<'_, '_, T> {
+    /// The sum over all neighbours; `PLAIN` where none is an image and x_ij is all there is.
+    #[inline(always)]
+    fn sum<A: Arithmetic, const PLAIN: bool>(&self, a: A) -> RowRates {
         let Bound { term, of_i, of_j } = *self.bound;
         let i = T::ReadI::four(a, of_i, [self.i as u32; 4], None);
         let mut rates = Rates::zero(a);
         for k in 0..self.row.fours() {
-            let (rows, signs) = self.row.rows(k);
+            let (rows, signs) = self.row.rows::<PLAIN>(k);
             let j = T::ReadJ::four(a, of_j, rows, signs);
-            term.pair(&self.row.pair(a, k), i, j, &mut rates);
+            term.pair(&self.row.pair::<A, PLAIN>(a, k), i, j, &mut rates);
         }
         rates.sum()
     }

@@ -91,17 +91,23 @@ impl PairRow {
         self.fours
     }
 
+    /// Whether there are neither reference vectors nor mirror images.
+    #[inline(always)]
+    pub(super) fn is_plain(&self) -> bool {
+        self.reference.is_empty() && self.mirrors.is_empty()
+    }
+
     /// Rows of the neighbours of a four in the phase, and the signs of the axes of mirror images.
     #[inline(always)]
-    pub(super) fn rows(&self, k: usize) -> ([u32; 4], Option<&[DVec3; 4]>) {
-        (self.rows[k], self.mirrors.get(k))
+    pub(super) fn rows<const PLAIN: bool>(&self, k: usize) -> ([u32; 4], Option<&[DVec3; 4]>) {
+        (self.rows[k], if PLAIN { None } else { self.mirrors.get(k) })
     }
 
     /// The pairs of a four.
     #[inline(always)]
-    pub(super) fn pair<A: Arithmetic>(&self, a: A, k: usize) -> Pair<A> {
+    pub(super) fn pair<A: Arithmetic, const PLAIN: bool>(&self, a: A, k: usize) -> Pair<A> {
         let FourPairs { current, weight, kernel, support, volume_j } = &self.pairs[k];
-        let reference = self.reference.get(k).unwrap_or(current);
+        let reference = if PLAIN { current } else { self.reference.get(k).unwrap_or(current) };
         Pair {
             x_ij: Vector::new(a, current.vector),
             distance: Number::new(a, current.length),

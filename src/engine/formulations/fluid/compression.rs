@@ -4,8 +4,9 @@
 //! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
 
 use super::cloud::FlowCloud;
+use super::kernel::FluidKernel;
 use super::near_rows::{NearRow, NearWriter};
-use super::record::{Four, Record, as_rows, dot, filled_up};
+use super::record::{Four, Own, as_rows, dot, filled_up};
 use super::surface_friction;
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
@@ -71,13 +72,15 @@ impl PlaneOrSolid for Rows<'_> {
 impl Rows<'_> {
     #[inline(always)]
     fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
-        let FlowCloud { records, pairs, .. } = self.cloud;
+        let FlowCloud { records, pairs, kernel, .. } = self.cloud;
+        let kernel = *kernel;
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
-            let of_i = Pairs { cloud: self.cloud, i, own: &records[i], back: self.back };
+            let own = Own::<D>::new(&records[i]);
+            let of_i = Pairs { cloud: self.cloud, kernel, i, own, back: self.back };
             let mut near = self.near.row(k);
-            let sum = of_i.add::<A, D, P>(a, pairs.fluid.row(i), &mut near, Lanes4::ZERO);
-            let sum = of_i.add::<A, D, P>(a, pairs.walls.row(i), &mut near, sum);
+            let sum = of_i.add::<A, P>(a, pairs.fluid.row(i), &mut near, Lanes4::ZERO);
+            let sum = of_i.add::<A, P>(a, pairs.walls.row(i), &mut near, sum);
             near.close();
             *out = sum.sum();
         }
@@ -85,16 +88,17 @@ impl Rows<'_> {
 }
 
 /// The neighbours of one list.
-struct Pairs<'a> {
+struct Pairs<'a, const D: usize> {
     cloud: &'a FlowCloud,
+    kernel: FluidKernel,
     i: usize,
-    own: &'a Record,
+    own: Own<D>,
     back: f64,
 }
 
-impl Pairs<'_> {
+impl<const D: usize> Pairs<'_, D> {
     #[inline(always)]
-    fn add<A: Arithmetic, const D: usize, const P: bool>(
+    fn add<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         row: &[u32],
@@ -103,16 +107,16 @@ impl Pairs<'_> {
     ) -> Lanes4 {
         let (fours, rest) = row.as_chunks();
         for four in fours {
-            sum = self.add_four::<A, D, P>(a, *four, 4, near, sum);
+            sum = self.add_four::<A, P>(a, *four, 4, near, sum);
         }
         if !rest.is_empty() {
-            sum = self.add_four::<A, D, P>(a, filled_up(rest, self.i), rest.len(), near, sum);
+            sum = self.add_four::<A, P>(a, filled_up(rest, self.i), rest.len(), near, sum);
         }
         sum
     }
 
     #[inline(always)]
-    fn add_four<A: Arithmetic, const D: usize, const P: bool>(
+    fn add_four<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         rows: [u32; 4],
@@ -120,14 +124,14 @@ impl Pairs<'_> {
         near: &mut NearRow<'_>,
         sum: Lanes4,
     ) -> Lanes4 {
-        let Self { cloud: FlowCloud { records, kernel, periods, .. }, own, back, .. } = *self;
+        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, back, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
         let limit = Lanes4::splat(kernel.support * kernel.support);
         let within = a.below(dot(a, &four.x, &four.x), limit) & ((1 << count) - 1);
         near.push(a, rows, within);
         let mut x = four.x;
         for axis in 0..D {
-            x[axis] = a.scale_add(back, four.v[axis], x[axis]);
+            x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
         }
         let weight = kernel.weights(a, a.sqrt(dot(a, &x, &x)));
         a.times_add(a.times(weight, four.volume), dot(a, &four.v, &x), sum)

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group, Role};
 use super::pair_sums::Pairs;
-use super::record::sums;
+use super::record::{Own, sums};
 use crate::pair::{BoundTerms, Fastest, PairRow, PhaseTerms, TermRows, with_row};
 use crate::parallel::{Arithmetic, BlockSum, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
@@ -121,12 +121,14 @@ impl Rows<'_> {
     #[inline(always)]
     fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
         let PairForce { cloud, group, adds } = *self.pass;
+        let kernel = cloud.kernel;
         let ForceRows { mut written, parts } = self.rows;
         let mut terms = self.terms;
         let own_is_fluid = group.fluid().is_some();
         for k in 0..written.total.len() {
             let i = group.cloud.start + self.first + k;
             let own = &cloud.records[i];
+            let lanes = Own::<D>::new(own);
             if let Some(Terms { row, .. }) = &mut terms {
                 row.volume_i = own.volume();
                 row.clear();
@@ -144,15 +146,15 @@ impl Rows<'_> {
                     continue;
                 }
                 let viscosity = pair_viscosity(&group.role, &other.role);
-                let pairs = Pairs { cloud, i, own, row, viscosity };
+                let pairs = Pairs { cloud, kernel, i, own: lanes, row, viscosity };
                 let sum = match &mut terms {
                     Some(terms) if other.cloud.start == group.cloud.start && own.volume() > 0.0 => {
                         let room = terms.row.room(row.len(), false, false);
                         let before = (group.cloud.start - group.rows.start) as u32;
-                        pairs.sum_and_keep::<A, D, P>(a, room, before, terms.terms.with_kernel)
+                        pairs.sum_and_keep::<A, P>(a, room, before, terms.terms.with_kernel)
                     }
-                    _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, D, P, true>(a),
-                    _ => pairs.sum::<A, D, P, false>(a),
+                    _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, P, true>(a),
+                    _ => pairs.sum::<A, P, false>(a),
                 };
                 let of_i = sums(&sum.gradient) * own.pressure();
                 let of_j = sums(&sum.pressure);

@@ -1,15 +1,17 @@
 //! Sums over the pairs of one particle with the particles of one body: what the forces of the second pass are made of.
 
 use super::cloud::FlowCloud;
-use super::record::{FILLS, Four, Record, as_rows, dot, filled_up};
+use super::kernel::FluidKernel;
+use super::record::{FILLS, Four, Own, as_rows, dot, filled_up};
 use crate::pair::{FourPairs, Room};
 use crate::parallel::{Arithmetic, Lanes4};
 
 /// The pairs of particle `i` with the neighbours in `row`.
-pub(super) struct Pairs<'a> {
+pub(super) struct Pairs<'a, const D: usize> {
     pub cloud: &'a FlowCloud,
+    pub kernel: FluidKernel,
     pub i: usize,
-    pub own: &'a Record,
+    pub own: Own<D>,
     pub row: &'a [u32],
     /// Twice the viscosity between the two, Pa s.
     pub viscosity: f64,
@@ -35,11 +37,11 @@ impl<const D: usize> Sums<D> {
         a: A,
         four: &Four<D>,
         weight: Lanes4,
-        Pairs { own, viscosity, .. }: &Pairs<'_>,
+        Pairs { own, viscosity, .. }: &Pairs<'_, D>,
     ) {
         let mut pressure = four.pressure;
         if FLUIDS {
-            pressure = a.plus(pressure, Lanes4::splat(own.pressure()));
+            pressure = a.plus(pressure, own.pressure);
         }
         let pressure = a.times(weight, pressure);
         for axis in 0..D {
@@ -57,27 +59,27 @@ impl<const D: usize> Sums<D> {
     }
 }
 
-impl Pairs<'_> {
+impl<const D: usize> Pairs<'_, D> {
     /// The sums.
     #[inline(always)]
-    pub fn sum<A: Arithmetic, const D: usize, const P: bool, const FLUIDS: bool>(&self, a: A) -> Sums<D> {
+    pub fn sum<A: Arithmetic, const P: bool, const FLUIDS: bool>(&self, a: A) -> Sums<D> {
         if self.viscosity > 0.0 {
-            self.sum_all::<A, D, P, FLUIDS, true>(a)
+            self.sum_all::<A, P, FLUIDS, true>(a)
         } else {
-            self.sum_all::<A, D, P, FLUIDS, false>(a)
+            self.sum_all::<A, P, FLUIDS, false>(a)
         }
     }
 
     #[inline(always)]
-    fn sum_all<A: Arithmetic, const D: usize, const P: bool, const FLUIDS: bool, const VISCOUS: bool>(
+    fn sum_all<A: Arithmetic, const P: bool, const FLUIDS: bool, const VISCOUS: bool>(
         &self,
         a: A,
     ) -> Sums<D> {
-        let FlowCloud { records, kernel, periods, .. } = self.cloud;
+        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
         let mut sum = Sums::ZERO;
         for chunk in self.row.chunks(4) {
             let rows = as_rows(filled_up(chunk, self.i));
-            let four = Four::<D>::gather::<A, P>(a, records, self.own, rows, periods);
+            let four = Four::<D>::gather::<A, P>(a, records, own, rows, periods);
             let distance = a.sqrt(dot(a, &four.x, &four.x));
             let weight = a.times(kernel.weights(a, distance), four.volume);
             sum.add::<A, FLUIDS, VISCOUS>(a, &four, weight, self);
@@ -87,7 +89,7 @@ impl Pairs<'_> {
 
     /// The same between fluids, with the geometry of the pairs put into `room`, rows counted from `before` on.
     #[inline(always)]
-    pub fn sum_and_keep<A: Arithmetic, const D: usize, const P: bool>(
+    pub fn sum_and_keep<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         Room { pairs, rows, .. }: Room<'_>,
@@ -98,24 +100,24 @@ impl Pairs<'_> {
         let (fours, rest) = self.row.as_chunks();
         // Chained iterators would be called in the loop, off the instruction path.
         for k in 0..fours.len() {
-            self.keep::<A, D, P>(a, fours[k], 4, &mut pairs[k], &mut sum);
+            self.keep::<A, P>(a, fours[k], 4, &mut pairs[k], &mut sum);
             rows[k] = counted_from(before, fours[k]);
         }
         if !rest.is_empty() {
             let (k, last) = (fours.len(), filled_up(rest, self.i));
-            self.keep::<A, D, P>(a, last, rest.len(), &mut pairs[k], &mut sum);
+            self.keep::<A, P>(a, last, rest.len(), &mut pairs[k], &mut sum);
             rows[k] = counted_from(before, last);
         }
         if with_kernel {
             for four in pairs {
-                four.kernel = self.cloud.kernel.values(a, four.current.length);
+                four.kernel = self.kernel.values(a, four.current.length);
             }
         }
         sum
     }
 
     #[inline(always)]
-    fn keep<A: Arithmetic, const D: usize, const P: bool>(
+    fn keep<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         rows: [u32; 4],
@@ -123,8 +125,8 @@ impl Pairs<'_> {
         kept: &mut FourPairs,
         sum: &mut Sums<D>,
     ) {
-        let FlowCloud { records, kernel, periods, .. } = self.cloud;
-        let four = Four::<D>::gather::<A, P>(a, records, self.own, as_rows(rows), periods);
+        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
+        let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
         let square = dot(a, &four.x, &four.x);
         let (square, volume) = kernel.within(a, square, FILLS[count], four.volume);
         let distance = a.sqrt(square);

@@ -76,6 +76,30 @@ impl Periods {
 /// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer.
 const SHIFT: f64 = 6755399441055744.0;
 
+/// A particle in every lane, made once for all of its neighbours.
+#[derive(Clone, Copy)]
+pub(super) struct Own<const D: usize> {
+    /// x_i per axis.
+    x: [Lanes4; D],
+    /// v_i per axis.
+    v: [Lanes4; D],
+    /// p_i.
+    pub pressure: Lanes4,
+}
+
+impl<const D: usize> Own<D> {
+    /// The lanes of a particle.
+    #[inline(always)]
+    pub fn new(record: &Record) -> Self {
+        let (mut x, mut v) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
+        for axis in 0..D {
+            x[axis] = Lanes4::splat(record.place.0[axis]);
+            v[axis] = Lanes4::splat(record.motion.0[axis]);
+        }
+        Self { x, v, pressure: Lanes4::splat(record.pressure()) }
+    }
+}
+
 /// Four neighbours of a particle: differences to it.
 #[derive(Clone, Copy)]
 pub(super) struct Four<const D: usize> {
@@ -162,7 +186,7 @@ impl<const D: usize> Four<D> {
     pub fn gather<A: Arithmetic, const P: bool>(
         a: A,
         records: &[Record],
-        own: &Record,
+        own: &Own<D>,
         [j, k, l, m]: [usize; 4],
         periods: &Periods,
     ) -> Self {
@@ -172,8 +196,8 @@ impl<const D: usize> Four<D> {
         let mut x = [Lanes4::ZERO; D];
         let mut v = [Lanes4::ZERO; D];
         for axis in 0..D {
-            x[axis] = a.minus(place[axis], Lanes4::splat(own.place.0[axis]));
-            v[axis] = a.minus(motion[axis], Lanes4::splat(own.motion.0[axis]));
+            x[axis] = a.minus(place[axis], own.x[axis]);
+            v[axis] = a.minus(motion[axis], own.v[axis]);
             if P {
                 x[axis] = periods.nearest(a, axis, x[axis]);
             }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::cloud::FlowCloud;
 use super::near_rows::{NearRows, NearWriter};
-use super::record::{Four, as_rows, dot, filled_up, sums};
+use super::record::{Four, Own, as_rows, dot, filled_up, sums};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 
 /// Least sum of V_f W for which there is fluid beside a wall.
@@ -65,11 +65,11 @@ const MASKS: [Lanes4; 5] = [
 impl Rows<'_> {
     #[inline(always)]
     fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
-        let cloud = self.cloud;
-        let limit = Lanes4::splat(cloud.kernel.support * cloud.kernel.support);
+        let (cloud, kernel) = (self.cloud, self.cloud.kernel);
+        let limit = Lanes4::splat(kernel.support * kernel.support);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = cloud.fluid + self.first + k;
-            let own = &cloud.records[i];
+            let own = Own::<D>::new(&cloud.records[i]);
             let mut near = self.near.row(k);
             let mut rest = cloud.pairs.boundary.row(self.first + k);
             let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
@@ -83,12 +83,12 @@ impl Rows<'_> {
                 for chunk in row.chunks(4) {
                     let rows = filled_up(chunk, i);
                     let four =
-                        Four::<D>::gather::<A, P>(a, &cloud.records, own, as_rows(rows), &cloud.periods);
+                        Four::<D>::gather::<A, P>(a, &cloud.records, &own, as_rows(rows), &cloud.periods);
                     let square = dot(a, &four.x, &four.x);
                     near.push(a, rows, a.below(square, limit) & ((1 << chunk.len()) - 1));
                     let distance = a.sqrt(square);
                     let volume = a.times(four.volume, MASKS[chunk.len()]);
-                    let value = a.times(cloud.kernel.values(a, distance), volume);
+                    let value = a.times(kernel.values(a, distance), volume);
                     // rho = rho_0 + p / c_0^2 to first order in the compression.
                     let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
                     total = a.plus(total, value);
