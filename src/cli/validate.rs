@@ -58,7 +58,7 @@ pub use case::{CASES, Case};
 pub use check::{Check, Tolerance};
 use report::Report;
 
-/// Runs cases with known answers and prints measured value, reference, error and tolerance.
+/// Run cases with known answers and print measured value, reference, error and tolerance.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Arguments {
     /// Cases to run, such as `S11`; all if none is given.
