@@ -99,6 +99,11 @@ impl<'a> Members<'a> {
         self.removed[self.first_row + i] == Removed::NO
     }
 
+    /// Whether nothing moves a particle but conditions, such as one of a wall.
+    pub fn is_held(&self, i: usize) -> bool {
+        self.mobility[self.first_row + i] == Mobility::default()
+    }
+
     /// Where a particle is, m.
     pub fn position(&self, i: usize) -> DVec3 {
         self.position[self.first_row + i].0

@@ -125,6 +125,9 @@ impl SurfaceContact {
         let pair = (self.sides.first, self.sides.second);
         let squared = frequencies.rigid + frequencies.particle;
         match &self.sides.nodes {
+            Nodes::Particles(_) if expected > 0.0 => {
+                stiffness::propose_rigid(step, pair, squared.max(expected));
+            }
             Nodes::Particles(particles) => {
                 let least = frequencies.least.min(particles.least());
                 stiffness::propose(step, pair, squared, speed, 2.0 * least);
@@ -134,19 +137,26 @@ impl SurfaceContact {
         Ok(tally)
     }
 
-    /// The squared frequency of the impact that a rigid body may make at `speed`, 1/s2: a spring that gets stiffer with depth must
-    /// not come as a surprise.
+    /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, 1/s2: a
+    /// spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise.
     fn expected(&self, nodes: &NodeView<'_>, tool: &RigidBody, speed: f64) -> f64 {
-        let NodeView::Rigid(body) = nodes else { return 0.0 };
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
-        let inverse_mass = inverse(body) + inverse(tool);
+        let pull = |body: &RigidBody| (body.state.force / body.mass).length();
+        let (node, inverse_mass, own_pull) = match nodes {
+            NodeView::Rigid(body) => (0, inverse(body) + inverse(tool), pull(body)),
+            NodeView::Particles(members) => {
+                let Some(held) = self.candidates.iter().find(|&&i| members.is_held(i as usize)) else {
+                    return 0.0;
+                };
+                (*held as usize, inverse(tool), 0.0)
+            }
+        };
         if inverse_mass == 0.0 {
             return 0.0;
         }
-        let touch = touch_of(nodes, 0, tool, 0.0);
+        let touch = touch_of(nodes, node, tool, 0.0);
         // A body at rest may fall: what it gains over the length of a node counts as its speed.
-        let acceleration = |body: &RigidBody| (body.state.force / body.mass).length();
-        let gain = self.gravity.max(acceleration(body)).max(acceleration(tool));
+        let gain = self.gravity.max(own_pull).max(pull(tool));
         let speed = speed + (2.0 * gain * touch.length).sqrt();
         self.interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass
     }

@@ -195,3 +195,27 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
     let sum: DVec3 = rows.map(|row| force[row].0).sum();
     assert!((sum - tool.force).length() < 1e-9 * tool.force.length());
 }
+
+#[test]
+fn a_hard_body_that_falls_into_an_empty_corner_of_a_tank_bounces_with_the_speed_that_it_had() {
+    // The step of the water is three hundred times that of the impact, and the wall has none of its own.
+    let mut sim = simulation(
+        r#"(dimension: Two,
+            materials: {"water": Fluid(density: 1000, sound_speed: 30), "steel": NeoHookean(density: 7850, young: 2e11, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.2, 0.1)), spacing: 0.02, formulation: Fluid),
+                (name: "tank", material: "water", spacing: 0.02, formulation: Wall,
+                 shape: Difference(Box(min: (-0.08, -0.08), max: (1.08, 0.4)), Box(min: (0, 0), max: (1, 1)))),
+                (name: "disc", material: "steel", shape: Sphere(center: (0.7, 0.085), radius: 0.08), spacing: 0.02,
+                 formulation: Rigid, velocity: (0, -2)),
+            ],
+            contacts: [Contact(between: ("disc", "tank"), law: Penalty())],
+            time: (end: 0.006))"#,
+    );
+    sim.start().unwrap();
+    while !sim.is_finished() {
+        sim.step().unwrap();
+    }
+    let (x, v) = centre(&sim, 2);
+    assert!((v.y - 2.0).abs() < 0.02 && x.y > 0.08, "{x} {v}");
+}
