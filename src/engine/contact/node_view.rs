@@ -31,6 +31,14 @@ impl NodeView<'_> {
         }
     }
 
+    /// Whether nothing moves a node but conditions, such as a particle of a wall.
+    pub fn is_held(&self, i: usize) -> bool {
+        match self {
+            Self::Particles(members) => members.is_held(i),
+            Self::Rigid(_) => false,
+        }
+    }
+
     /// Where a node is, m.
     pub fn position(&self, i: usize) -> DVec3 {
         match self {

@@ -17,7 +17,10 @@ use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
 /// Skin over the size of a node.
-const SKIN: f64 = 0.5;
+const SKIN: f64 = 1.0;
+/// Gap, over the size of a node, up to which a node counts as near the surface. All that are so near are candidates whenever the list was made, so
+/// that what follows from them follows from positions alone.
+const NEAR: f64 = 0.5;
 
 /// Contact of the nodes of one body with the surface of another.
 pub(super) struct SurfaceContact {
@@ -60,8 +63,10 @@ struct Frequencies {
     rigid: f64,
     /// The largest of a particle.
     particle: f64,
-    /// Least way to the centre of a particle that just touches, m.
+    /// Least way to the centre of a particle near the surface that just touches, m.
     least: f64,
+    /// A particle near the surface that nothing moves but conditions.
+    held: Option<usize>,
 }
 
 impl SurfaceContact {
@@ -111,7 +116,8 @@ impl SurfaceContact {
             self.sides.with(step.world, step.resources, &bodies, |nodes, tool| {
                 let (tally, frequencies) =
                     self.evaluate(nodes, tool, dt, &mut memories, &mut forces, &mut sums);
-                (tally, frequencies, self.expected(nodes, tool, speed))
+                let expected = self.expected(nodes, tool, frequencies.held, speed);
+                (tally, frequencies, expected)
             })?;
         (self.memories, self.forces) = (memories, forces);
         for push in &self.forces {
@@ -139,17 +145,13 @@ impl SurfaceContact {
 
     /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, 1/s2: a
     /// spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise.
-    fn expected(&self, nodes: &NodeView<'_>, tool: &RigidBody, speed: f64) -> f64 {
+    fn expected(&self, nodes: &NodeView<'_>, tool: &RigidBody, held: Option<usize>, speed: f64) -> f64 {
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
         let pull = |body: &RigidBody| (body.state.force / body.mass).length();
-        let (node, inverse_mass, own_pull) = match nodes {
-            NodeView::Rigid(body) => (0, inverse(body) + inverse(tool), pull(body)),
-            NodeView::Particles(members) => {
-                let Some(held) = self.candidates.iter().find(|&&i| members.is_held(i as usize)) else {
-                    return 0.0;
-                };
-                (*held as usize, inverse(tool), 0.0)
-            }
+        let (node, inverse_mass, own_pull) = match (nodes, held) {
+            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), pull(body)),
+            (NodeView::Particles(_), Some(node)) => (node, inverse(tool), 0.0),
+            (NodeView::Particles(_), None) => return 0.0,
         };
         if inverse_mass == 0.0 {
             return 0.0;
@@ -172,7 +174,7 @@ impl SurfaceContact {
     ) -> (Tally, Frequencies) {
         let mut tally = Tally::default();
         let mut losses = Losses::default();
-        let mut frequencies = Frequencies { rigid: 0.0, particle: 0.0, least: f64::INFINITY };
+        let mut frequencies = Frequencies { rigid: 0.0, particle: 0.0, least: f64::INFINITY, held: None };
         let slip = |node: u32, arm: DVec3, place: DVec3, shift: DVec3| {
             nodes.velocity(node as usize, arm, place + shift) - tool.velocity_at(place)
         };
@@ -198,8 +200,12 @@ impl SurfaceContact {
             let nearest = tool.surface.closest(tool.reference(x));
             let normal = tool.state.rotation * nearest.normal;
             let near = nodes.nearness(i, nearest.signed_distance, normal);
+            if near.overlap <= -NEAR * near.scale * nodes.size(i) || !nodes.is_there(i) {
+                continue;
+            }
             frequencies.least = frequencies.least.min(nodes.radius(i) / near.scale);
-            if near.overlap <= 0.0 || !nodes.is_there(i) {
+            frequencies.held = frequencies.held.or(nodes.is_held(i).then_some(i));
+            if near.overlap <= 0.0 {
                 continue;
             }
             while let Some((old, memory)) = memories.ended_before(Some((node, 0))) {
@@ -278,15 +284,16 @@ impl SurfaceContact {
         let mut budget = f64::INFINITY;
         for i in 0..nodes.len() {
             let x = tool.reference(self.sides.near(nodes.position(i), tool));
-            let (reach, skin) = (self.stretch * nodes.radius(i), SKIN * nodes.size(i));
+            let size = nodes.size(i);
+            let (reach, skin, near) = (self.stretch * nodes.radius(i), SKIN * size, NEAR * size);
             let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
             if gap < skin {
-                budget = budget.min(skin);
+                budget = budget.min(skin - near);
                 if tool.surface.closest(x).signed_distance - reach < skin {
                     candidates.push(i as u32);
                 }
             } else {
-                budget = budget.min(gap);
+                budget = budget.min(gap - near);
             }
         }
         budget

@@ -180,10 +180,10 @@ fn a_block_bounces_off_a_turned_plane_without_loss() {
 
 #[test]
 fn a_block_that_is_pressed_against_a_corner_or_a_ball_gets_back_what_it_gave() {
-    // At a corner the force has a kink, which costs an order of the leapfrog.
-    for (shape, turn, ratio) in [
-        ("Box(min: (-0.09, -0.05), max: (0.01, 0.05))", 20.0, 0.6),
-        ("Sphere(center: (0, -0.02), radius: 0.06)", 0.0, 0.2),
+    // At a corner the force has a kink, which costs an order of the leapfrog. By how much depends on when it is met: the worst of three steps counts.
+    for (shape, turn) in [
+        ("Box(min: (-0.09, -0.05), max: (0.01, 0.05))", 20.0),
+        ("Sphere(center: (0, -0.02), radius: 0.06)", 0.0),
     ] {
         let error = |factor: f64| {
             let mut sim = simulation(&format!(
@@ -203,7 +203,8 @@ fn a_block_that_is_pressed_against_a_corner_or_a_ball_gets_back_what_it_gave() {
             assert!((momentum(&sim) - p).length() < 1e-12 * p.length());
             sim.ledger().relative_error().abs()
         };
-        let (coarse, fine) = (error(0.5), error(0.125));
-        assert!(coarse < 2e-3 && fine < ratio * coarse, "{shape}: {coarse} {fine}");
+        let worst = |factors: [f64; 3]| factors.map(error).into_iter().fold(0.0, f64::max);
+        let (coarse, fine) = (worst([1.0, 0.7, 0.5]), worst([0.0625, 0.045, 0.03]));
+        assert!(coarse < 3e-3 && fine < 0.2 * coarse, "{shape}: {coarse} {fine}");
     }
 }
