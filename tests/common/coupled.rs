@@ -14,7 +14,7 @@ pub fn coupled() -> Source {
             (name: "plate", material: "rubber", shape: Box(min: (0.5, 0.0), max: (0.56, 0.2)), spacing: 0.02,
              formulation: TotalLagrangian, plugins: [hourglass_control(), local_damping(rate: 0.1)]),
             (name: "box", material: "wood", shape: Box(min: (0.3, 0.21), max: (0.42, 0.33)), spacing: 0.02, formulation: Rigid(),
-             velocity: (1.0, 0.0)),
+             velocity: (2.0, 0.0)),
             (name: "tank", material: "wall", shape: Difference(Box(min: (-0.1, -0.1), max: (0.7, 0.5)), Box(min: (0, 0), max: (0.6, 1))),
              spacing: 0.02, formulation: Wall(slip: No)),
         ],

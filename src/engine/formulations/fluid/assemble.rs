@@ -21,11 +21,6 @@ use crate::rigid::Rigid;
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
 
-/// Skin of the neighbour lists of fluids over their spacing.
-const SKIN: f64 = 0.4;
-/// The same of fluids and what bounds them: fluids slide along walls, and few particles are near one.
-const WALL_SKIN: f64 = 0.8;
-
 /// Adds the systems of all fluids and walls of the scene; nothing where there are none.
 ///
 /// # Errors
@@ -81,7 +76,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let short = systems::short_phases(&groups, sim);
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
-    let skins = Skins { support, fluid: SKIN * spacing, walls: WALL_SKIN * spacing };
+    let skins = Skins::new(support, spacing, &periodic);
     let dimension = sim.dimension().count();
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);

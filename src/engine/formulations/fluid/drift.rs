@@ -20,6 +20,21 @@ pub(super) struct Skins {
     pub walls: f64,
 }
 
+/// Skin of the neighbour lists of fluids over their spacing.
+const SKIN: f64 = 0.4;
+/// The same of fluids and what bounds them: fluids slide along walls, and few particles are near one.
+const WALL_SKIN: f64 = 0.8;
+
+impl Skins {
+    /// The usual ones of a spacing, m; less where a periodic domain is so short that a list would hold two images of a particle.
+    pub fn new(support: f64, spacing: f64, periodic: &Periodic) -> Self {
+        let lengths = periodic.lengths().to_array().into_iter().filter(|&length| length > 0.0);
+        let room =
+            lengths.fold(f64::INFINITY, |room, length| room.min((0.5 - 1e-9) * length - support)).max(0.0);
+        Self { support, fluid: room.min(SKIN * spacing), walls: room.min(WALL_SKIN * spacing) }
+    }
+}
+
 /// Displacements of some particles: the box around them; inverted where there are none.
 #[derive(Clone, Copy, Debug)]
 struct Spread {
