@@ -7,7 +7,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::world::DeformationGradient;
 
 /// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a sphere.
@@ -50,17 +50,6 @@ pub(super) fn on_surface(distance: f64, normal: DVec3, (radius, f): Shape) -> Ne
     let stretch = along.length();
     let arm = if f.is_some() { -along * (distance / (stretch * stretch)) } else { DVec3::ZERO };
     Nearness { overlap: radius - distance / stretch, normal, scale: 1.0 / stretch, arms: [arm, DVec3::ZERO] }
-}
-
-#[derive(Clone, Copy, Default)]
-struct Largest(f64);
-
-impl BlockSum for Largest {
-    fn add(&mut self, next: &Self) {
-        if next.0.is_nan() || next.0 > self.0 {
-            self.0 = next.0;
-        }
-    }
 }
 
 /// A bound of the stretches of particles: the root of the largest sum over a row of F F^T, exact without shear.

@@ -6,7 +6,7 @@ use super::particles::ParticleContact;
 use super::start;
 use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{Largest, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
@@ -101,18 +101,6 @@ struct Contacts {
     bodies: Vec<(BodyId, Pace)>,
     touching: Vec<Touching>,
     tallies: Vec<((BodyId, BodyId), Tally)>,
-}
-
-#[derive(Clone, Copy, Default)]
-struct Largest(f64);
-
-impl BlockSum for Largest {
-    fn add(&mut self, next: &Self) {
-        // Not the larger one of the two by `max`, which would drop what is not a number.
-        if next.0.is_nan() || next.0 > self.0 {
-            self.0 = next.0;
-        }
-    }
 }
 
 fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {

@@ -1,0 +1,16 @@
+//! The largest of numbers, as a sum over blocks.
+
+use super::BlockSum;
+
+/// The largest number so far; not a number as soon as one of them is none.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Largest(pub f64);
+
+impl BlockSum for Largest {
+    fn add(&mut self, next: &Self) {
+        // Not the larger one of the two by `max`, which would drop what is not a number.
+        if next.0.is_nan() || next.0 > self.0 {
+            self.0 = next.0;
+        }
+    }
+}
