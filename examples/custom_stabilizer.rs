@@ -40,20 +40,14 @@ struct Dashpots {
 }
 
 impl PairTerm for Dashpots {
-    type ReadI = (Velocity,);
-    type ReadJ = (Velocity,);
+    type ReadI = ();
+    type ReadJ = ();
 
     #[inline(always)]
-    fn pair<A: Arithmetic>(
-        &self,
-        pair: &Pair<A>,
-        (v_i,): (Vector<A>,),
-        (v_j,): (Vector<A>,),
-        rates: &mut Rates<A>,
-    ) {
+    fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
         let strength = self.factor * pair.volume_j * pair.weight;
         let e = pair.x_ij / pair.distance;
-        rates.force += e * (strength * pair.volume_i * (v_j - v_i).dot(e));
+        rates.force += e * (strength * pair.volume_i * pair.v_ij.dot(e));
         rates.damping += strength / self.density;
     }
 }

@@ -7,9 +7,9 @@
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
-use meshless_engine::parallel::{Arithmetic, Vector};
+use meshless_engine::parallel::Arithmetic;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::world::{BodySet, Velocity};
+use meshless_engine::world::BodySet;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -73,31 +73,25 @@ struct Friction {
 }
 
 impl PairTerm for Friction {
-    type ReadI = (Velocity,);
-    type ReadJ = (Velocity,);
+    type ReadI = ();
+    type ReadJ = ();
 
     const READS_KERNEL: bool = false;
 
     #[inline(always)]
-    fn pair<A: Arithmetic>(
-        &self,
-        pair: &Pair<A>,
-        (v_i,): (Vector<A>,),
-        (v_j,): (Vector<A>,),
-        rates: &mut Rates<A>,
-    ) {
+    fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
         let h = pair.smoothing_length();
-        let approach = (v_j - v_i).dot(pair.x_ij);
-        let per_length = h / (pair.distance.squared() + 0.01 * h * h);
+        let approach = pair.v_ij.dot(pair.x_ij);
+        let square = pair.distance.squared();
+        let per_length = h / (square + 0.01 * h * h);
         let push = approach.min(0.0) * per_length;
         let mu = if self.parting { approach * per_length } else { push };
-        let slope = pair.volume_j * pair.weight * pair.reference_distance;
+        let slope = pair.volume_j * pair.slope_per_length();
         let linear = self.alpha * self.sound_speed;
         let pressure = mu * linear - self.beta * push * push;
-        let strength = self.density * pair.volume_i * slope / pair.distance;
-        rates.force += pair.x_ij * (strength * pressure);
+        rates.force += pair.x_ij * (slope * pressure * (pair.volume_i * self.density));
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
-        let damping = slope * (linear - 2.0 * self.beta * push) * (pair.distance * per_length);
+        let damping = slope * (linear - 2.0 * self.beta * push) * (square * per_length);
         rates.damping += if self.parting { damping } else { approach.if_below(0.0, damping) };
     }
 }

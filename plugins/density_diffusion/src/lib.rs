@@ -85,6 +85,7 @@ impl PairTerm for Molteni {
     type ReadJ = (Density,);
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
+    const READS_VELOCITY: bool = false;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(
@@ -110,6 +111,7 @@ impl PairTerm for Antuono {
     type ReadJ = (Density, DensityGradient);
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
+    const READS_VELOCITY: bool = false;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

@@ -20,6 +20,8 @@ impl PairTerm for Ganzenmueller2015 {
     type ReadI = (DeformationGradient, HourglassModulus);
     type ReadJ = (DeformationGradient, HourglassModulus);
 
+    const READS_VELOCITY: bool = false;
+
     #[inline(always)]
     fn pair<A: Arithmetic>(
         &self,

@@ -6,8 +6,8 @@
 //! against the relative motion: momentum and angular momentum are kept, energy is only ever taken out.
 
 use meshless_engine::pair::{Pair, PairTerm, Rates};
-use meshless_engine::parallel::{Arithmetic, Matrix, Vector};
-use meshless_engine::world::{DeformationGradient, Velocity};
+use meshless_engine::parallel::{Arithmetic, Matrix};
+use meshless_engine::world::DeformationGradient;
 
 /// The viscous form for one body.
 pub struct Viscous {
@@ -20,8 +20,8 @@ pub struct Viscous {
 }
 
 impl PairTerm for Viscous {
-    type ReadI = (DeformationGradient, Velocity);
-    type ReadJ = (DeformationGradient, Velocity);
+    type ReadI = (DeformationGradient,);
+    type ReadJ = (DeformationGradient,);
 
     const READS_KERNEL: bool = false;
 
@@ -29,12 +29,12 @@ impl PairTerm for Viscous {
     fn pair<A: Arithmetic>(
         &self,
         pair: &Pair<A>,
-        (f_i, v_i): (Matrix<A>, Vector<A>),
-        (f_j, v_j): (Matrix<A>, Vector<A>),
+        (f_i,): (Matrix<A>,),
+        (f_j,): (Matrix<A>,),
         rates: &mut Rates<A>,
     ) {
         let error = (f_i + f_j) * pair.reference_x_ij * 0.5 - pair.x_ij;
-        let moving = (v_j - v_i).dot(pair.x_ij);
+        let moving = pair.v_ij.dot(pair.x_ij);
         let slope = pair.weight * pair.reference_distance;
         let share = error.length_squared().sqrt() / pair.reference_distance;
         let strength = self.zeta * self.sound_speed * pair.smoothing_length() * share * slope * pair.volume_j;

@@ -2,7 +2,7 @@
 
 use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
 use meshless_engine::glam::{DMat3, DVec3};
-use meshless_engine::parallel::{Arithmetic, Vector};
+use meshless_engine::parallel::{Arithmetic, BlockSum, Largest, Vector, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Velocity};
 
@@ -26,7 +26,12 @@ pub fn make(
     let (view, rows) = step.world.body_view(id);
     let spacing = step.world.body(id).spacing;
     let velocity = view.read::<Velocity>()?;
-    let fastest = velocity[rows.clone()].iter().map(|v| v.0.length_squared()).fold(0.0, f64::max).sqrt();
+    let squared = sum_over_blocks(&velocity[rows.clone()], &|_, v: &[Velocity]| {
+        v.iter().fold(Largest::default(), |mut largest, v| {
+            largest.add(&Largest(v.0.length_squared()));
+            largest
+        })
+    });
     let h = cloud.kernel.smoothing_length();
     let pass = Moves {
         cloud,
@@ -34,7 +39,7 @@ pub fn make(
         places,
         factor: -2.0 * strength * h * step.clock.dt,
         shear: SHEAR * h,
-        fastest,
+        fastest: squared.0.sqrt(),
         usual: 1.0 / cloud.kernel.value(spacing),
         largest: LARGEST * spacing,
     };

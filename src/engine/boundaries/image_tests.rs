@@ -50,7 +50,8 @@ impl PairTerm for Friction {
         (v_j, f_j): (Vector<A>, Matrix<A>),
         rates: &mut Rates<A>,
     ) {
-        let slip = (f_i + f_j) * (v_j - v_i);
+        // Half of it by the columns, half by what the row says.
+        let slip = (f_i + f_j) * (v_j - v_i + pair.v_ij) * 0.5;
         rates.force += slip * (100.0 * pair.volume_i * pair.volume_j * pair.weight);
     }
 }

@@ -2,10 +2,10 @@
 
 use super::read::ReadSet;
 use super::row::PairRow;
-use super::term::{PairTerm, Rates, RowRates};
+use super::term::{PairReads, PairTerm, Rates, RowRates};
 use crate::parallel::{Arithmetic, HotLoop, run_hot_on};
-use crate::schedule::Access;
-use crate::world::{MissingColumn, PhaseView};
+use crate::schedule::{Access, Mode};
+use crate::world::{Column, MissingColumn, PhaseView, Velocity};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
@@ -82,8 +82,8 @@ type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 pub(super) trait ErasedTerm: Send + Sync {
     /// Columns it reads.
     fn access(&self) -> Vec<Access>;
-    /// Whether it reads the kernel value of a pair.
-    fn reads_kernel(&self) -> bool;
+    /// What it reads of a pair.
+    fn reads(&self) -> PairReads;
     /// Whether it gives density rates.
     fn changes_density(&self) -> bool;
     /// Borrows the columns, adds the term to the chain and goes on with it.
@@ -98,12 +98,15 @@ pub(super) trait ErasedTerm: Send + Sync {
 impl<T: PairTerm> ErasedTerm for T {
     fn access(&self) -> Vec<Access> {
         let mut access = T::ReadI::access();
+        if T::READS_VELOCITY {
+            access.push(Access { column: Velocity::NAME, mode: Mode::Reads });
+        }
         access.extend(T::ReadJ::access());
         access
     }
 
-    fn reads_kernel(&self) -> bool {
-        T::READS_KERNEL
+    fn reads(&self) -> PairReads {
+        PairReads { kernel: T::READS_KERNEL, velocity: T::READS_VELOCITY }
     }
 
     fn changes_density(&self) -> bool {

@@ -18,5 +18,5 @@ pub(crate) use pass::with_row;
 pub use pass::{PairRows, PairSource, add_pair_systems};
 pub use read::{FourOf, ReadSet};
 pub use row::{FourPairs, FourVectors, PairRow, Room};
-pub use term::{BodyPairTerm, Pair, PairTerm, Rates};
+pub use term::{BodyPairTerm, Pair, PairReads, PairTerm, Rates};
 pub(crate) use work::add_work_systems;

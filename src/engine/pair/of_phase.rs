@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::bound::{Chain, ErasedTerm, bind_all};
 use super::row::PairRow;
-use super::term::{BodyPairTerm, RowRates};
+use super::term::{BodyPairTerm, PairReads, RowRates};
 use super::work;
 use crate::parallel::{BlockSum, Split};
 use crate::plugin::{SetupError, SimBuilder};
@@ -34,6 +34,8 @@ pub(crate) struct PhaseTerms {
     terms: Vec<Box<dyn ErasedTerm>>,
     bodies: Arc<Mutex<Vec<BodyTerms>>>,
     sums: Vec<Fastest>,
+    /// What the terms read of the pairs.
+    pub reads: PairReads,
     /// Account of the first term that changes the density.
     pub of_density: Option<String>,
 }
@@ -66,10 +68,15 @@ impl PhaseTerms {
             }
         }
         let accounts = own.iter().map(|term| term.account.clone()).collect();
-        let terms = own.into_iter().map(|term| term.term).collect();
+        let terms: Vec<Box<dyn ErasedTerm>> = own.into_iter().map(|term| term.term).collect();
+        let mut reads = PairReads::default();
+        for term in &terms {
+            reads.kernel |= term.reads().kernel;
+            reads.velocity |= term.reads().velocity;
+        }
         let bodies = Arc::new(Mutex::new(bodies));
         work::add_work_systems(sim, phase, accounts, Arc::clone(&bodies));
-        Ok(Some(Self { terms, bodies, sums: Vec::new(), of_density }))
+        Ok(Some(Self { terms, bodies, sums: Vec::new(), reads, of_density }))
     }
 
     /// What the terms read, and the density rates that they write.
@@ -109,9 +116,8 @@ impl PhaseTerms {
         let (view, rows) = step.world.body_view(id);
         let mut density = if view.has::<DensityRate>() { Some(view.write::<DensityRate>()?) } else { None };
         forces.resize(rows.len() * terms.len(), DVec3::ZERO);
-        let with_kernel = terms.iter().any(|term| term.reads_kernel());
         let plane = step.world.dimension() == Dimension::Two;
-        let sums = &mut self.sums;
+        let (sums, reads) = (&mut self.sums, self.reads);
         bind_all(terms, &view, None, &mut |chain| {
             let written = TermRows {
                 total: &mut *force,
@@ -119,7 +125,7 @@ impl PhaseTerms {
                 terms: terms.len(),
                 density: density.as_mut().map_or(&mut [], |density| &mut density[rows.clone()]),
             };
-            fastest = run(&BoundTerms { chain, with_kernel, plane }, written, sums);
+            fastest = run(&BoundTerms { chain, reads, plane }, written, sums);
         })?;
         Ok(fastest)
     }
@@ -129,8 +135,8 @@ impl PhaseTerms {
 #[derive(Clone, Copy)]
 pub(crate) struct BoundTerms<'a> {
     chain: &'a Chain<'a>,
-    /// Whether a term reads kernel values.
-    pub with_kernel: bool,
+    /// What the terms of the phase read of the pairs.
+    pub reads: PairReads,
     plane: bool,
 }
 

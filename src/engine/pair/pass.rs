@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use super::of_phase::{BoundTerms, Fastest, PhaseTerms, TermRows};
 use super::row::PairRow;
+use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
@@ -21,18 +22,18 @@ pub(crate) fn with_row<R>(f: impl FnOnce(&mut PairRow) -> R) -> R {
 
 /// The pairs of one body.
 pub trait PairRows: Sync {
-    /// Puts the neighbours of particle i into `row`, in the order of its neighbour list; with their kernel values where a term
-    /// reads them.
-    fn row(&self, i: usize, with_kernel: bool, row: &mut PairRow);
+    /// Puts the neighbours of particle i into `row`, in the order of its neighbour list.
+    fn row(&self, i: usize, row: &mut PairRow);
 }
 
 /// Where a formulation keeps its pairs.
 pub trait PairSource: Send + 'static {
-    /// Calls `run` with the pairs of a body.
+    /// Calls `run` with the pairs of a body, whose kernel values and velocities are there if they are read.
     fn with_rows(
         &self,
         step: &Step<'_>,
         body: BodyId,
+        reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError>;
 }
@@ -71,7 +72,7 @@ impl<S: PairSource> Run for PairPass<S> {
             let rows = step.world.body(id).rows.clone();
             let (source, terms) = (&self.source, &mut self.terms);
             let mut fastest = Fastest::default();
-            source.with_rows(step, id, &mut |pairs| {
+            source.with_rows(step, id, terms.reads, &mut |pairs| {
                 let total = &mut force[rows.clone()];
                 fastest = terms.on_body(step, id, total, &mut |terms, written, sums| {
                     for_each_block(written, sums, &|first, block| {
@@ -90,7 +91,7 @@ fn run_block(terms: &BoundTerms<'_>, pairs: &dyn PairRows, first: usize, mut blo
     let mut fastest = Fastest::default();
     with_row(|row| {
         for k in 0..block.total.len() {
-            pairs.row(first + k, terms.with_kernel, row);
+            pairs.row(first + k, row);
             fastest.add(&terms.run(first + k, row, k, &mut block));
         }
     });

@@ -23,6 +23,8 @@ pub struct FourVectors {
 pub struct FourPairs {
     /// x_ij.
     pub current: FourVectors,
+    /// v_ij, m/s.
+    pub velocity: [Lanes4; 3],
     /// Pair weights w_ij.
     pub weight: Lanes4,
     /// Kernel values W_ij.
@@ -106,7 +108,7 @@ impl PairRow {
     /// The pairs of a four.
     #[inline(always)]
     pub(super) fn pair<A: Arithmetic, const PLAIN: bool>(&self, a: A, k: usize) -> Pair<A> {
-        let FourPairs { current, weight, kernel, support, volume_j } = &self.pairs[k];
+        let FourPairs { current, velocity, weight, kernel, support, volume_j } = &self.pairs[k];
         let reference = if PLAIN { current } else { self.reference.get(k).unwrap_or(current) };
         Pair {
             x_ij: Vector::new(a, current.vector),
@@ -115,9 +117,11 @@ impl PairRow {
             reference_distance: Number::new(a, reference.length),
             weight: Number::new(a, *weight),
             kernel: Number::new(a, *kernel),
+            v_ij: Vector::new(a, *velocity),
             support: Number::new(a, *support),
             volume_i: Number::splat(a, self.volume_i),
             volume_j: Number::new(a, *volume_j),
+            is_reference: PLAIN,
         }
     }
 }

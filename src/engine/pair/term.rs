@@ -23,14 +23,18 @@ pub struct Pair<A> {
     pub reference_distance: Number<A>,
     /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, so that grad_i W = w_ij x_ij.
     pub weight: Number<A>,
-    /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the body reads it ([`PairTerm::READS_KERNEL`]).
+    /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the phase reads it ([`PairTerm::READS_KERNEL`]).
     pub kernel: Number<A>,
+    /// Relative velocity v_ij = v_j - v_i, m/s; not a number unless a term of the phase reads it ([`PairTerm::READS_VELOCITY`]).
+    pub v_ij: Vector<A>,
     /// Mean support radius of the two particles, m.
     pub support: Number<A>,
     /// Volume of i in the formulation's sums, m3.
     pub volume_i: Number<A>,
     /// Volume of j, m3.
     pub volume_j: Number<A>,
+    /// Whether the current configuration is the reference; the same for all pairs of a row.
+    pub(super) is_reference: bool,
 }
 
 impl<A: Arithmetic> Pair<A> {
@@ -38,6 +42,12 @@ impl<A: Arithmetic> Pair<A> {
     #[inline(always)]
     pub fn smoothing_length(&self) -> Number<A> {
         0.5 * self.support
+    }
+
+    /// Slope of the kernel over the current length: |W'_ij| / |x_ij|, with the slope at the reference length where there is one.
+    #[inline(always)]
+    pub fn slope_per_length(&self) -> Number<A> {
+        if self.is_reference { self.weight } else { self.weight * self.reference_distance / self.distance }
     }
 }
 
@@ -91,6 +101,8 @@ pub trait PairTerm: Send + Sync + 'static {
 
     /// Whether it reads [`Pair::kernel`]. A term that does not saves the kernel of every pair by saying so.
     const READS_KERNEL: bool = true;
+    /// Whether it reads [`Pair::v_ij`]. A term that does not saves the velocities of every pair by saying so.
+    const READS_VELOCITY: bool = true;
     /// Whether the term gives density rates.
     const CHANGES_DENSITY: bool = false;
 
@@ -103,6 +115,15 @@ pub trait PairTerm: Send + Sync + 'static {
         j: FourOf<Self::ReadJ, A>,
         rates: &mut Rates<A>,
     );
+}
+
+/// What the terms of a phase read of its pairs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PairReads {
+    /// Kernel values.
+    pub kernel: bool,
+    /// Relative velocities.
+    pub velocity: bool,
 }
 
 /// A pair term with the bodies it acts on.

@@ -3,8 +3,8 @@
 use super::BlockSum;
 
 /// The largest number so far; not a number as soon as one of them is none.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Largest(pub f64);
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Largest(pub f64);
 
 impl BlockSum for Largest {
     fn add(&mut self, next: &Self) {

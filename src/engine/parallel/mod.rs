@@ -14,7 +14,7 @@ pub use arithmetic::Arithmetic;
 pub use blocks::{BLOCK, BlockSum, Split, block_count, for_each_block, sum_over_blocks};
 pub use dimension::{PlaneOrSolid, run_hot_in};
 pub use lanes::Lanes4;
-pub(crate) use largest::Largest;
+pub use largest::Largest;
 pub use number::Number;
 pub use path::{HotLoop, instruction_path, run_hot};
 pub use plane::run_hot_on;

@@ -3,6 +3,7 @@
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
 //! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
 
+use super::batch::{BATCH, Batch};
 use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::near_rows::{NearRow, NearWriter};
@@ -72,17 +73,20 @@ impl PlaneOrSolid for Rows<'_> {
 impl Rows<'_> {
     #[inline(always)]
     fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
-        let FlowCloud { records, pairs, kernel, .. } = self.cloud;
+        let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
         let kernel = *kernel;
+        let mut batch = Batch::EMPTY;
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = Own::<D>::new(&records[i]);
-            let of_i = Pairs { cloud: self.cloud, kernel, i, own, back: self.back };
+            let pairs = Pairs { cloud: self.cloud, kernel, i, own, back: self.back };
             let mut near = self.near.row(k);
-            let sum = of_i.add::<A, P>(a, pairs.fluid.row(i), &mut near, Lanes4::ZERO);
-            let sum = of_i.add::<A, P>(a, pairs.walls.row(i), &mut near, sum);
+            let mut sum = Lanes4::ZERO;
+            for row in [lists.fluid.row(i), lists.walls.row(i)] {
+                sum = pairs.add::<A, P>(a, row, (&mut near, &mut batch), sum);
+            }
             near.close();
-            *out = sum.sum();
+            *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }
 }
@@ -102,28 +106,39 @@ impl<const D: usize> Pairs<'_, D> {
         &self,
         a: A,
         row: &[u32],
-        near: &mut NearRow<'_>,
+        (near, batch): (&mut NearRow<'_>, &mut Batch),
         mut sum: Lanes4,
     ) -> Lanes4 {
         let (fours, rest) = row.as_chunks();
-        for four in fours {
-            sum = self.add_four::<A, P>(a, *four, 4, near, sum);
+        let mut done = 0;
+        while done < fours.len() {
+            let end = (done + BATCH).min(fours.len());
+            for k in done..end {
+                let (square, factor) = self.four::<A, P>(a, fours[k], 4, near);
+                batch.put(k, square, factor);
+            }
+            for k in done..end {
+                let (square, factor) = batch.get(k);
+                sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
+            }
+            done = end;
         }
         if !rest.is_empty() {
-            sum = self.add_four::<A, P>(a, filled_up(rest, self.i), rest.len(), near, sum);
+            let (square, factor) = self.four::<A, P>(a, filled_up(rest, self.i), rest.len(), near);
+            sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
         }
         sum
     }
 
+    /// The squares of the distances at the middle of the step, and V_j v_ij.x_ij; writes down who is near.
     #[inline(always)]
-    fn add_four<A: Arithmetic, const P: bool>(
+    fn four<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         rows: [u32; 4],
         count: usize,
         near: &mut NearRow<'_>,
-        sum: Lanes4,
-    ) -> Lanes4 {
+    ) -> (Lanes4, Lanes4) {
         let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, back, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
         let limit = Lanes4::splat(kernel.support * kernel.support);
@@ -133,7 +148,6 @@ impl<const D: usize> Pairs<'_, D> {
         for axis in 0..D {
             x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
         }
-        let weight = kernel.weights(a, a.sqrt(dot(a, &x, &x)));
-        a.times_add(a.times(weight, four.volume), dot(a, &four.v, &x), sum)
+        (dot(a, &x, &x), a.times(four.volume, dot(a, &four.v, &x)))
     }
 }

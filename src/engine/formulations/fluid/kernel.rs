@@ -41,8 +41,20 @@ impl FluidKernel {
     /// Pair weights w = |W'| / r = w(0) (1 - r/H)^3 of four neighbours.
     #[inline(always)]
     pub fn weights<A: Arithmetic>(&self, a: A, r: Lanes4) -> Lanes4 {
+        a.scale(self.weight_scale, self.shapes(a, r))
+    }
+
+    /// Pair weights of four neighbours over that of r = 0: for sums that are multiplied with [`Self::weight_scale`] once.
+    #[inline(always)]
+    pub(super) fn shapes<A: Arithmetic>(&self, a: A, r: Lanes4) -> Lanes4 {
         let s = a.or_zero(a.scale_add(-self.inverse_support, r, Lanes4::splat(1.0)));
-        a.scale(self.weight_scale, a.times(a.times(s, s), s))
+        a.times(a.times(s, s), s)
+    }
+
+    /// Pair weight at r = 0, 1/m^(d+2).
+    #[inline(always)]
+    pub(super) fn weight_scale(&self) -> f64 {
+        self.weight_scale
     }
 
     /// Kernel values W = W(0) (1 - r/H)^4 (1 + 4 r/H) of four neighbours.

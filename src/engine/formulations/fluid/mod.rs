@@ -6,6 +6,7 @@
 //! one search for neighbours; every pair force has its exact opposite on the other particle.
 
 mod assemble;
+mod batch;
 mod checks;
 mod cloud;
 mod compression;

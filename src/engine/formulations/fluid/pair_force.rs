@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::batch::Batch;
 use super::cloud::{FlowCloud, Group, Role};
 use super::pair_sums::Pairs;
 use super::record::{Own, sums};
@@ -125,6 +126,7 @@ impl Rows<'_> {
         let ForceRows { mut written, parts } = self.rows;
         let mut terms = self.terms;
         let own_is_fluid = group.fluid().is_some();
+        let mut batch = Batch::EMPTY;
         for k in 0..written.total.len() {
             let i = group.cloud.start + self.first + k;
             let own = &cloud.records[i];
@@ -151,7 +153,8 @@ impl Rows<'_> {
                     Some(terms) if other.cloud.start == group.cloud.start && own.volume() > 0.0 => {
                         let room = terms.row.room(row.len(), false, false);
                         let before = (group.cloud.start - group.rows.start) as u32;
-                        pairs.sum_and_keep::<A, P>(a, room, before, terms.terms.with_kernel)
+                        let with_kernel = terms.terms.reads.kernel;
+                        pairs.sum_and_keep::<A, P>(a, room, before, &mut batch, with_kernel)
                     }
                     _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, P, true>(a),
                     _ => pairs.sum::<A, P, false>(a),

@@ -1,5 +1,6 @@
 //! Sums over the pairs of one particle with the particles of one body: what the forces of the second pass are made of.
 
+use super::batch::{BATCH, Batch};
 use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::record::{FILLS, Four, Own, as_rows, dot, filled_up};
@@ -59,6 +60,30 @@ impl<const D: usize> Sums<D> {
     }
 }
 
+impl<const D: usize> Sums<D> {
+    /// Adds four neighbours in fluids.
+    #[inline(always)]
+    fn add_fluid<A: Arithmetic, const VISCOUS: bool>(
+        &mut self,
+        a: A,
+        FourPairs { current, velocity, weight, volume_j, .. }: &FourPairs,
+        pressure: Lanes4,
+        viscosity: f64,
+    ) {
+        let weight = a.times(*weight, *volume_j);
+        let pressure = a.times(weight, pressure);
+        for axis in 0..D {
+            self.pressure[axis] = a.times_add(pressure, current.vector[axis], self.pressure[axis]);
+        }
+        if VISCOUS {
+            let friction = a.scale(viscosity, weight);
+            for axis in 0..D {
+                self.viscous[axis] = a.times_add(friction, velocity[axis], self.viscous[axis]);
+            }
+        }
+    }
+}
+
 impl<const D: usize> Pairs<'_, D> {
     /// The sums.
     #[inline(always)]
@@ -94,19 +119,35 @@ impl<const D: usize> Pairs<'_, D> {
         a: A,
         Room { pairs, rows, .. }: Room<'_>,
         before: u32,
+        batch: &mut Batch,
         with_kernel: bool,
     ) -> Sums<D> {
         let mut sum = Sums::ZERO;
         let (fours, rest) = self.row.as_chunks();
+        let mut done = 0;
         // Chained iterators would be called in the loop, off the instruction path.
-        for k in 0..fours.len() {
-            self.keep::<A, P>(a, fours[k], 4, &mut pairs[k], &mut sum);
-            rows[k] = counted_from(before, fours[k]);
-        }
-        if !rest.is_empty() {
-            let (k, last) = (fours.len(), filled_up(rest, self.i));
-            self.keep::<A, P>(a, last, rest.len(), &mut pairs[k], &mut sum);
-            rows[k] = counted_from(before, last);
+        while done < pairs.len() {
+            let end = (done + BATCH).min(pairs.len());
+            for k in done..end {
+                let (four, count) =
+                    if k < fours.len() { (fours[k], 4) } else { (filled_up(rest, self.i), rest.len()) };
+                let (square, pressure) = self.gather::<A, P>(a, four, count, &mut pairs[k]);
+                batch.put(k, square, pressure);
+                rows[k] = counted_from(before, four);
+            }
+            for k in done..end {
+                let (square, pressure) = batch.get(k);
+                let distance = a.sqrt(square);
+                let weight = self.kernel.weights(a, distance);
+                pairs[k].current.length = distance;
+                pairs[k].weight = weight;
+                if self.viscosity > 0.0 {
+                    sum.add_fluid::<A, true>(a, &pairs[k], pressure, self.viscosity);
+                } else {
+                    sum.add_fluid::<A, false>(a, &pairs[k], pressure, self.viscosity);
+                }
+            }
+            done = end;
         }
         if with_kernel {
             for four in pairs {
@@ -116,29 +157,25 @@ impl<const D: usize> Pairs<'_, D> {
         sum
     }
 
+    /// Puts four neighbours into `kept`, all but lengths and weights; gives squares of the lengths and p_i + p_j.
     #[inline(always)]
-    fn keep<A: Arithmetic, const P: bool>(
+    fn gather<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         rows: [u32; 4],
         count: usize,
         kept: &mut FourPairs,
-        sum: &mut Sums<D>,
-    ) {
+    ) -> (Lanes4, Lanes4) {
         let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
-        let square = dot(a, &four.x, &four.x);
-        let (square, volume) = kernel.within(a, square, FILLS[count], four.volume);
-        let distance = a.sqrt(square);
-        let weight = kernel.weights(a, distance);
-        sum.add::<A, true, true>(a, &four, a.times(weight, volume), self);
+        let (square, volume) = kernel.within(a, dot(a, &four.x, &four.x), FILLS[count], four.volume);
         for axis in 0..D {
             kept.current.vector[axis] = four.x[axis];
+            kept.velocity[axis] = four.v[axis];
         }
-        kept.current.length = distance;
-        kept.weight = weight;
         kept.support = Lanes4::splat(kernel.support);
         kept.volume_j = volume;
+        (square, a.plus(four.pressure, own.pressure))
     }
 }
 

@@ -7,11 +7,11 @@ use super::formulation::PackedRows;
 use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{FourVectors, PairRow, PairRows, PairSource};
+use crate::pair::{FourVectors, PairReads, PairRow, PairRows, PairSource};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
-use crate::world::{BodyId, PhaseId, SupportRadius};
+use crate::world::{BodyId, PhaseId, SupportRadius, Velocity};
 
 /// Gives pair terms the bonds of the phase.
 pub(super) struct BondPairs {
@@ -23,14 +23,27 @@ impl PairSource for BondPairs {
         &self,
         step: &Step<'_>,
         body: BodyId,
+        reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         let packed = step.resources.get::<PackedRows>();
-        let support = step.world.phase(self.phase).read::<SupportRadius>()?;
+        let view = step.world.phase(self.phase);
+        let support = view.read::<SupportRadius>()?;
+        let velocity = if reads.velocity { Some(view.read::<Velocity>()?) } else { None };
         let Some((_, kernel)) = packed.kernels.iter().find(|(id, _)| *id == body) else { return Ok(()) };
         let PackedRows { bonds, images, sites, .. } = &*packed;
         let plane = step.world.dimension() == Dimension::Two;
-        run(&BodyPairs { bonds, images, sites, support: &support, kernel, plane })
+        let velocity = velocity.as_deref();
+        run(&BodyPairs {
+            bonds,
+            images,
+            sites,
+            support: &support,
+            velocity,
+            kernel,
+            with_kernel: reads.kernel,
+            plane,
+        })
     }
 }
 
@@ -39,13 +52,16 @@ struct BodyPairs<'a> {
     images: &'a Images,
     sites: &'a [Site],
     support: &'a [SupportRadius],
+    /// Velocities, where they are read.
+    velocity: Option<&'a [Velocity]>,
     kernel: &'a Kernel,
+    with_kernel: bool,
     plane: bool,
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, with_kernel: bool, row: &mut PairRow) {
-        run_hot_on(self.plane, Fill { pairs: self, i, with_kernel, row });
+    fn row(&self, i: usize, row: &mut PairRow) {
+        run_hot_on(self.plane, Fill { pairs: self, i, row });
     }
 }
 
@@ -53,7 +69,6 @@ impl PairRows for BodyPairs<'_> {
 struct Fill<'a> {
     pairs: &'a BodyPairs<'a>,
     i: usize,
-    with_kernel: bool,
     row: &'a mut PairRow,
 }
 
@@ -62,8 +77,8 @@ impl HotLoop for Fill<'_> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        let Self { pairs: &BodyPairs { bonds, images, sites, support, kernel, .. }, i, with_kernel, row } =
-            self;
+        let Self { pairs, i, row } = self;
+        let &BodyPairs { bonds, images, sites, support, velocity, kernel, with_kernel, .. } = pairs;
         let site = &sites[i];
         row.volume_i = site.reference.0[3];
         let list =
@@ -95,6 +110,20 @@ impl HotLoop for Fill<'_> {
                 room.mirrors[n] = [j, k, l, m].map(|j| images.mirror(j).unwrap_or(DVec3::ONE));
             }
             let [j, k, l, m] = four;
+            if let Some(v) = velocity {
+                let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
+                if imaged {
+                    let signs = &room.mirrors[n];
+                    of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
+                }
+                let Vector { x, y, z } = Vector::from_rows(a, of);
+                let own = v[i].0;
+                pairs.velocity = [
+                    a.minus(x.lanes(), Lanes4::splat(own.x)),
+                    a.minus(y.lanes(), Lanes4::splat(own.y)),
+                    a.minus(z.lanes(), Lanes4::splat(own.z)),
+                ];
+            }
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
             let radius = a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other));
             // Removed particles, and lanes without a neighbour, have neither weight nor volume.
