@@ -86,10 +86,17 @@ pub(super) struct PackedRows {
     pub(super) own_pull: Vec<DVec3>,
     /// Of every body, in the order of rows.
     pub(super) frames: Vec<Frame>,
-    /// Kernel of each body.
-    pub(super) kernels: Vec<(BodyId, Kernel)>,
+    pub(super) kernels: Vec<BodyKernel>,
     /// Stable step of each body in its reference configuration, s.
     pub(super) stable_step: Vec<f64>,
+}
+
+/// The kernel of a body.
+pub(super) struct BodyKernel {
+    pub body: BodyId,
+    pub kernel: Kernel,
+    /// Support radius, m, where all particles have the same.
+    pub support: Option<f64>,
 }
 
 impl Formulation for TotalLagrangian {
@@ -239,7 +246,8 @@ fn set_up(
         let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
             unreachable!("every kernel has a two- and a three-dimensional form");
         };
-        kernels.push((*id, kernel));
+        let uniform = parameters.neighbors.is_none().then_some(parameters.support * body.spacing);
+        kernels.push(BodyKernel { body: *id, kernel, support: uniform });
         let rows = body.rows.clone();
         let image_rows = images.add(rows.clone(), position, parameters.support * body.spacing, repeats);
         let body_bonds =

@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::bonds::Bonds;
-use super::formulation::PackedRows;
+use super::formulation::{BodyKernel, PackedRows};
 use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{FourVectors, PairReads, PairRow, PairRows, PairSource};
+use crate::pair::{PairReads, PairRow, PairRows, PairSource, Room};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
@@ -30,19 +30,20 @@ impl PairSource for BondPairs {
         let view = step.world.phase(self.phase);
         let support = view.read::<SupportRadius>()?;
         let velocity = if reads.velocity { Some(view.read::<Velocity>()?) } else { None };
-        let Some((_, kernel)) = packed.kernels.iter().find(|(id, _)| *id == body) else { return Ok(()) };
-        let PackedRows { bonds, images, sites, .. } = &*packed;
-        let plane = step.world.dimension() == Dimension::Two;
-        let velocity = velocity.as_deref();
+        let PackedRows { bonds, images, sites, kernels, .. } = &*packed;
+        let Some(BodyKernel { kernel, support: uniform, .. }) = kernels.iter().find(|of| of.body == body)
+        else {
+            return Ok(());
+        };
         run(&BodyPairs {
             bonds,
             images,
             sites,
             support: &support,
-            velocity,
-            kernel,
-            with_kernel: reads.kernel,
-            plane,
+            uniform: *uniform,
+            velocity: velocity.as_deref(),
+            kernel: reads.kernel.then_some(kernel),
+            plane: step.world.dimension() == Dimension::Two,
         })
     }
 }
@@ -52,10 +53,12 @@ struct BodyPairs<'a> {
     images: &'a Images,
     sites: &'a [Site],
     support: &'a [SupportRadius],
+    /// Support radius of all particles, m, where it is the same.
+    uniform: Option<f64>,
     /// Velocities, where they are read.
     velocity: Option<&'a [Velocity]>,
-    kernel: &'a Kernel,
-    with_kernel: bool,
+    /// Kernel, where its values are read.
+    kernel: Option<&'a Kernel>,
     plane: bool,
 }
 
@@ -78,71 +81,101 @@ impl HotLoop for Fill<'_> {
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
         let Self { pairs, i, row } = self;
-        let &BodyPairs { bonds, images, sites, support, velocity, kernel, with_kernel, .. } = pairs;
+        let &BodyPairs { bonds, images, sites, .. } = pairs;
         let site = &sites[i];
         row.volume_i = site.reference.0[3];
         let list =
             if site.is_present() { bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize } else { 0..0 };
         let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
-        let imaged = !images.is_empty();
-        let room = row.room(neighbors.len(), true, imaged);
-        for (n, pairs) in room.pairs.iter_mut().enumerate() {
-            let lanes = 4 * n..(4 * n + 4).min(neighbors.len());
-            let mut four = [i; 4];
-            let mut weight = Lanes4::ZERO;
-            for (lane, bond) in lanes.enumerate() {
-                four[lane] = neighbors[bond] as usize;
-                weight.0[lane] = f64::from(weights[bond]);
+        let mut room = row.room(neighbors.len(), true, !images.is_empty());
+        let (fours, rest) = neighbors.as_chunks();
+        let (weights, rest_weights) = weights.as_chunks();
+        for n in 0..fours.len() {
+            pairs.put(a, (i, site), (fours[n], weights[n]), n, &mut room);
+        }
+        if !rest.is_empty() {
+            let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
+            four[..rest.len()].copy_from_slice(rest);
+            weight[..rest.len()].copy_from_slice(rest_weights);
+            pairs.put(a, (i, site), (four, weight), fours.len(), &mut room);
+        }
+        // Roots in a loop of their own: the loop above need not wait for them.
+        for n in 0..room.pairs.len() {
+            let (pairs, reference) = (&mut room.pairs[n], &mut room.reference[n]);
+            reference.length = length(a, reference.vector);
+            pairs.current.length = length(a, pairs.current.vector);
+        }
+        if let Some(kernel) = pairs.kernel {
+            put_kernel(kernel, room);
+        }
+    }
+}
+
+impl BodyPairs<'_> {
+    /// Puts four neighbours into the room, all but lengths and kernel values.
+    #[inline(always)]
+    fn put<A: Arithmetic>(
+        &self,
+        a: A,
+        (i, site): (usize, &Site),
+        (four, weight): ([u32; 4], [f32; 4]),
+        n: usize,
+        room: &mut Room<'_>,
+    ) {
+        let Self { images, sites, support, uniform, velocity, .. } = *self;
+        let mut rows = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
+        let [j, k, l, m] = rows;
+        let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
+        let place = a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
+        let moved =
+            a.transpose([of[0].displacement, of[1].displacement, of[2].displacement, of[3].displacement]);
+        let weight =
+            Lanes4([f64::from(weight[0]), f64::from(weight[1]), f64::from(weight[2]), f64::from(weight[3])]);
+        let pairs = &mut room.pairs[n];
+        // Removed particles, and lanes without a neighbour, have neither weight nor volume.
+        pairs.volume_j = a.where_below(Lanes4::ZERO, weight, place[3]);
+        pairs.weight = a.where_below(Lanes4::ZERO, pairs.volume_j, weight);
+        for axis in 0..A::AXES {
+            let then = a.minus(place[axis], Lanes4::splat(site.reference.0[axis]));
+            let u = a.minus(moved[axis], Lanes4::splat(site.displacement.0[axis]));
+            room.reference[n].vector[axis] = then;
+            pairs.current.vector[axis] = a.plus(then, u);
+        }
+        if !images.is_empty() {
+            for lane in 0..4 {
+                room.mirrors[n][lane] = images.mirror(rows[lane]).unwrap_or(DVec3::ONE);
+                rows[lane] = images.source(rows[lane]);
             }
-            let [j, k, l, m] = four;
-            let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
-            let place = a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
-            let moved =
-                a.transpose([of[0].displacement, of[1].displacement, of[2].displacement, of[3].displacement]);
-            let (mut x, mut then) = ([Lanes4::ZERO; 3], [Lanes4::ZERO; 3]);
-            for axis in 0..A::AXES {
-                then[axis] = a.minus(place[axis], Lanes4::splat(site.reference.0[axis]));
-                let u = a.minus(moved[axis], Lanes4::splat(site.displacement.0[axis]));
-                x[axis] = a.plus(then[axis], u);
+        }
+        let [j, k, l, m] = rows;
+        room.rows[n] = [j as u32, k as u32, l as u32, m as u32];
+        if let Some(v) = velocity {
+            let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
+            if !images.is_empty() {
+                let signs = &room.mirrors[n];
+                of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
             }
-            if imaged {
-                four = four.map(|j| images.source(j));
-                room.mirrors[n] = [j, k, l, m].map(|j| images.mirror(j).unwrap_or(DVec3::ONE));
+            let (of, own) = (Vector::from_rows(a, of), Vector::splat(a, v[i].0));
+            let Vector { x, y, z } = of - own;
+            pairs.velocity = [x.lanes(), y.lanes(), z.lanes()];
+        }
+        pairs.support = match uniform {
+            Some(radius) => Lanes4::splat(radius),
+            None => {
+                let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
+                a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other))
             }
-            let [j, k, l, m] = four;
-            if let Some(v) = velocity {
-                let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
-                if imaged {
-                    let signs = &room.mirrors[n];
-                    of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
-                }
-                let Vector { x, y, z } = Vector::from_rows(a, of);
-                let own = v[i].0;
-                pairs.velocity = [
-                    a.minus(x.lanes(), Lanes4::splat(own.x)),
-                    a.minus(y.lanes(), Lanes4::splat(own.y)),
-                    a.minus(z.lanes(), Lanes4::splat(own.z)),
-                ];
-            }
-            let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
-            let radius = a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other));
-            // Removed particles, and lanes without a neighbour, have neither weight nor volume.
-            let present = a.where_below(Lanes4::ZERO, weight, place[3]);
-            let weight = a.where_below(Lanes4::ZERO, present, weight);
-            let reference = FourVectors { vector: then, length: length(a, then) };
-            room.reference[n] = reference;
-            pairs.current = FourVectors { vector: x, length: length(a, x) };
-            pairs.weight = weight;
-            pairs.support = radius;
-            pairs.volume_j = present;
-            if with_kernel {
-                for lane in 0..4 {
-                    let h = kernel.smoothing_length(radius.0[lane]);
-                    let value = kernel.w(reference.length.0[lane], h);
-                    pairs.kernel.0[lane] = if present.0[lane] > 0.0 { value } else { 0.0 };
-                }
-            }
-            room.rows[n] = [four[0] as u32, four[1] as u32, four[2] as u32, four[3] as u32];
+        };
+    }
+}
+
+/// Puts kernel values of the reference lengths into a row.
+fn put_kernel(kernel: &Kernel, room: Room<'_>) {
+    for (pairs, reference) in room.pairs.iter_mut().zip(room.reference) {
+        for lane in 0..4 {
+            let h = kernel.smoothing_length(pairs.support.0[lane]);
+            let value = kernel.w(reference.length.0[lane], h);
+            pairs.kernel.0[lane] = if pairs.volume_j.0[lane] > 0.0 { value } else { 0.0 };
         }
     }
 }
