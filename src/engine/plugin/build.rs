@@ -4,6 +4,7 @@ use std::any::Any;
 
 use super::builder::SimBuilder;
 use super::memory;
+use super::names;
 use super::options::BuildOptions;
 use super::overlap;
 use super::plan::BodyPlan;
@@ -48,6 +49,10 @@ fn build_in(
     registry: &Registry,
     options: &BuildOptions,
 ) -> Result<Simulation, Vec<Problem>> {
+    let misspelt = names::problems(scene, registry);
+    if !misspelt.is_empty() {
+        return Err(misspelt);
+    }
     let (mut bodies, phases, parsed) = place_bodies(scene, source, registry)?;
     crate::formulations::fluid::estimate_sound_speeds(&mut bodies, scene)?;
     let overlaps = overlap::problems(&bodies);

@@ -4,6 +4,7 @@ mod build;
 mod builder;
 mod error;
 mod memory;
+mod names;
 mod options;
 mod overlap;
 mod plan;

@@ -3,12 +3,14 @@
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::de::DeserializeOwned;
+
 use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::traits::{Formulation, Plugin};
 use crate::contact::{ContactLaw, ContactPair, NormalForce};
 use crate::materials::{Material, MaterialModel};
-use crate::scene::{Item, Parameter, Problem, TypeDoc, parameters, type_docs, unknown};
+use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};
 use crate::world::{BodyId, ColumnSet};
 
 /// What kind of thing a name of a scene stands for.
@@ -79,6 +81,7 @@ pub(super) struct FormulationEntry {
 
 type BuildMaterial = fn(&Item) -> Result<Material, Vec<Problem>>;
 type BuildContactLaw = fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
+type ParseItem = fn(&Item) -> Result<(), Vec<Problem>>;
 type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 
 /// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin crates.
@@ -90,6 +93,7 @@ pub struct Registry {
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
     /// Names of the plugins that change the laws of materials.
     of_materials: BTreeSet<&'static str>,
+    parsers: BTreeMap<(Kind, &'static str), ParseItem>,
     entries: BTreeMap<(Kind, &'static str), Entry>,
 }
 
@@ -170,7 +174,7 @@ impl Registry {
         self.entries.iter().filter(move |((k, _), _)| *k == kind).map(|(_, entry)| entry)
     }
 
-    fn describe<T: schemars::JsonSchema>(
+    fn describe<T: schemars::JsonSchema + DeserializeOwned>(
         &mut self,
         kind: Kind,
         name: &'static str,
@@ -178,6 +182,7 @@ impl Registry {
     ) -> &mut Self {
         let entry = Entry { name, reference, parameters: parameters::<T>(), docs: type_docs::<T>() };
         self.entries.insert((kind, name), entry);
+        self.parsers.insert((kind, name), |item| item.parse::<T>().map(drop));
         self
     }
 
@@ -189,8 +194,18 @@ impl Registry {
             return vec![item.problem_with_name(message).help(help)];
         }
         let known: Vec<&str> = self.entries(kind).map(|entry| entry.name).collect();
-        let (message, helps) = unknown(kind.word(), item.name(), &known);
+        let (message, mut helps) = unknown(kind.word(), item.name(), &known);
+        let field = item.name().to_lowercase();
+        if parameters::<Scene>().iter().any(|parameter| parameter.name == field) {
+            helps.insert(0, format!("`{field}` is a field of `Scene`"));
+        }
         vec![item.problem_with_name(message).helps(helps)]
+    }
+
+    /// Looks whether a name is known and its parameters can be read.
+    pub(super) fn check(&self, kind: Kind, item: &Item) -> Result<(), Vec<Problem>> {
+        let parse = self.parsers.get(&(kind, item.name())).ok_or_else(|| self.unknown(kind, item))?;
+        parse(item)
     }
 
     pub(super) fn build_material(&self, item: &Item) -> Result<Material, Vec<Problem>> {

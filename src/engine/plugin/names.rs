@@ -1,0 +1,29 @@
+//! The first look at a scene with a registry: every name is known, and its parameters can be read. All that is misspelt is told at once, before
+//! anything is placed or estimated.
+
+use super::registry::{Kind, Registry};
+use crate::scene::{Item, Problem, Scene};
+
+/// What is wrong with the names of a scene and their parameters.
+pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
+    let mut found = Vec::new();
+    for (kind, item) in items(scene) {
+        if let Err(problems) = registry.check(kind, item) {
+            found.extend(problems);
+        }
+    }
+    found
+}
+
+/// All that a registry has to know, in the order of scenes.
+fn items(scene: &Scene) -> impl Iterator<Item = (Kind, &Item)> {
+    let materials = scene.materials.values().map(|item| (Kind::Material, item));
+    let bodies = scene.bodies.iter().flat_map(|body| {
+        let plugins = body.plugins.iter().map(|item| (Kind::Plugin, item));
+        std::iter::once((Kind::Formulation, &body.formulation)).chain(plugins)
+    });
+    let conditions = scene.conditions.iter().map(|item| (Kind::Condition, item));
+    let contacts = scene.contacts.iter().map(|contact| (Kind::ContactLaw, &contact.law));
+    let plugins = scene.plugins.iter().map(|item| (Kind::Plugin, item));
+    materials.chain(bodies).chain(conditions).chain(contacts).chain(plugins)
+}
