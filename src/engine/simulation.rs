@@ -239,7 +239,7 @@ impl Simulation {
     }
 
     fn run_short_stages(&mut self, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
-        let SubSteps { phases, state, .. } = &mut self.sub_steps;
+        let SubSteps { phases, state, divided, .. } = &mut self.sub_steps;
         let mut step = Step {
             world: &self.world,
             resources: &self.resources,
@@ -247,7 +247,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut state.limits,
             warnings: &mut self.warnings,
-            turn: Turn::short(phases),
+            turn: Turn::short(phases, *divided),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

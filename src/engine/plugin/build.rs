@@ -61,6 +61,7 @@ fn build_in(
     }
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
+    crate::formulations::fluid::damp_ringing(&mut sim);
     assemble(scene, parsed, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);

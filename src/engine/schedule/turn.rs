@@ -17,18 +17,24 @@ pub enum Pace {
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<'s> {
     short: bool,
+    part: bool,
     sub_cycled: &'s [PhaseId],
 }
 
 impl<'s> Turn<'s> {
     /// The long step; without sub-cycled phases, the whole of the step.
     pub fn long(sub_cycled: &'s [PhaseId]) -> Self {
-        Self { short: false, sub_cycled }
+        Self { short: false, part: false, sub_cycled }
     }
 
-    /// A short step.
-    pub fn short(sub_cycled: &'s [PhaseId]) -> Self {
-        Self { short: true, sub_cycled }
+    /// A short step; `part` where there are others in the long step.
+    pub fn short(sub_cycled: &'s [PhaseId], part: bool) -> Self {
+        Self { short: true, part, sub_cycled }
+    }
+
+    /// Whether this is one of several short steps in a long one.
+    pub fn is_part(self) -> bool {
+        self.part
     }
 
     /// Whether the body moves in this part of the step.

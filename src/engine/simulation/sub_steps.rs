@@ -18,6 +18,8 @@ pub(super) struct SubSteps {
     largest: u32,
     /// Factor on the limits of short steps.
     factor: f64,
+    /// Whether the long step takes more than one.
+    pub divided: bool,
     /// What a checkpoint keeps.
     pub state: SubStepState,
 }
@@ -39,7 +41,13 @@ impl SubSteps {
             scene::Step::Adaptive { factor } => factor,
             scene::Step::Fixed(_) => 1.0,
         };
-        Self { phases, largest: time.sub_steps.max(1), factor, state: SubStepState::default() }
+        Self {
+            phases,
+            largest: time.sub_steps.max(1),
+            factor,
+            divided: false,
+            state: SubStepState::default(),
+        }
     }
 
     /// Largest length of the next long step that needs no more short ones than there may be, s, and what limits it.
@@ -93,6 +101,7 @@ impl Simulation {
                 return Err(RunError::StepTooSmall { dt, by });
             }
             let dt = rest / count;
+            self.sub_steps.divided = count > 1.0 || self.sub_steps.state.last > 0;
             self.clock = Clock { time: long.time + (long.dt - rest), dt, step: long.step };
             self.run_short_stages(|stage| stage != Stage::Record)?;
             self.sub_steps.take_limit();

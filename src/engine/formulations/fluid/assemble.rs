@@ -34,6 +34,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let (support, spacing) = (first.support, sim.body(first.id).spacing);
     one_support(&fluids, support, sim)?;
     let periodic = periodic_of(sim)?;
+    checks::periods_are_long(&periodic, support)?;
     for wall in &walls {
         checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)?;
     }

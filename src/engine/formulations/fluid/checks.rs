@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::cloud::FlowCloud;
+use super::cloud::{FlowCloud, Group};
 use crate::linalg::{Eigen, Sym3};
 use crate::neighbors::{Cloud, NeighborList, Periodic};
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
@@ -10,6 +10,8 @@ use crate::scene::Problem;
 
 /// Part of the particles of a wall that may sit where it is thinner than the support: sharp edges have some.
 const THIN_SHARE: f64 = 0.05;
+/// Largest relative change of the density at the start.
+const LARGEST_CHANGE: f64 = 0.1;
 
 fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupError {
     let path = format!("bodies[{}].{field}", body.id.0);
@@ -34,6 +36,49 @@ pub(super) fn walls_have_fluid(
         }
     }
     Ok(())
+}
+
+/// An error where a period is so short that a particle would see two images of another.
+pub(super) fn periods_are_long(periodic: &Periodic, support: f64) -> Result<(), SetupError> {
+    let least = 2.0 * support;
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let length = periodic.lengths()[axis];
+        if periodic.axes()[axis] && length < least * (1.0 + 1e-6) {
+            let message = format!(
+                "the period of {length} m along {name} is too short for a fluid of support {support} m"
+            );
+            let problem = Problem::at_path("domain.periodic", message);
+            let help = format!(
+                "it has to be longer than twice the support, {least} m: a longer domain, or a smaller spacing"
+            );
+            return Err(SetupError::Problems(vec![problem.help(help)]));
+        }
+    }
+    Ok(())
+}
+
+/// An error where the pressure of the start changes the density so much that the fluid is no liquid.
+pub(super) fn sound_is_fast(
+    group: &Group,
+    at: DVec3,
+    p: f64,
+    rho: f64,
+    name: &str,
+) -> Result<(), SetupError> {
+    let Some(state) = group.fluid() else { return Ok(()) };
+    let change = rho / state.density - 1.0;
+    if change.abs() <= LARGEST_CHANGE {
+        return Ok(());
+    }
+    let message = format!(
+        "the pressure of {p:.4} Pa at {at} changes the density of `{name}` by {:.0} %: its speed of sound of {} m/s is too low",
+        100.0 * change,
+        state.sound_speed
+    );
+    let fast = 10.0 * (2.0 * p.abs() / state.density).sqrt();
+    let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
+    let help = format!("leave `sound_speed` of the material out, or give some {fast:.3} m/s");
+    Err(SetupError::Problems(vec![problem.help(help)]))
 }
 
 /// An error where a body is coarser than the fluid that it bounds.

@@ -27,6 +27,9 @@ mod pair_sums;
 mod pairs;
 mod reaction;
 mod record;
+mod ringing;
+#[cfg(test)]
+mod ringing_tests;
 mod sides;
 mod sort;
 mod sound_speed;
@@ -52,6 +55,7 @@ pub use formulation::Fluid;
 pub use kernel::FluidKernel;
 pub use near::{FourNear, Fours, RowPass};
 pub use record::Record;
+pub use ringing::damp_ringing;
 pub use sound_speed::estimate as estimate_sound_speeds;
 pub use surroundings::SmallestEigenvalue;
 pub use wall::{Slip, Wall};

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::checks;
 use super::cloud::{FlowCloud, Group};
 use super::wall::PreviousVelocity;
 use crate::plugin::{Setup, SetupError};
@@ -59,6 +60,7 @@ fn start_fluid(group: &Group, start: &StartPressure, world: &World) -> Result<()
             let field = format!("bodies[{}].formulation", group.body.0);
             return Err(SetupError::parameter(field, message, "give a pressure that the fluid can have"));
         }
+        checks::sound_is_fast(group, x, p, rho, &world.body(group.body).name)?;
         density[row] = Density(rho);
         pressure[row] = Pressure(p);
         // The particles fill the shape as they are, compressed: so the sums over volumes are those of the lattice.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
+use super::damping::{self, DampedStrain, DampingRows, DampingStress};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::formulation::{BodyBondTerm, PackedRows};
 use super::frame::Frame;
@@ -32,6 +33,8 @@ pub(super) struct BodyLaw {
     pub(super) estimate: StepEstimate,
     /// Accounts and indices into the list of terms.
     terms: Vec<usize>,
+    /// Whether its short steps are damped.
+    damped: bool,
     /// Factor of the stable step by the stretches of the body.
     stretch_factor: f64,
 }
@@ -41,6 +44,7 @@ pub(super) fn body_law(
     id: BodyId,
     sim: &SimBuilder<'_>,
     all: &[BodyBondTerm],
+    damped: bool,
 ) -> Result<BodyLaw, SetupError> {
     let body = sim.body(id);
     let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
@@ -62,7 +66,7 @@ pub(super) fn body_law(
         let message = format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
         SetupError::parameter("", message, "this is a fault of the material, not of the scene")
     })?;
-    Ok(BodyLaw { id, law, state, estimate, terms, stretch_factor: 1.0 })
+    Ok(BodyLaw { id, law, state, estimate, terms, damped, stretch_factor: 1.0 })
 }
 
 /// Steps between two looks at the stretches: they change slowly against the stable step.
@@ -94,7 +98,12 @@ impl Deformation {
     }
 
     /// Runs the pass over all bodies; states of laws advance by `dt`, s.
-    pub(super) fn pass(&mut self, world: &World, packed: &mut PackedRows, dt: f64) -> Result<(), StepError> {
+    pub(super) fn pass(
+        &mut self,
+        world: &World,
+        packed: &mut PackedRows,
+        (dt, is_short): (f64, bool),
+    ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
         let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, frames, .. } = packed;
         pack(&view, *origin, self.removed.rows(), &mut sites[..view.len()])?;
@@ -103,6 +112,8 @@ impl Deformation {
         let mut stress = view.write::<PiolaStress>()?;
         let mut modulus = view.write::<HourglassModulus>().ok();
         let mut misfit = view.write::<HourglassMisfit>().ok();
+        let mut strain = view.write::<DampedStrain>().ok();
+        let mut damping = view.write::<DampingStress>().ok();
         self.found.clear();
         frames.clear();
         for law in &self.laws {
@@ -124,6 +135,7 @@ impl Deformation {
                 refits: self.removed.refits(),
                 plane: self.plane,
                 dt,
+                is_short,
             };
             let mut sum = DeformationSum::default();
             view.write_bytes_of(law.state.as_slice(), &mut |bytes| {
@@ -137,6 +149,12 @@ impl Deformation {
                     memory: BondMemory {
                         modulus: modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
                         misfit: misfit.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
+                    },
+                    damping: match (&mut strain, &mut damping) {
+                        (Some(strain), Some(damping)) if law.damped => {
+                            DampingRows { strain: rows_of(strain, &rows), stress: rows_of(damping, &rows) }
+                        }
+                        _ => DampingRows::default(),
                     },
                 };
                 sum = pass.run(written, &mut self.sums);
@@ -165,7 +183,7 @@ impl Run for Deformation {
         let resources = step.resources;
         let mut packed = resources.get_mut::<PackedRows>();
         if !self.take_up_removed(step, &mut packed)? {
-            self.pass(step.world, &mut packed, step.clock.dt)?;
+            self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
             self.book(step)?;
         }
         let view = step.world.phase(self.phase);
@@ -218,6 +236,10 @@ impl BodyLaw {
     fn book(&self, sum: &DeformationSum, terms: &[BodyBondTerm], ledger: &mut Ledger) {
         let strain = ledger.account("strain", AccountKind::Stored);
         ledger.set(strain, self.id, sum.strain);
+        if self.damped {
+            let damping = ledger.account(damping::ACCOUNT, AccountKind::Dissipated);
+            ledger.add(damping, self.id, sum.damped);
+        }
         if !self.state.as_slice().is_empty() {
             let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
             ledger.add(plastic, self.id, sum.plastic_work);
@@ -254,7 +276,7 @@ impl BodyLaw {
 }
 
 /// The rows of a body in a column of numbers.
-fn rows_of<'a, C: Column<Value = f64>>(column: &'a mut [C], rows: &Range<usize>) -> &'a mut [f64] {
+fn rows_of<'a, C: Column>(column: &'a mut [C], rows: &Range<usize>) -> &'a mut [C::Value] {
     bytemuck::cast_slice_mut(&mut column[rows.clone()])
 }
 

@@ -8,9 +8,11 @@ use glam::{DMat3, DVec3};
 
 use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
+use super::damping::{Damping, DampingRows};
 use super::frame::Frame;
 use super::refit::{self, Refits};
 use super::rows::{PairStress, PairStressRows, Site};
+use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
 use crate::materials::{SolidLaw, StateRows, StressRows};
 use crate::parallel::{
@@ -27,6 +29,8 @@ pub(super) struct DeformationSum {
     pub strain: f64,
     /// Plastic work of the step, J.
     pub plastic_work: f64,
+    /// Work that damping took in the step, J.
+    pub damped: f64,
     /// Energy of each bond term, J.
     pub terms: [BondEnergy; MAX_TERMS],
     /// Row with det F <= 0 that comes first of those that resist, counted from one; zero if there is none.
@@ -44,6 +48,7 @@ impl BlockSum for DeformationSum {
     fn add(&mut self, next: &Self) {
         self.strain += next.strain;
         self.plastic_work += next.plastic_work;
+        self.damped += next.damped;
         for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
             sum.stored += next.stored;
             sum.released += next.released;
@@ -63,6 +68,7 @@ pub(super) struct DeformationRows<'a> {
     pub own_pull: &'a mut [DVec3],
     pub state: StateRows<'a>,
     pub memory: BondMemory<'a>,
+    pub damping: DampingRows<'a>,
 }
 
 impl Split for DeformationRows<'_> {
@@ -77,8 +83,9 @@ impl Split for DeformationRows<'_> {
         let (own_pull, own_pull_rest) = self.own_pull.split_at_mut(at);
         let (state, state_rest) = self.state.split(at);
         let (memory, memory_rest) = self.memory.split(at);
+        let (damping, damping_rest) = self.damping.split(at);
         (
-            Self { deformation, stress, pair_stress, own_pull, state, memory },
+            Self { deformation, stress, pair_stress, own_pull, state, memory, damping },
             Self {
                 deformation: deformation_rest,
                 stress: stress_rest,
@@ -86,6 +93,7 @@ impl Split for DeformationRows<'_> {
                 own_pull: own_pull_rest,
                 state: state_rest,
                 memory: memory_rest,
+                damping: damping_rest,
             },
         )
     }
@@ -106,6 +114,8 @@ pub(super) struct DeformationPass<'a> {
     pub plane: bool,
     /// Length of the step, s; zero before the first.
     pub dt: f64,
+    /// Whether the step is a part of a long one.
+    pub is_short: bool,
 }
 
 impl DeformationPass<'_> {
@@ -156,9 +166,26 @@ impl DeformationPass<'_> {
         for (modulus, inverse) in modulus.iter_mut().zip(inverse_moment) {
             *modulus = if *inverse == Sym3::ZERO { 0.0 } else { *modulus };
         }
-        run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
-        refit::to_column(refits, first, stress);
         let mut sum = DeformationSum::default();
+        if rows.damping.strain.is_empty() {
+            run_hot(MakePairStress { stress, inverse_moment, pair_stress: rows.pair_stress });
+        } else {
+            let mut damped = [DMat3::ZERO; BLOCK];
+            damped[..n].copy_from_slice(stress);
+            let damping = Damping {
+                elastic: self.law.elastic(),
+                dt: self.dt,
+                is_short: self.is_short,
+                deformation: rows.deformation,
+                gradient: &gradient[..n],
+                modulus,
+                volume: &volume[..n],
+            };
+            sum.damped = damping.add(rows.damping, &mut damped[..n]);
+            let pair_stress = rows.pair_stress.as_mut();
+            run_hot(MakePairStress { stress: &damped[..n], inverse_moment, pair_stress });
+        }
+        refit::to_column(refits, first, stress);
         let memory = rows.memory;
         for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
             *sum = term.add(&mut BondRows {
@@ -235,57 +262,6 @@ impl PlaneOrSolid for Gather<'_> {
             *f_i = DMat3::IDENTITY + gradient[k];
         }
     }
-}
-
-/// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
-/// wait for each other.
-struct Spread<const D: usize> {
-    /// Columns of `sum_j V_j w_ij u_ij (x) X_j`: X_i is taken off behind the loop. u_ij is made first, so that a body that
-    /// has moved as a whole has no gradient, to the bit.
-    spread: [Lanes4; D],
-    /// `sum_j V_j w_ij u_ij`.
-    stretched: Lanes4,
-    /// `sum_j V_j w_ij u_ij^2` per component.
-    square: Lanes4,
-}
-
-impl<const D: usize> Spread<D> {
-    const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
-
-    #[inline(always)]
-    fn add<A: Arithmetic>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
-        let displacement = a.minus(other.displacement, displacement);
-        let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
-        for axis in 0..D {
-            self.spread[axis] = a.scale_add(other.reference.0[axis], weighted, self.spread[axis]);
-        }
-        self.stretched = a.plus(self.stretched, weighted);
-        self.square = a.times_add(displacement, weighted, self.square);
-    }
-
-    #[inline(always)]
-    fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
-        for axis in 0..D {
-            self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
-        }
-        self.stretched = a.plus(self.stretched, other.stretched);
-        self.square = a.plus(self.square, other.square);
-        self
-    }
-}
-
-/// The columns of a weighted sum times the inverse moment matrix.
-#[inline(always)]
-fn fit<A: Arithmetic, const D: usize>(a: A, spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
-    let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
-    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut f = [Lanes4::ZERO; 3];
-    for c in 0..D {
-        for axis in 0..D {
-            f[c] = a.scale_add(rows[axis][c], spread[axis], f[c]);
-        }
-    }
-    f
 }
 
 struct MakePairStress<'a> {

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::constitutive::{Deformation, body_law};
+use super::damping::{DampedBodies, DampedStrain, DampingStress};
 use super::frame::Frame;
 use super::images::{Images, MirrorPlane, Repeat};
 use super::internal_force;
@@ -129,7 +130,14 @@ impl Formulation for TotalLagrangian {
             }
         }
         let terms: Vec<BodyBondTerm> = sim.take_extensions();
-        let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms)).collect::<Result<Vec<_>, _>>()?;
+        let damped: Vec<DampedBodies> = sim.take_extensions();
+        damped.iter().for_each(|DampedBodies(bodies)| {
+            sim.add_column_to::<DampedStrain>(bodies);
+            sim.add_column_to::<DampingStress>(bodies);
+        });
+        let is_damped = |id| damped.iter().any(|bodies| bodies.0.contains(id));
+        let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms, is_damped(*id)));
+        let laws = laws.collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
@@ -137,6 +145,9 @@ impl Formulation for TotalLagrangian {
         let mut state = deformation.state();
         if sim.columns(phase).get(HourglassModulus::NAME).is_some() {
             state.add::<HourglassModulus>().add::<HourglassMisfit>();
+        }
+        if !damped.is_empty() {
+            state.add::<DampedStrain>().add::<DampingStress>();
         }
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])

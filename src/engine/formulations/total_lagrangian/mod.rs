@@ -7,6 +7,7 @@
 mod bond_terms;
 mod bonds;
 mod constitutive;
+mod damping;
 mod deformation;
 mod families;
 mod fields;
@@ -19,6 +20,7 @@ mod refit;
 mod removed;
 mod repeats;
 mod rows;
+mod spread;
 mod stable_step;
 #[cfg(test)]
 mod state_tests;
@@ -27,6 +29,7 @@ mod support;
 
 pub use bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
+pub(crate) use damping::DampedBodies;
 pub(crate) use families::Families;
 pub use formulation::{BodyBondTerm, INTERNAL_FORCE, TotalLagrangian};
 pub use images::Images;

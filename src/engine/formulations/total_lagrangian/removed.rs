@@ -59,7 +59,7 @@ impl Deformation {
         if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
             return Ok(false);
         }
-        self.pass(step.world, packed, step.clock.dt)?;
+        self.pass(step.world, packed, (step.clock.dt, step.turn.is_part()))?;
         self.book(step)?;
         let held: Vec<f64> = self.found.iter().map(DeformationSum::stored).collect();
         let before = self.forces(step, packed)?;
@@ -68,7 +68,7 @@ impl Deformation {
         self.cut(step.world, packed)?;
         self.refit(step.world, packed, &known)?;
         // States of laws have advanced by this step already.
-        self.pass(step.world, packed, 0.0)?;
+        self.pass(step.world, packed, (0.0, false))?;
         self.book(step)?;
         let after = self.forces(step, packed)?;
         let velocity = view.read::<Velocity>()?;

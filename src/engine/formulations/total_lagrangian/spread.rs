@@ -1,0 +1,56 @@
+//! Weighted sums over the bonds of a particle, and the fit of its deformation gradient to them.
+
+use super::rows::Site;
+use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, Lanes4};
+
+/// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
+/// wait for each other.
+pub(super) struct Spread<const D: usize> {
+    /// Columns of `sum_j V_j w_ij u_ij (x) X_j`: X_i is taken off behind the loop. u_ij is made first, so that a body that
+    /// has moved as a whole has no gradient, to the bit.
+    pub spread: [Lanes4; D],
+    /// `sum_j V_j w_ij u_ij`.
+    pub stretched: Lanes4,
+    /// `sum_j V_j w_ij u_ij^2` per component.
+    pub square: Lanes4,
+}
+
+impl<const D: usize> Spread<D> {
+    pub const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
+
+    #[inline(always)]
+    pub fn add<A: Arithmetic>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
+        let displacement = a.minus(other.displacement, displacement);
+        let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
+        for axis in 0..D {
+            self.spread[axis] = a.scale_add(other.reference.0[axis], weighted, self.spread[axis]);
+        }
+        self.stretched = a.plus(self.stretched, weighted);
+        self.square = a.times_add(displacement, weighted, self.square);
+    }
+
+    #[inline(always)]
+    pub fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
+        for axis in 0..D {
+            self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
+        }
+        self.stretched = a.plus(self.stretched, other.stretched);
+        self.square = a.plus(self.square, other.square);
+        self
+    }
+}
+
+/// The columns of a weighted sum times the inverse moment matrix.
+#[inline(always)]
+pub(super) fn fit<A: Arithmetic, const D: usize>(a: A, spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
+    let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
+    let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let mut f = [Lanes4::ZERO; 3];
+    for c in 0..D {
+        for axis in 0..D {
+            f[c] = a.scale_add(rows[axis][c], spread[axis], f[c]);
+        }
+    }
+    f
+}
