@@ -9,7 +9,8 @@ use crate::scene::{Axis, Dimension};
 use crate::world::{BodyId, BodySet};
 
 /// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem is solved like
-/// the whole. Bodies farther from it than their spacing are left alone.
+/// the whole. Bodies farther from it than their spacing are left alone. For a fluid, a `Wall` with free slip behind the plane is the same; beside solids that
+/// are cut, fluids and the walls behind them may end at the plane.
 ///
 /// The lower left quarter of a punch: `Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0)`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -52,7 +53,8 @@ impl Plugin for Symmetry {
             return Err(SetupError::parameter("plane", message, "leave out one of the two"));
         }
         let mut cut = Vec::new();
-        for body in sim.bodies() {
+        // Walls have no stress that an image could take up.
+        for body in sim.bodies().iter().filter(|body| body.formulation != "Wall") {
             if self.cuts(body)? {
                 cut.push(body.id);
             }
@@ -68,16 +70,24 @@ impl Plugin for Symmetry {
                 format!("along {:?}, {}", self.plane, extents.join("; ")),
             ));
         }
-        if let Some(other) = self.body_of_another_kind(&cut, sim) {
-            return Err(SetupError::parameter(
-                "plane",
-                format!(
-                    "body `{}` ends at a symmetry plane, but is not a total-Lagrangian solid",
-                    other.name
-                ),
-                "fix its motion along the axis instead",
-            ));
+        let mirrored = cut.iter().copied().filter(|id| sim.body(*id).formulation == "TotalLagrangian");
+        let mirrored: Vec<BodyId> = mirrored.collect();
+        for body in cut.iter().filter(|id| !mirrored.contains(id)).map(|id| sim.body(*id)) {
+            let fluid = body.formulation == "Fluid";
+            if fluid && !mirrored.is_empty() && self.is_held(body, sim) {
+                continue;
+            }
+            let name = &body.name;
+            let message =
+                format!("body `{name}` ends at a symmetry plane, but is not a total-Lagrangian solid");
+            let help = if fluid {
+                "for a fluid, a `Wall` with free slip behind the plane does the same; the plane is for solids beside it"
+            } else {
+                "fix its motion along the axis instead"
+            };
+            return Err(SetupError::parameter("plane", message, help));
         }
+        let cut = mirrored;
         sim.extend(MirrorPlane { axis, at: self.at, bodies: BodySet::new(cut) });
         Ok(())
     }
@@ -109,7 +119,15 @@ impl Symmetry {
         Ok(nearest < body.spacing)
     }
 
-    fn body_of_another_kind<'a>(&self, cut: &[BodyId], sim: &'a SimBuilder<'_>) -> Option<&'a BodyPlan> {
-        cut.iter().map(|id| sim.body(*id)).find(|body| body.formulation != "TotalLagrangian")
+    /// Whether there is a wall behind the plane at which a fluid ends.
+    fn is_held(&self, fluid: &BodyPlan, sim: &SimBuilder<'_>) -> bool {
+        let axis = self.plane.index();
+        let beyond = |body: &BodyPlan, side: f64| {
+            body.sites
+                .iter()
+                .any(|site| (0.0..body.spacing).contains(&(side * (site.position[axis] - self.at))))
+        };
+        let side = if beyond(fluid, 1.0) { -1.0 } else { 1.0 };
+        sim.bodies().iter().any(|body| body.formulation == "Wall" && beyond(body, side))
     }
 }

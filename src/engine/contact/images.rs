@@ -7,8 +7,6 @@
 use glam::{DMat3, DVec3};
 
 use crate::formulations::total_lagrangian::MirrorPlane;
-use crate::neighbors::Periodic;
-use crate::plugin::SimBuilder;
 use crate::world::BodyId;
 
 /// The map x -> S x + c to an image, with a diagonal S of signs.
@@ -57,15 +55,6 @@ pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> 
         }
     }
     all.into_iter().map(|(mirror, _)| mirror).collect()
-}
-
-/// The periodic axes of the scene.
-pub(super) fn periodic(sim: &SimBuilder<'_>) -> Periodic {
-    let Some(domain) = &sim.scene().domain else { return Periodic::NONE };
-    let mut axes = [false; 3];
-    domain.periodic.iter().for_each(|axis| axes[axis.index()] = true);
-    // Bounds of domains are checked with the scene.
-    Periodic::new(domain.min.0, domain.max.0, axes).unwrap_or(Periodic::NONE)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From the contacts of a scene to the systems that make them.
 
-use super::images::{mirrors, periodic};
+use super::images::mirrors;
 use super::law::{ContactPair, NormalForce};
 use super::members::Particles;
 use super::particles::ParticleContact;
@@ -96,7 +96,7 @@ fn pairs_of(
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
         Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
-            Sides { first: of.id, nodes, second: on.id, periodic: periodic(sim) },
+            Sides { first: of.id, nodes, second: on.id, periodic: sim.periodic() },
             sim.gravity().length(),
         ))))
     };
@@ -109,7 +109,7 @@ fn pairs_of(
                 // Beside spheres the other side keeps spheres, too: then forces act along the line of the centres.
                 let deform = bodies.iter().all(|particles| particles.deform);
                 bodies.iter_mut().for_each(|particles| particles.deform = deform);
-                let pair = ParticleContact::new(interaction()?, bodies, mirror, periodic(sim));
+                let pair = ParticleContact::new(interaction()?, bodies, mirror, sim.periodic());
                 refuse_short_periods(&pair, number, sim)?;
                 pairs.push(Touching::Particles(Box::new(pair)));
             }
@@ -132,7 +132,7 @@ fn refuse_short_periods(
     number: usize,
     sim: &SimBuilder<'_>,
 ) -> Result<(), Vec<Problem>> {
-    let (periodic, least) = (periodic(sim), pair.least_period());
+    let (periodic, least) = (sim.periodic(), pair.least_period());
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let length = periodic.lengths()[axis];
         if periodic.axes()[axis] && length < least {

@@ -13,6 +13,7 @@ use super::plan::BodyPlan;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
 use crate::materials::{Law, SolidLaw};
+use crate::neighbors::Periodic;
 use crate::scene::{Dimension, Scene, Select};
 use crate::schedule::{Stage, Step, System};
 use crate::shapes::{Shape, Surface};
@@ -78,6 +79,15 @@ impl<'s> SimBuilder<'s> {
     /// Acceleration of gravity, m/s2.
     pub fn gravity(&self) -> DVec3 {
         self.scene.gravity.0
+    }
+
+    /// The periodic axes of the scene.
+    pub fn periodic(&self) -> Periodic {
+        let Some(domain) = &self.scene.domain else { return Periodic::NONE };
+        let mut axes = [false; 3];
+        domain.periodic.iter().for_each(|axis| axes[axis.index()] = true);
+        // Bounds of domains are checked with the scene.
+        Periodic::new(domain.min.0, domain.max.0, axes).unwrap_or(Periodic::NONE)
     }
 
     /// All bodies in scene order.

@@ -15,7 +15,6 @@ use super::start::{StartPressure, start};
 use super::systems;
 use super::wall::WallBody;
 use crate::formulations::total_lagrangian::TotalLagrangian;
-use crate::neighbors::Periodic;
 use crate::plugin::{BodyPlan, Formulation, SetupError, SimBuilder};
 use crate::rigid::Rigid;
 use crate::scene::{Dimension, Problem};
@@ -33,7 +32,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     };
     let (support, spacing) = (first.support, sim.body(first.id).spacing);
     one_support(&fluids, support, sim)?;
-    let periodic = periodic_of(sim)?;
+    let periodic = sim.periodic();
     checks::periods_are_long(&periodic, support)?;
     for wall in &walls {
         checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)?;
@@ -153,14 +152,4 @@ fn one_support(fluids: &[FluidBody], support: f64, sim: &SimBuilder<'_>) -> Resu
     );
     let problem = Problem::at_path(format!("bodies[{}].spacing", other.id.0), message);
     Err(SetupError::Problems(vec![problem.help("give all fluids of a scene one spacing and one `support`")]))
-}
-
-fn periodic_of(sim: &SimBuilder<'_>) -> Result<Periodic, SetupError> {
-    let Some(domain) = &sim.scene().domain else { return Ok(Periodic::NONE) };
-    let mut axes = [false; 3];
-    domain.periodic.iter().for_each(|axis| axes[axis.index()] = true);
-    Periodic::new(domain.min.0, domain.max.0, axes).map_err(|error| {
-        let problem = Problem::at_path("domain", error.to_string());
-        SetupError::Problems(vec![problem])
-    })
 }

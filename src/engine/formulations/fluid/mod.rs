@@ -7,6 +7,8 @@
 
 mod assemble;
 mod batch;
+#[cfg(test)]
+mod channel_tests;
 mod checks;
 mod cloud;
 mod compression;
@@ -30,6 +32,8 @@ mod record;
 mod ringing;
 #[cfg(test)]
 mod ringing_tests;
+#[cfg(test)]
+mod several_tests;
 mod sides;
 mod sort;
 mod sound_speed;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::folder::OutputFolder;
 use super::present::Present;
 use super::track::failed;
+use crate::neighbors::Periodic;
 use crate::record::fields::ChosenField;
 use crate::record::trigger::Trigger;
 use crate::record::{
@@ -23,6 +24,8 @@ pub(super) struct Frames {
     /// Fields of ParaView files.
     written: Vec<ChosenField>,
     vtk: bool,
+    /// Particles are shown inside of the domain along its periodic axes, wherever they have gone.
+    periodic: Periodic,
     list: Option<PvdWriter>,
 }
 
@@ -35,8 +38,13 @@ pub(super) struct FramesState {
 }
 
 impl Frames {
-    pub fn new(interval: f64, recorded: Vec<ChosenField>, written: Vec<ChosenField>, vtk: bool) -> Self {
-        Self { trigger: Trigger::new(interval), last: None, recorded, written, vtk, list: None }
+    pub fn new(
+        interval: f64,
+        [recorded, written]: [Vec<ChosenField>; 2],
+        vtk: bool,
+        periodic: Periodic,
+    ) -> Self {
+        Self { trigger: Trigger::new(interval), last: None, recorded, written, vtk, periodic, list: None }
     }
 
     /// Names of the particle columns that frames read.
@@ -94,7 +102,8 @@ impl Frames {
         for (k, body) in step.world.bodies().iter().enumerate() {
             let x = step.world.phase(body.phase).read::<Position>()?;
             let present = Present::of(step.world, BodyId(k))?;
-            let places: Vec<_> = x[body.rows.clone()].iter().map(|x| x.0.as_vec3().to_array()).collect();
+            let places: Vec<_> =
+                x[body.rows.clone()].iter().map(|x| self.periodic.wrap(x.0).as_vec3().to_array()).collect();
             positions.push(present.keep(places, 1));
             let of_body = self.recorded.iter().filter(|field| field.is_in(BodyId(k)));
             let read = |field: &ChosenField| {
@@ -128,15 +137,15 @@ impl Frames {
     }
 
     fn write(&mut self, step: &Step<'_>) -> Result<(), StepError> {
-        let Some(list) = &mut self.list else { return Ok(()) };
+        let Self { list: Some(list), periodic, written, .. } = self else { return Ok(()) };
         for (k, body) in step.world.bodies().iter().enumerate() {
             let present = Present::of(step.world, BodyId(k))?;
             let points: Vec<[f64; 3]> = {
                 let x = step.world.phase(body.phase).read::<Position>()?;
-                present.keep(x[body.rows.clone()].iter().map(|x| x.0.to_array()).collect(), 1)
+                present.keep(x[body.rows.clone()].iter().map(|x| periodic.wrap(x.0).to_array()).collect(), 1)
             };
             let mut values = Vec::new();
-            for field in self.written.iter().filter(|field| field.is_in(BodyId(k))) {
+            for field in written.iter().filter(|field| field.is_in(BodyId(k))) {
                 let read = field.read(step.world, step.resources, BodyId(k), body.rows.clone())?;
                 values.push((field, present.keep(read, field.width())));
             }

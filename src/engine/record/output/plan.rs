@@ -84,7 +84,12 @@ impl OutputPlan {
         };
         let mut tracks = vec![Track::new("energy".to_owned(), ledger, folder.file(ENERGY))];
         tracks.extend(self.probes.into_iter().map(|probe| Track::of_probe(probe, &folder)));
-        let frames = Frames::new(scene.record_interval(), self.recorded, self.written, scene.record.vtk);
+        let frames = Frames::new(
+            scene.record_interval(),
+            [self.recorded, self.written],
+            scene.record.vtk,
+            sim.periodic(),
+        );
         let mut needs: Vec<&'static str> =
             tracks.iter().flat_map(Track::needs).chain(frames.needs()).collect();
         needs.sort_unstable();

@@ -9,6 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::correction::MomentMatrix;
+use crate::neighbors::Periodic;
 use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
 use crate::world::{BodyId, MissingColumn, PhaseId, Position, Removed, World};
@@ -21,6 +22,7 @@ const REACH: f64 = 2.0;
 pub struct PointGauge {
     pub(super) at: DVec3,
     pub(super) field: ChosenField,
+    pub(super) periodic: Periodic,
 }
 
 /// A particle near the point.
@@ -62,7 +64,7 @@ impl PointGauge {
                 let position: &[Position] = &position;
                 let removed = world.phase(body.phase).read::<Removed>()?;
                 let removed: &[Removed] = &removed;
-                let offset = |row: usize| (row, position[row].0 - self.at);
+                let offset = |row: usize| (row, self.periodic.minimal_image(position[row].0 - self.at));
                 let within = |(row, offset): &(usize, DVec3)| {
                     offset.length_squared() < reach * reach && removed[*row] == Removed::NO
                 };

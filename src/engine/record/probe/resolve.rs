@@ -147,7 +147,7 @@ fn field_gauge(
         let bodies = all().filter(|body| !(flows && body.formulation == "Wall")).map(|body| body.id);
         let bodies = BodySet::new(bodies);
         let at = probe.at.map_or(glam::DVec3::ZERO, |point| point.0);
-        return Ok(Gauge::Point(PointGauge { at, field: choose(&bodies, false)? }));
+        return Ok(Gauge::Point(PointGauge { at, field: choose(&bodies, false)?, periodic: sim.periodic() }));
     };
     let selection = select(k, on, sim)?;
     let field = choose(&BodySet::new(selection.parts.iter().map(|(id, _)| *id)), true)?;

@@ -1,6 +1,7 @@
 //! Runs of small scenes, and what they leave on the disk.
 
 mod files;
+mod periodic;
 mod recorder;
 mod resume;
 mod scene_errors;
