@@ -7,6 +7,7 @@ use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
 use super::drift::Skins;
 use super::formulation::FluidBody;
 use super::kernel::FluidKernel;
+use super::layers::pressure_above;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
@@ -43,12 +44,14 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     }
     let mut groups = Vec::new();
     let mut pressures = Vec::new();
+    let at_rest = fluids.iter().filter(|fluid| fluid.parameters.pressure.is_none());
+    let at_rest: Vec<&BodyPlan> = at_rest.map(|fluid| sim.body(fluid.id)).collect();
     for FluidBody { id, parameters, .. } in fluids {
         let body = sim.body(id);
         groups.push(group(body, Role::Fluid(fluid_state(body)?), &groups));
         pressures.push(match parameters.pressure {
             Some(expression) => StartPressure::Given(expression),
-            None => hydrostatic(body, sim.gravity()),
+            None => hydrostatic(body, &at_rest, sim.gravity()),
         });
     }
     let fluid: usize = groups.iter().map(|group| group.rows.len()).sum();
@@ -135,20 +138,23 @@ fn fluid_state(body: &BodyPlan) -> Result<FluidState, SetupError> {
     })
 }
 
-fn hydrostatic(body: &BodyPlan, gravity: DVec3) -> StartPressure {
+fn hydrostatic(body: &BodyPlan, fluids: &[&BodyPlan], gravity: DVec3) -> StartPressure {
     let (min, max) = (body.bounds.min, body.bounds.max);
     let surface = DVec3::select(gravity.cmplt(DVec3::ZERO), max, min);
-    StartPressure::Hydrostatic { gravity, surface }
+    StartPressure::Hydrostatic { gravity, surface, above: pressure_above(body, fluids, gravity) }
 }
 
 fn one_support(fluids: &[FluidBody], support: f64, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
-    let Some(other) = fluids.iter().find(|other| (other.support - support).abs() > 1e-9 * support) else {
-        return Ok(());
-    };
-    let (first, body) = (sim.body(fluids[0].id), sim.body(other.id));
+    let first = sim.body(fluids[0].id);
+    let differs = |a: f64, b: f64| (a - b).abs() > 1e-9 * b;
+    let spacing = |fluid: &FluidBody| sim.body(fluid.id).spacing;
+    let other =
+        |other: &&FluidBody| differs(other.support, support) || differs(spacing(other), first.spacing);
+    let Some(other) = fluids.iter().find(other) else { return Ok(()) };
+    let body = sim.body(other.id);
     let message = format!(
-        "the fluid `{}` has a support radius of {} m, and `{}` one of {support} m",
-        body.name, other.support, first.name
+        "the fluid `{}` has a support radius of {} m and a spacing of {} m, and `{}` one of {support} m and {} m",
+        body.name, other.support, body.spacing, first.name, first.spacing
     );
     let problem = Problem::at_path(format!("bodies[{}].spacing", other.id.0), message);
     Err(SetupError::Problems(vec![problem.help("give all fluids of a scene one spacing and one `support`")]))

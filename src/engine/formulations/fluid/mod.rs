@@ -21,6 +21,7 @@ mod force;
 mod formulation;
 mod kernel;
 mod late_impulse;
+mod layers;
 mod near;
 mod near_rows;
 mod neighbors;

@@ -74,7 +74,7 @@ fn oil_lies_on_water() {
             materials: {{"water": Fluid(density: 1000.0, viscosity: 5.0), "oil": Fluid(density: 800.0, viscosity: 5.0)}},
             bodies: [
                 (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.3, 0.2)), spacing: {spacing},
-                 formulation: Fluid(pressure: "800*9.81*0.2 + 1000*9.81*(0.2 - y)")),
+                 formulation: Fluid),
                 (name: "oil", material: "oil", shape: Box(min: (0, 0.2), max: (0.3, 0.4)), spacing: {spacing}, formulation: Fluid),
                 (name: "tank", material: "wall", spacing: {spacing}, formulation: Wall(),
                  shape: Difference(Box(min: (-0.1, -0.1), max: (0.4, 0.5)), Box(min: (0, 0), max: (0.3, 1)))),

@@ -182,7 +182,7 @@ impl DeformationPass<'_> {
                 volume: &volume[..n],
             };
             sum.damped = damping.add(rows.damping, &mut damped[..n]);
-            let pair_stress = rows.pair_stress.as_mut();
+            let pair_stress = &mut *rows.pair_stress;
             run_hot(MakePairStress { stress: &damped[..n], inverse_moment, pair_stress });
         }
         refit::to_column(refits, first, stress);
