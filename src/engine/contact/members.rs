@@ -1,10 +1,12 @@
 //! The particles of a body in contact, as they are now.
 
+use std::cell::Ref;
+
 use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
 use super::shape::{Shape, largest_stretch};
-use crate::formulations::total_lagrangian::{Families, TotalLagrangian};
+use crate::formulations::total_lagrangian::{PackedRows, Surroundings, TotalLagrangian, packed_rows};
 use crate::plugin::{BodyPlan, Formulation};
 use crate::scene::Dimension;
 use crate::schedule::Resources;
@@ -57,19 +59,19 @@ impl Particles {
     }
 }
 
-/// The particles of a body in this step.
-pub(super) struct Members<'a> {
-    pub first_row: usize,
+/// The columns of the particles of a body in this step.
+pub(super) struct MemberColumns<'a> {
     particles: &'a Particles,
+    first_row: usize,
     position: ArchetypeColumn<'a, Position>,
     velocity: ArchetypeColumn<'a, Velocity>,
     mobility: ArchetypeColumn<'a, Mobility>,
     removed: ArchetypeColumn<'a, Removed>,
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
-    families: Families<'a>,
+    packed: Option<Ref<'a, PackedRows>>,
 }
 
-impl<'a> Members<'a> {
+impl<'a> MemberColumns<'a> {
     /// Those of a body.
     pub fn new(
         particles: &'a Particles,
@@ -78,20 +80,49 @@ impl<'a> Members<'a> {
     ) -> Result<Self, MissingColumn> {
         let (view, rows) = world.body_view(particles.body);
         Ok(Self {
-            first_row: rows.start,
             particles,
+            first_row: rows.start,
             position: view.read()?,
             velocity: view.read()?,
             mobility: view.read()?,
             removed: view.read()?,
             gradient: if particles.deform { Some(view.read()?) } else { None },
-            families: Families::of(resources),
+            packed: if particles.deform { packed_rows(resources) } else { None },
         })
     }
 
+    /// The particles.
+    pub fn members(&self) -> Members<'_> {
+        Members {
+            first_row: self.first_row,
+            radius: &self.particles.radius,
+            position: &self.position,
+            velocity: &self.velocity,
+            mobility: &self.mobility,
+            removed: &self.removed,
+            gradient: self.gradient.as_deref(),
+            packed: self.packed.as_deref(),
+        }
+    }
+}
+
+/// The particles of a body in this step.
+#[derive(Clone, Copy)]
+pub(super) struct Members<'a> {
+    first_row: usize,
+    radius: &'a [f64],
+    position: &'a [Position],
+    velocity: &'a [Velocity],
+    mobility: &'a [Mobility],
+    removed: &'a [Removed],
+    gradient: Option<&'a [DeformationGradient]>,
+    packed: Option<&'a PackedRows>,
+}
+
+impl Members<'_> {
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.particles.radius.len()
+        self.radius.len()
     }
 
     /// Whether a particle takes part: a removed one does not.
@@ -111,26 +142,25 @@ impl<'a> Members<'a> {
 
     /// Radius of a particle in the reference configuration, m.
     pub fn radius(&self, i: usize) -> f64 {
-        self.particles.radius[i]
+        self.radius[i]
     }
 
     /// What has become of a particle.
     pub fn shape(&self, i: usize) -> Shape {
-        (self.radius(i), self.gradient.as_ref().map(|f| f[self.first_row + i].0))
+        (self.radius[i], self.gradient.map(|f| f[self.first_row + i].0))
     }
 
     /// Where the point `arm` beside a particle in the reference configuration is now, from the particle, m.
     pub fn carry(&self, i: usize, arm: DVec3) -> DVec3 {
-        self.gradient.as_ref().map_or(DMat3::IDENTITY, |f| f[self.first_row + i].0) * arm
+        self.gradient.map_or(DMat3::IDENTITY, |f| f[self.first_row + i].0) * arm
     }
 
-    /// Velocity of the material at the point `arm` beside a particle, m/s.
-    pub fn velocity(&self, i: usize, arm: DVec3) -> DVec3 {
-        self.families.velocity(&self.velocity, self.first_row + i, arm)
-    }
-
-    /// Velocity of that point, and its mobility along each axis, 1/kg.
-    pub fn motion(&self, i: usize, arm: DVec3) -> (DVec3, DVec3) {
-        self.families.motion(&self.velocity, &self.mobility, self.first_row + i, arm)
+    /// How the material around a particle moves, if that is asked for, and can be moved.
+    pub fn surroundings(&self, i: usize, moving: bool) -> Surroundings {
+        let row = self.first_row + i;
+        match self.packed {
+            Some(packed) => packed.surroundings(row, self.velocity, self.mobility[row], moving),
+            None => Surroundings::alone(self.velocity[row], self.mobility[row]),
+        }
     }
 }

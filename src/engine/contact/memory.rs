@@ -37,41 +37,48 @@ impl Memory {
 pub(super) struct Memories {
     now: Vec<(PairKey, Memory)>,
     next: Vec<(PairKey, Memory)>,
-    /// Entries of `now` that have been passed.
-    passed: usize,
+    /// Where in `now` the contacts of `next` were in the last step.
+    before: Vec<Option<u32>>,
+    /// Entries of `now` that have ended.
+    ended: Vec<u32>,
+}
+
+/// The memories of the contacts of a step: for each where its old one is, the old ones, and room for the new ones.
+pub(super) struct Remembered<'a> {
+    pub before: &'a [Option<u32>],
+    pub old: &'a [(PairKey, Memory)],
+    pub new: &'a mut [(PairKey, Memory)],
 }
 
 impl Memories {
-    /// The next entry of the last step whose pair comes before `key`: a contact that has ended.
-    pub fn ended_before(&mut self, key: Option<PairKey>) -> Option<(PairKey, Memory)> {
-        let entry = *self.now.get(self.passed)?;
-        let ended = key.is_none_or(|key| entry.0 < key);
-        self.passed += usize::from(ended);
-        ended.then_some(entry)
-    }
-
-    /// What the contact remembers, if it was there in the last step. Ask in ascending order of pairs, after
-    /// [`Memories::ended_before`].
-    pub fn of(&mut self, key: PairKey) -> Memory {
-        match self.now.get(self.passed) {
-            Some(entry) if entry.0 == key => {
-                self.passed += 1;
-                entry.1
+    /// Begins a step with contacts of these pairs, ascending.
+    pub fn begin(&mut self, keys: impl Iterator<Item = PairKey>) -> Remembered<'_> {
+        self.before.clear();
+        self.ended.clear();
+        self.next.clear();
+        let mut passed = 0;
+        for key in keys {
+            while self.now.get(passed).is_some_and(|entry| entry.0 < key) {
+                self.ended.push(passed as u32);
+                passed += 1;
             }
-            _ => Memory::default(),
+            let known = self.now.get(passed).is_some_and(|entry| entry.0 == key);
+            self.before.push(known.then_some(passed as u32));
+            passed += usize::from(known);
+            self.next.push((key, Memory::default()));
         }
+        self.ended.extend(passed as u32..self.now.len() as u32);
+        Remembered { before: &self.before, old: &self.now, new: &mut self.next }
     }
 
-    /// Keeps what the contact will remember in the next step.
-    pub fn keep(&mut self, key: PairKey, memory: Memory) {
-        self.next.push((key, memory));
+    /// Contacts of the last step that have ended.
+    pub fn ended(&self) -> impl Iterator<Item = &(PairKey, Memory)> {
+        self.ended.iter().map(|&k| &self.now[k as usize])
     }
 
     /// Ends the step.
     pub fn turn(&mut self) {
         std::mem::swap(&mut self.now, &mut self.next);
-        self.next.clear();
-        self.passed = 0;
     }
 
     /// The contacts of the last step.
@@ -82,8 +89,6 @@ impl Memories {
     /// Takes up the contacts of a checkpoint.
     pub fn set(&mut self, entries: Vec<(PairKey, Memory)>) {
         self.now = entries;
-        self.next.clear();
-        self.passed = 0;
     }
 }
 
@@ -91,30 +96,17 @@ impl Memories {
 mod tests {
     use super::*;
 
-    fn strong(stiffness: f64) -> Memory {
-        Memory { stiffness, ..Memory::default() }
-    }
-
     #[test]
     fn contacts_that_end_are_met_once_and_others_are_found() {
         let mut memories = Memories::default();
-        for (key, k) in [((1, 0), 1.0), ((3, 2), 3.0), ((7, 0), 7.0)] {
-            memories.keep(key, strong(k));
+        for entry in memories.begin([(1, 0), (3, 2), (7, 0)].into_iter()).new {
+            entry.1.stiffness = f64::from(entry.0.0);
         }
         memories.turn();
-        let mut ended = Vec::new();
-        for key in [(2, 9), (3, 2), (5, 0)] {
-            while let Some((old, _)) = memories.ended_before(Some(key)) {
-                ended.push(old);
-            }
-            let expected = if key == (3, 2) { 3.0 } else { 0.0 };
-            assert_eq!(memories.of(key).stiffness, expected);
-            memories.keep(key, strong(1.0));
-        }
-        while let Some((old, _)) = memories.ended_before(None) {
-            ended.push(old);
-        }
-        assert_eq!(ended, [(1, 0), (7, 0)]);
+        let found = memories.begin([(2, 9), (3, 2), (5, 0)].into_iter());
+        assert_eq!(found.before, [None, Some(1), None]);
+        assert_eq!(found.old[1].1.stiffness, 3.0);
+        assert!(memories.ended().map(|entry| entry.0).eq([(1, 0), (7, 0)]));
         memories.turn();
         assert_eq!(memories.entries().len(), 3);
     }

@@ -3,8 +3,10 @@
 mod hertz;
 mod images;
 mod law;
+mod meetings;
 mod members;
 mod memory;
+mod nearby;
 mod node_view;
 mod particles;
 mod penalty;
@@ -21,6 +23,7 @@ mod system;
 mod tally;
 #[cfg(test)]
 mod tests;
+mod touched;
 
 pub use hertz::{Hertz, PlaneForce};
 pub use law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::members::Members;
 use super::shape::{Nearness, on_surface};
+use crate::formulations::total_lagrangian::Surroundings;
 use crate::rigid::RigidBody;
 
 /// The nodes of a body as they are now.
@@ -81,24 +82,39 @@ impl NodeView<'_> {
         }
     }
 
-    /// Velocity of the material of a node at `place`, which is `arm` beside a particle, m/s.
-    pub fn velocity(&self, i: usize, arm: DVec3, place: DVec3) -> DVec3 {
+    /// How the material of a node moves, if that is asked for.
+    pub fn motion(&self, i: usize, moving: bool) -> NodeMotion<'_> {
         match self {
-            Self::Particles(members) => members.velocity(i, arm),
+            Self::Particles(members) => NodeMotion::Particle(members.surroundings(i, moving)),
+            Self::Rigid(body) => NodeMotion::Rigid(body),
+        }
+    }
+}
+
+/// How the material of a node moves.
+pub(super) enum NodeMotion<'a> {
+    Particle(Surroundings),
+    Rigid(&'a RigidBody),
+}
+
+impl NodeMotion<'_> {
+    /// Velocity at `place`, which is `arm` beside a particle, m/s.
+    pub fn velocity(&self, arm: DVec3, place: DVec3) -> DVec3 {
+        match self {
+            Self::Particle(around) => around.velocity(arm),
             Self::Rigid(body) => body.velocity_at(place),
         }
     }
 
-    /// Velocity as above, m/s, and the inverse mass there along a direction, 1/kg.
-    pub fn motion(&self, i: usize, arm: DVec3, place: DVec3) -> (DVec3, impl Fn(DVec3) -> f64) {
-        let (velocity, mobility) = match self {
-            Self::Particles(members) => members.motion(i, arm),
-            Self::Rigid(body) => (body.velocity_at(place), DVec3::ZERO),
+    /// The inverse mass there along a direction, 1/kg.
+    pub fn inverse_mass(&self, arm: DVec3, place: DVec3) -> impl Fn(DVec3) -> f64 {
+        let mobility = match self {
+            Self::Particle(around) => around.mobility(arm),
+            Self::Rigid(_) => DVec3::ZERO,
         };
-        let inverse_mass = move |n: DVec3| match self {
-            Self::Particles(_) => mobility.dot(n * n),
+        move |n: DVec3| match self {
+            Self::Particle(_) => mobility.dot(n * n),
             Self::Rigid(body) => body.inverse_mass_at(place, n),
-        };
-        (velocity, inverse_mass)
+        }
     }
 }

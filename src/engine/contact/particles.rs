@@ -4,18 +4,20 @@ use glam::DVec3;
 
 use super::images::Mirror;
 use super::law::Touch;
-use super::members::{Members, Particles};
-use super::memory::{Memories, Memory, PairKey};
-use super::response::{Interaction, Losses, Meeting};
+use super::meetings::Meetings;
+use super::members::{MemberColumns, Particles};
+use super::memory::{Memory, PairKey};
+use super::response::{Interaction, Meeting};
 use super::search::{Crowd, Search};
-use super::shape::of_pair;
-use super::stiffness::NodeStiffness;
+use super::shape::{Nearness, of_pair};
 use super::system::Pace;
 use super::tally::Tally;
-use crate::formulations::total_lagrangian::Families;
+use super::touched::Touched;
+use crate::formulations::total_lagrangian::Surroundings;
 use crate::neighbors::{NeighborError, Periodic};
+use crate::parallel::BlockSum;
 use crate::schedule::{Step, StepError};
-use crate::world::{Force, Position, ReferencePosition};
+use crate::world::{Position, ReferencePosition};
 
 /// Particles of one body closer than this in the reference configuration do not touch, over the distance at which they
 /// would: bonds hold them apart.
@@ -30,20 +32,34 @@ pub(super) struct ParticleContact {
     mirror: Mirror,
     periodic: Periodic,
     search: Search,
-    pub memories: Memories,
-    stiffness: [NodeStiffness; 2],
-    /// What the pairs that touch now do.
-    forces: Vec<Push>,
-    /// Least distance of two particles that just touch, m: of all in the reference configuration, and of those that are near now.
-    least: f64,
-    least_now: f64,
+    pub meetings: Meetings<Nearness, Push, Least>,
+    /// The particles of both sides that touch; of a body with itself all are on the first side.
+    pub touched: [Touched; 2],
 }
 
-/// Force on the first particle of a pair, N, and from the particles to where it acts, in the reference configuration, m.
-struct Push {
-    pair: PairKey,
+/// Force on the first particle of a pair, N, where it acts on both, in the reference configuration, m, and the stiffness of the spring over
+/// the mass of either side, 1/s2.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Push {
     arms: [DVec3; 2],
     force: DVec3,
+    stiffness: [f64; 2],
+}
+
+/// The least of lengths, m.
+#[derive(Clone, Copy)]
+pub(super) struct Least(f64);
+
+impl Default for Least {
+    fn default() -> Self {
+        Self(f64::INFINITY)
+    }
+}
+
+impl BlockSum for Least {
+    fn add(&mut self, next: &Self) {
+        self.0 = self.0.min(next.0);
+    }
 }
 
 impl ParticleContact {
@@ -54,8 +70,7 @@ impl ParticleContact {
         mirror: Mirror,
         periodic: Periodic,
     ) -> Self {
-        let least = first.least() + second.least();
-        let stiffness = [&first, &second].map(|particles| NodeStiffness::new(particles.radius.len()));
+        let touched = [&first, &second].map(|particles| Touched::new(particles.radius.len()));
         Self {
             interaction,
             search: Search::new(&first.radius, &second.radius, periodic),
@@ -63,11 +78,8 @@ impl ParticleContact {
             second,
             mirror,
             periodic,
-            memories: Memories::default(),
-            stiffness,
-            forces: Vec::new(),
-            least,
-            least_now: least,
+            meetings: Meetings::default(),
+            touched,
         }
     }
 
@@ -101,121 +113,105 @@ impl ParticleContact {
         })
     }
 
-    /// Adds the forces of all pairs that touch.
+    /// Works out the forces of all pairs that touch.
     pub fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
         let speed = paces[0].speed + paces[1].speed;
         let stretch = paces[0].stretch.max(paces[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
             self.find(step)?;
         }
-        let tally = self.evaluate(step, stretch)?;
-        self.apply(step)?;
-        self.propose(step, speed);
+        let (tally, least) = self.evaluate(step, stretch)?;
+        self.propose(step, speed, least);
         Ok(tally)
     }
 
-    fn evaluate(&mut self, step: &Step<'_>, stretch: f64) -> Result<Tally, StepError> {
+    /// The force of every pair that touches; returns the energies, and the least distance of two that are near and just touch, m.
+    fn evaluate(&mut self, step: &Step<'_>, stretch: f64) -> Result<(Tally, f64), StepError> {
+        let Self { interaction, meetings, touched, mirror, periodic, search, .. } = self;
         let dt = step.clock.dt;
-        let first = Members::new(&self.first, step.world, step.resources)?;
-        let second = Members::new(&self.second, step.world, step.resources)?;
-        let mirror = self.mirror;
-        let slip = |(i, j): PairKey, arms: [DVec3; 2]| {
-            first.velocity(i as usize, arms[0])
-                - mirror.turn(second.velocity(j as usize, mirror.turn(arms[1])))
-        };
-        // Of a particle and its own image one half is in the half that is solved.
-        let of_itself = self.first.body == self.second.body;
-        let share = move |key: PairKey| if of_itself && key.0 == key.1 { 0.5 } else { 1.0 };
-        let other_side = usize::from(!of_itself);
-        let mut tally = Tally::default();
-        let mut losses = Losses::default();
-        // The forces of the last step on the motion of this one.
-        let work_before = |losses: &mut Losses, key: PairKey, memory: &Memory| {
-            if !memory.is_elastic() {
-                losses.add_work(share(key), memory, slip(key, memory.arms), dt);
-            }
-        };
-        let end = |losses: &mut Losses, key: PairKey, memory: &Memory| {
-            work_before(losses, key, memory);
-            losses.keep(share(key), memory, &Memory::default());
-        };
-        self.forces.clear();
-        self.least_now = self.least;
-        for &key in self.search.pairs() {
+        let first = MemberColumns::new(&self.first, step.world, step.resources)?;
+        let second = MemberColumns::new(&self.second, step.world, step.resources)?;
+        let (first, second) = (first.members(), second.members());
+        let least = meetings.find(search.pairs(), |&key, least: &mut Least| {
             let (i, j) = (key.0 as usize, key.1 as usize);
-            let x_ij = self.periodic.minimal_image(mirror.place(second.position(j)) - first.position(i));
+            let x_ij = periodic.minimal_image(mirror.place(second.position(j)) - first.position(i));
             let reach = first.radius(i) + second.radius(j);
             let (squared, farthest) = (x_ij.length_squared(), reach * stretch);
             if squared >= farthest * farthest || squared == 0.0 {
-                continue;
+                return None;
             }
             let (radius, f) = second.shape(j);
             let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.map(f))));
-            self.least_now = self.least_now.min(reach / near.scale);
+            least.add(&Least(reach / near.scale));
             // What is not a number does not touch.
-            if !(near.overlap > 0.0 && first.is_there(i) && second.is_there(j)) {
-                continue;
+            (near.overlap > 0.0 && first.is_there(i) && second.is_there(j)).then_some((key, near))
+        });
+        let of_itself = self.first.body == self.second.body;
+        let other = usize::from(!of_itself);
+        touched.iter_mut().for_each(Touched::clear);
+        for ((i, j), _) in meetings.met() {
+            touched[0].take_in(*i);
+            touched[other].take_in(*j);
+        }
+        let moving = !interaction.is_elastic();
+        touched[0].look(&first, moving);
+        touched[1].look(&second, moving);
+        let velocity = |of: [&Surroundings; 2], arms: [DVec3; 2]| {
+            of[0].velocity(arms[0]) - mirror.turn(of[1].velocity(mirror.turn(arms[1])))
+        };
+        // Of a particle and its own image one half is in the half that is solved.
+        let share = move |key: PairKey| if of_itself && key.0 == key.1 { 0.5 } else { 1.0 };
+        let respond = |key: PairKey, near: &Nearness, before: &Memory, tally: &mut Tally| {
+            let (i, j) = (key.0 as usize, key.1 as usize);
+            let (of, share) =
+                ([touched[0].surroundings(key.0), touched[other].surroundings(key.1)], share(key));
+            // The forces of the last step on the motion of this one.
+            if !before.is_elastic() {
+                tally.losses.add_work(share, before, velocity(of, before.arms), dt);
             }
-            while let Some((old, memory)) = self.memories.ended_before(Some(key)) {
-                end(&mut losses, old, &memory);
-            }
-            let before = self.memories.of(key);
-            work_before(&mut losses, key, &before);
+            let reach = first.radius(i) + second.radius(j);
             let radius = first.radius(i) * second.radius(j) / reach;
-            let (v, of_first) = first.motion(i, near.arms[0]);
-            let (u, of_second) = second.motion(j, mirror.turn(near.arms[1]));
+            let mobility = [of[0].mobility(near.arms[0]), of[1].mobility(mirror.turn(near.arms[1]))];
             let meeting = Meeting {
                 touch: Touch { overlap: near.overlap, radius, length: reach },
                 normal: near.normal,
                 scale: near.scale,
                 arms: near.arms,
-                velocity: v - mirror.turn(u),
+                velocity: velocity(of, near.arms),
             };
-            let inverse_mass = |n: DVec3| (of_first + of_second).dot(n * n);
-            let response = self.interaction.respond(&meeting, inverse_mass, dt, &before);
-            losses.add_work(share(key), &response.memory, meeting.velocity, dt);
-            losses.keep(share(key), &before, &response.memory);
-            tally.stored += share(key) * (response.spring.energy + response.memory.energy());
-            self.stiffness[0].add(i, response.spring.stiffness * of_first.dot(near.normal * near.normal));
-            self.stiffness[other_side]
-                .add(j, response.spring.stiffness * of_second.dot(near.normal * near.normal));
-            self.memories.keep(key, response.memory);
-            self.forces.push(Push { pair: key, arms: near.arms, force: share(key) * response.force });
-        }
-        while let Some((old, memory)) = self.memories.ended_before(None) {
-            end(&mut losses, old, &memory);
-        }
-        self.memories.turn();
-        tally.losses = losses;
-        Ok(tally)
-    }
-
-    /// The forces on both sides, in the order of pairs: exactly opposite, at one place, mirrored where an image is touched.
-    fn apply(&self, step: &Step<'_>) -> Result<(), StepError> {
-        let families = Families::of(step.resources);
-        for (side, body) in [self.first.body, self.second.body].into_iter().enumerate() {
-            let (view, rows) = step.world.body_view(body);
-            let mut force = view.write::<Force>()?;
-            for Push { pair: (i, j), arms, force: push } in &self.forces {
-                let (number, arm, push) = if side == 0 {
-                    (i, arms[0], *push)
-                } else {
-                    (j, self.mirror.turn(arms[1]), -self.mirror.turn(*push))
-                };
-                families.push(&mut force, rows.start + *number as usize, arm, push);
+            let inverse_mass = |n: DVec3| (mobility[0] + mobility[1]).dot(n * n);
+            let response = interaction.respond(&meeting, inverse_mass, dt, before);
+            tally.losses.add_work(share, &response.memory, meeting.velocity, dt);
+            tally.losses.keep(share, before, &response.memory);
+            tally.stored += share * (response.spring.energy + response.memory.energy());
+            let across = near.normal * near.normal;
+            let stiffness = mobility.map(|mobility| response.spring.stiffness * mobility.dot(across));
+            (response.memory, Push { arms: near.arms, force: share * response.force, stiffness })
+        };
+        let end = |key: PairKey, memory: &Memory, tally: &mut Tally| {
+            if !memory.is_elastic() {
+                let of =
+                    [first.surroundings(key.0 as usize, true), second.surroundings(key.1 as usize, true)];
+                tally.losses.add_work(share(key), memory, velocity([&of[0], &of[1]], memory.arms), dt);
             }
+            tally.losses.keep(share(key), memory, &Memory::default());
+        };
+        let tally = meetings.respond(respond, end);
+        for ((i, j), Push { arms, force, stiffness }) in meetings.pushes() {
+            touched[0].add(i, *force, arms[0], stiffness[0]);
+            touched[other].add(j, -mirror.turn(*force), mirror.turn(arms[1]), stiffness[1]);
         }
-        Ok(())
+        Ok((tally, least.0.min(self.first.least() + self.second.least())))
     }
 
-    fn propose(&mut self, step: &mut Step<'_>, speed: f64) {
-        let other_side = usize::from(self.first.body != self.second.body);
-        let stiffest = self.forces.iter().map(|Push { pair: (i, j), .. }| {
-            self.stiffness[0].of(*i as usize) + self.stiffness[other_side].of(*j as usize)
-        });
-        let stiffest = stiffest.fold(0.0, f64::max);
-        self.stiffness.iter_mut().for_each(NodeStiffness::clear);
+    fn propose(&self, step: &mut Step<'_>, speed: f64, least: f64) {
+        let other = usize::from(self.first.body != self.second.body);
+        let stiffest = self
+            .meetings
+            .met()
+            .iter()
+            .map(|((i, j), _)| self.touched[0].stiffness(*i) + self.touched[other].stiffness(*j));
         let bodies = (self.first.body, self.second.body);
-        super::stiffness::propose(step, bodies, stiffest, speed, self.least_now);
+        super::stiffness::propose(step, bodies, stiffest.fold(0.0, f64::max), speed, least);
     }
 }

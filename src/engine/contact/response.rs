@@ -49,6 +49,11 @@ pub(super) struct Losses {
 }
 
 impl Interaction {
+    /// Whether nothing but the overlap counts.
+    pub fn is_elastic(&self) -> bool {
+        self.friction == 0.0 && self.damping_ratio == 0.0
+    }
+
     /// The force; `inverse_mass` is that of both sides together along a direction, 1/kg.
     pub fn respond(
         &self,

@@ -14,7 +14,7 @@ use crate::world::DeformationGradient;
 pub(super) type Shape = (f64, Option<DMat3>);
 
 /// Where two sides are near each other.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Nearness {
     /// Overlap d, m; negative where there is none.
     pub overlap: f64,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::members::{Members, Particles};
+use super::members::{MemberColumns, Particles};
 use super::node_view::NodeView;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
@@ -57,7 +57,8 @@ impl Sides {
         Ok(match &self.nodes {
             Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
             Nodes::Particles(particles) => {
-                f(&NodeView::Particles(Members::new(particles, world, resources)?), tool)
+                let columns = MemberColumns::new(particles, world, resources)?;
+                f(&NodeView::Particles(columns.members()), tool)
             }
         })
     }

@@ -3,37 +3,6 @@
 use crate::schedule::Step;
 use crate::world::BodyId;
 
-/// Stiffness over mass of the contacts of every node, 1/s2: a bound on the square of a frequency (Gershgorin).
-pub(super) struct NodeStiffness {
-    sums: Vec<f64>,
-    touched: Vec<u32>,
-}
-
-impl NodeStiffness {
-    /// For that many nodes.
-    pub fn new(nodes: usize) -> Self {
-        Self { sums: vec![0.0; nodes], touched: Vec::new() }
-    }
-
-    /// Adds a contact.
-    pub fn add(&mut self, node: usize, stiffness_over_mass: f64) {
-        self.sums[node] += stiffness_over_mass;
-        self.touched.push(node as u32);
-    }
-
-    /// What a node has.
-    pub fn of(&self, node: usize) -> f64 {
-        self.sums[node]
-    }
-
-    /// Empties all nodes.
-    pub fn clear(&mut self) {
-        for node in self.touched.drain(..) {
-            self.sums[node as usize] = 0.0;
-        }
-    }
-}
-
 /// Half the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts together stay stable.
 const FREQUENCY_FACTOR: f64 = 1.0;
 /// Share of the distance of two particles that just touch by which they may approach in a step.

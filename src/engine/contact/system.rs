@@ -1,11 +1,15 @@
 //! The system of all contacts of a scene.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use super::members::Particles;
 use super::memory::{Memories, Memory, PairKey};
 use super::particles::ParticleContact;
 use super::start;
 use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
+use super::touched::Touched;
+use crate::formulations::total_lagrangian::PackedRows;
 use crate::parallel::{Largest, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -14,8 +18,10 @@ use crate::world::{
     BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed, Velocity,
 };
 
-/// Label of the system that makes the forces of contact.
+/// Label of the system that works out the forces of contact.
 pub const CONTACT: &str = "contact";
+/// Label of the system that adds them to the particles.
+const CONTACT_FORCE: &str = "contact_force";
 
 /// Two bodies that touch.
 pub(super) enum Touching {
@@ -48,17 +54,30 @@ impl Touching {
         first.into_iter().chain(second)
     }
 
+    /// The particles of both that touch.
+    fn touched(&self) -> impl Iterator<Item = (BodyId, &Touched)> {
+        let [first, second] = self.bodies();
+        match self {
+            Self::Particles(contact) => {
+                [Some((first, &contact.touched[0])), Some((second, &contact.touched[1]))]
+            }
+            Self::Surface(contact) => [Some((first, &contact.touched)), None],
+        }
+        .into_iter()
+        .flatten()
+    }
+
     fn memories(&self) -> &Memories {
         match self {
-            Self::Particles(contact) => &contact.memories,
-            Self::Surface(contact) => &contact.memories,
+            Self::Particles(contact) => &contact.meetings.memories,
+            Self::Surface(contact) => &contact.meetings.memories,
         }
     }
 
     fn memories_mut(&mut self) -> &mut Memories {
         match self {
-            Self::Particles(contact) => &mut contact.memories,
-            Self::Surface(contact) => &mut contact.memories,
+            Self::Particles(contact) => &mut contact.meetings.memories,
+            Self::Surface(contact) => &mut contact.meetings.memories,
         }
     }
 }
@@ -80,21 +99,30 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
         touching,
     };
     let deforms = contacts.touching.iter().flat_map(Touching::particles).any(|particles| particles.deform);
-    let mut system = System::new(Stage::External, CONTACT, contacts);
+    let shared = Arc::new(Mutex::new(contacts));
+    let mut system = System::new(Stage::Boundary, CONTACT, Meet(Arc::clone(&shared)));
     if deforms {
-        system = system.reads::<DeformationGradient>().touches("pair_stress", Mode::Reads);
+        system = system.reads::<DeformationGradient>().touches("pair_stress", Mode::Adds);
     }
     sim.add_system(
         system
-            .on_phases(phases)
+            .on_phases(phases.clone())
             .reads::<Position>()
             .reads::<ReferencePosition>()
             .reads::<Velocity>()
             .reads::<Mobility>()
             .reads::<Removed>()
-            .adds::<Force>()
             .touches("rigid_bodies", Mode::Adds),
     );
+    let push = move |step: &mut Step<'_>| lock(&shared).push(step);
+    sim.add_system(System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>());
+}
+
+/// The contacts of the scene: two systems share them, which run one after the other.
+type Shared = Arc<Mutex<Contacts>>;
+
+fn lock(contacts: &Shared) -> MutexGuard<'_, Contacts> {
+    contacts.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 struct Contacts {
@@ -118,8 +146,8 @@ fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {
     Ok(squared.0.sqrt())
 }
 
-impl Run for Contacts {
-    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+impl Contacts {
+    fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for (body, pace) in &mut self.bodies {
             pace.speed = largest_speed(step, *body)?;
             let of_body = |particles: &&Particles| particles.deform && particles.body == *body;
@@ -137,20 +165,59 @@ impl Run for Contacts {
             self.tallies.push(((first, second), tally));
         }
         tally::book(step, &self.tallies);
+        self.add_couples(step);
         Ok(())
     }
 
+    /// Adds what acts on the material beside particles to the pair stress, before the pass of the internal force.
+    fn add_couples(&self, step: &Step<'_>) {
+        let deforms = |touching: &&Touching| touching.particles().any(|particles| particles.deform);
+        let mut deforming = self.touching.iter().filter(deforms).peekable();
+        if deforming.peek().is_none() {
+            return;
+        }
+        let mut packed = step.resources.get_mut::<PackedRows>();
+        for (body, touched) in deforming.flat_map(Touching::touched) {
+            touched.add_couples(&mut packed, step.world.body_view(body).1.start);
+        }
+        packed.renew_images();
+    }
+
+    /// Adds the forces on particles.
+    fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
+        for (body, touched) in self.touching.iter().flat_map(Touching::touched) {
+            let (view, rows) = step.world.body_view(body);
+            touched.add_forces(&mut view.write::<Force>()?[rows]);
+        }
+        Ok(())
+    }
+}
+
+/// The system that works out the forces.
+struct Meet(Shared);
+
+impl Run for Meet {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        lock(&self.0).meet(step)
+    }
+
     fn save(&self) -> Vec<u8> {
-        let entries: Vec<_> = self.touching.iter().map(|pair| pair.memories().entries()).collect();
+        let contacts = lock(&self.0);
+        let entries: Vec<_> = contacts.touching.iter().map(|pair| pair.memories().entries()).collect();
         postcard::to_stdvec(&entries).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
         let Ok(entries) = postcard::from_bytes::<Vec<Vec<(PairKey, Memory)>>>(state) else { return false };
-        if entries.len() != self.touching.len() {
+        let mut contacts = lock(&self.0);
+        if entries.len() != contacts.touching.len() {
             return false;
         }
-        self.touching.iter_mut().zip(entries).for_each(|(pair, entries)| pair.memories_mut().set(entries));
+        contacts
+            .touching
+            .iter_mut()
+            .zip(entries)
+            .for_each(|(pair, entries)| pair.memories_mut().set(entries));
         true
     }
 }

@@ -1,6 +1,7 @@
 //! The energies of the contacts of two bodies.
 
 use super::response::Losses;
+use crate::parallel::BlockSum;
 use crate::schedule::{AccountKind, Step};
 use crate::world::BodyId;
 
@@ -9,6 +10,14 @@ use crate::world::BodyId;
 pub(super) struct Tally {
     pub stored: f64,
     pub losses: Losses,
+}
+
+impl BlockSum for Tally {
+    fn add(&mut self, next: &Self) {
+        self.stored += next.stored;
+        self.losses.damping += next.losses.damping;
+        self.losses.friction += next.losses.friction;
+    }
 }
 
 /// Books the contacts of all pairs: each body has half.

@@ -73,11 +73,29 @@ pub fn for_each_block<S: Split, R: BlockSum>(
     sums: &mut Vec<R>,
     body: &(impl Fn(usize, S) -> R + Sync),
 ) -> R {
+    for_each_block_in_tasks(BLOCKS_PER_TASK, rows, sums, body)
+}
+
+/// [`for_each_block`] for loops that take microseconds a row: every block is a task.
+pub fn for_each_heavy_block<S: Split, R: BlockSum>(
+    rows: S,
+    sums: &mut Vec<R>,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    for_each_block_in_tasks(1, rows, sums, body)
+}
+
+fn for_each_block_in_tasks<S: Split, R: BlockSum>(
+    per_task: usize,
+    rows: S,
+    sums: &mut Vec<R>,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
     let count = block_count(rows.rows());
     sums.clear();
     sums.resize(count, R::default());
     if count > 0 {
-        divide(0, rows, sums, body);
+        divide(per_task, 0, rows, sums, body);
     }
     let mut total = R::default();
     sums.iter().for_each(|sum| total.add(sum));
@@ -116,18 +134,19 @@ fn divide_and_sum<S: Split, R: BlockSum>(
 const BLOCKS_PER_TASK: usize = 16;
 
 fn divide<S: Split, R: BlockSum>(
+    per_task: usize,
     first_row: usize,
     rows: S,
     sums: &mut [R],
     body: &(impl Fn(usize, S) -> R + Sync),
 ) {
-    if sums.len() > BLOCKS_PER_TASK {
+    if sums.len() > per_task {
         let half = sums.len() / 2;
         let (left, right) = rows.split(half * BLOCK);
         let (left_sums, right_sums) = sums.split_at_mut(half);
         rayon::join(
-            || divide(first_row, left, left_sums, body),
-            || divide(first_row + half * BLOCK, right, right_sums, body),
+            || divide(per_task, first_row, left, left_sums, body),
+            || divide(per_task, first_row + half * BLOCK, right, right_sums, body),
         );
         return;
     }
@@ -160,7 +179,12 @@ mod tests {
     fn sum_of(values: &[f64], threads: usize) -> f64 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         let mut sums = Vec::new();
-        pool.install(|| for_each_block(values, &mut sums, &|_, rows: &[f64]| rows.iter().sum::<f64>()))
+        pool.install(|| {
+            let light = for_each_block(values, &mut sums, &|_, rows: &[f64]| rows.iter().sum::<f64>());
+            let heavy = for_each_heavy_block(values, &mut sums, &|_, rows: &[f64]| rows.iter().sum::<f64>());
+            assert_eq!(light.to_bits(), heavy.to_bits());
+            light
+        })
     }
 
     #[test]

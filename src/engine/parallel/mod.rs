@@ -11,7 +11,9 @@ mod plane;
 mod vector;
 
 pub use arithmetic::Arithmetic;
-pub use blocks::{BLOCK, BlockSum, Split, block_count, for_each_block, sum_over_blocks};
+pub use blocks::{
+    BLOCK, BlockSum, Split, block_count, for_each_block, for_each_heavy_block, sum_over_blocks,
+};
 pub use dimension::{PlaneOrSolid, run_hot_in};
 pub use lanes::Lanes4;
 pub use largest::Largest;

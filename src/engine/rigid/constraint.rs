@@ -7,7 +7,7 @@ use crate::schedule::{Clock, StepError};
 use crate::world::BodyId;
 
 /// A velocity of the centre of a rigid body that a condition prescribes.
-pub trait Drive: Send {
+pub trait Drive: Send + Sync {
     /// Velocity, m/s, at mid-step or at the end of the step; only the axes of the drive count. `center` is where the
     /// centre is, `reference` where it was at the start.
     fn velocity(

@@ -7,68 +7,129 @@
 //! v(X_i + A) = v_i + F'_i A = v_i + sum_j c_j (v_j - v_i),      c_j = V_j w_ij X_ij . M_i^-1 A
 //! ```
 //!
-//! A force on the point acts on the particles with the same weights: then its work is that on the motion of the point, and, because the sum
-//! of c_j x_ij is F_i A, its moment that of a force at x_i + F_i A. For a force that depends on F_i it is what a stress in the particle would do.
+//! A force f on the point acts on the particles with the same weights: then its work is that on the motion of the point, and, because the sum
+//! of c_j x_ij is F_i A, its moment that of a force at x_i + F_i A. What it does to the neighbours and takes from the particle is what a stress
+//! `P_i = -f (x) A / V_i` in the particle would do: it goes into the pair stress, and the pass of the internal force spreads it.
 
-use std::cell::Ref;
-
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::formulation::PackedRows;
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot};
 use crate::schedule::Resources;
-use crate::world::{Force, Mobility, Velocity};
+use crate::world::{Mobility, Velocity};
 
-/// The neighbourhoods of the particles of total-Lagrangian bodies in this step; other particles are alone.
-pub(crate) struct Families<'a>(Option<Ref<'a, PackedRows>>);
+/// How the points of the material beside a particle move, and how much a force on them moves them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Surroundings {
+    /// Of the particle, m/s.
+    velocity: DVec3,
+    /// F' of the particle, 1/s.
+    rate: DMat3,
+    /// Of the particle, 1/kg.
+    mobility: DVec3,
+    /// The weight of the particle in the motion of the point A is 1 - c . A, 1/m.
+    own: DVec3,
+}
 
-impl<'a> Families<'a> {
-    /// Those of a simulation.
-    pub fn of(resources: &'a Resources) -> Self {
-        Self(resources.try_get())
+impl Surroundings {
+    /// Those of a particle whose neighbours do not count.
+    pub fn alone(velocity: Velocity, mobility: Mobility) -> Self {
+        Self { velocity: velocity.0, mobility: mobility.0, ..Self::default() }
     }
 
-    /// Calls `f` with the row, the signs of the axes, and the weight of all whose motion makes that of the point `arm` beside a particle.
-    #[inline]
-    fn each(&self, row: usize, arm: DVec3, mut f: impl FnMut(usize, DVec3, f64)) {
-        let mut own = 1.0;
-        if let Some(packed) = self.0.as_ref().filter(|_| arm != DVec3::ZERO) {
-            let towards = packed.bonds.inverse_moment[row] * arm;
-            let x = packed.sites[row].reference.xyz();
-            for (j, weight) in packed.bonds.row(row) {
-                let other = &packed.sites[j].reference;
-                let weight = f64::from(weight) * other.0[3] * (other.xyz() - x).dot(towards);
-                own -= weight;
-                f(packed.images.source(j), packed.images.mirror(j).unwrap_or(DVec3::ONE), weight);
+    /// Velocity of the point `arm` beside the particle in the reference configuration, m/s.
+    pub fn velocity(&self, arm: DVec3) -> DVec3 {
+        self.velocity + self.rate * arm
+    }
+
+    /// Mobility of that point along each axis, 1/kg: how much a force on it speeds it up. What the neighbours add, by the squares of their
+    /// weights, is a twentieth of it, and left out.
+    pub fn mobility(&self, arm: DVec3) -> DVec3 {
+        let own = 1.0 - self.own.dot(arm);
+        self.mobility * (own * own)
+    }
+}
+
+impl PackedRows {
+    /// The surroundings of a row, with the velocities of all rows; where velocities beside the particle are not asked for, they are not
+    /// worked out.
+    pub(crate) fn surroundings(
+        &self,
+        row: usize,
+        velocity: &[Velocity],
+        mobility: Mobility,
+        moving: bool,
+    ) -> Surroundings {
+        let inverse = &self.bonds.inverse_moment[row];
+        let sum = if moving { run_hot(Gather { packed: self, row, velocity }) } else { DMat3::ZERO };
+        Surroundings {
+            velocity: velocity[row].0,
+            rate: sum * inverse.to_matrix(),
+            mobility: mobility.0,
+            own: *inverse * self.bonds.reach[row],
+        }
+    }
+
+    /// Adds the sums of f (x) A, N m, of forces f on points A beside particles, as pair stress. Row `first + k` has entry `numbers[k]`, if there
+    /// is one.
+    pub(crate) fn add_couples(&mut self, first: usize, numbers: &[u32], couples: &[DMat3]) {
+        let Self { bonds, sites, pair_stress, own_pull, .. } = self;
+        let rows = first..first + numbers.len();
+        let written = (numbers, &mut pair_stress[rows.clone()], &mut own_pull[rows]);
+        for_each_block(written, &mut Vec::new(), &|begin, (numbers, pair_stress, own_pull)| {
+            for (k, number) in numbers.iter().enumerate() {
+                let Some(couple) = couples.get(*number as usize) else { continue };
+                let row = first + begin + k;
+                let site = &sites[row].reference;
+                let stress = *couple * bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
+                pair_stress[k].add(&stress, site.xyz());
+                own_pull[k] += stress * bonds.reach[row];
+            }
+        });
+    }
+
+    /// Hands pair stress that was added on to the images.
+    pub(crate) fn renew_images(&mut self) {
+        let Self { images, frames, sites, pair_stress, .. } = self;
+        images.fill_pair_stress(frames, sites, pair_stress);
+    }
+}
+
+/// The rows of total-Lagrangian bodies, if there are any.
+pub(crate) fn packed_rows(resources: &Resources) -> Option<std::cell::Ref<'_, PackedRows>> {
+    resources.try_get()
+}
+
+/// The sum of V_j w_ij v_ij (x) X_ij over the neighbours of a particle.
+struct Gather<'a> {
+    packed: &'a PackedRows,
+    row: usize,
+    velocity: &'a [Velocity],
+}
+
+impl HotLoop for Gather<'_> {
+    type Output = DMat3;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> DMat3 {
+        let Self { packed, row, velocity } = self;
+        let (bonds, sites, images) = (&packed.bonds, &packed.sites, &packed.images);
+        let (own, v) = (sites[row].reference, Lanes4::new(velocity[row].0, 0.0));
+        let mut sum = [Lanes4::ZERO; 3];
+        for k in bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize {
+            let j = bonds.neighbors[k] as usize;
+            let other = sites[j].reference;
+            let there = match velocity.get(j) {
+                Some(there) if images.is_empty() => there.0,
+                _ => velocity[images.source(j)].0 * images.mirror(j).unwrap_or(DVec3::ONE),
+            };
+            let v_ij = a.minus(Lanes4::new(there, 0.0), v);
+            let weighted = a.scale(f64::from(bonds.weights[k]) * other.0[3], v_ij);
+            let x_ij = a.minus(other, own);
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                *sum = a.scale_add(x_ij.0[axis], weighted, *sum);
             }
         }
-        f(row, DVec3::ONE, own);
-    }
-
-    /// Velocity of the point, m/s.
-    pub fn velocity(&self, velocity: &[Velocity], row: usize, arm: DVec3) -> DVec3 {
-        let mut sum = DVec3::ZERO;
-        self.each(row, arm, |j, signs, weight| sum += signs * velocity[j].0 * weight);
-        sum
-    }
-
-    /// Velocity of the point, m/s, and its mobility along each axis, 1/kg: how much a force on it speeds it up.
-    pub fn motion(
-        &self,
-        velocity: &[Velocity],
-        mobility: &[Mobility],
-        row: usize,
-        arm: DVec3,
-    ) -> (DVec3, DVec3) {
-        let mut sum = (DVec3::ZERO, DVec3::ZERO);
-        self.each(row, arm, |j, signs, weight| {
-            sum.0 += signs * velocity[j].0 * weight;
-            sum.1 += mobility[j].0 * (weight * weight);
-        });
-        sum
-    }
-
-    /// Adds a force on the point, N.
-    pub fn push(&self, force: &mut [Force], row: usize, arm: DVec3, push: DVec3) {
-        self.each(row, arm, |j, signs, weight| force[j].0 += signs * push * weight);
+        DMat3::from_cols(sum[0].xyz(), sum[1].xyz(), sum[2].xyz())
     }
 }

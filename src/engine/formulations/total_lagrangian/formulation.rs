@@ -76,7 +76,7 @@ pub const DEFORMATION: &str = "total_lagrangian_deformation";
 pub const INTERNAL_FORCE: &str = "total_lagrangian_force";
 
 /// What the two systems share.
-pub(super) struct PackedRows {
+pub(crate) struct PackedRows {
     pub(super) bonds: Bonds,
     pub(super) images: Images,
     /// Where the reference positions of sites are measured from, m.

@@ -59,6 +59,13 @@ impl PairStress {
         stress + displacement * self.stiffness()
     }
 
+    /// Adds to A_i what no frame changes, of a particle at that place in the reference configuration.
+    pub(super) fn add(&mut self, stress: &DMat3, reference: DVec3) {
+        PairStressRows(std::slice::from_mut(self)).add_scaled(0, 1.0, stress);
+        let pull = stress * reference;
+        self.pull = Lanes4::new(self.pull.xyz() + pull, self.pull.0[3]);
+    }
+
     /// Takes A_i into the frame of the body, and makes q_i.
     #[inline(always)]
     pub(super) fn complete(&mut self, frame: &Frame, site: &Site) {
