@@ -39,6 +39,8 @@ pub struct Touch {
     pub radius: f64,
     /// Length that the contact stands for, m: the distance of the centres of two particles that just touch.
     pub length: f64,
+    /// Overlap at which the centre of a particle is at the surface, or those of two at one place, m; infinite between rigid bodies.
+    pub depth: f64,
 }
 
 /// The elastic part of a normal force.

@@ -45,7 +45,10 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send, E: BlockSum> Mee
         test: impl Fn(&C, &mut E) -> Option<(PairKey, T)> + Sync,
     ) -> E {
         if self.slots.len() < candidates.len() {
+            // Room for all that the list may bring, so that steps between two lists allocate nothing.
             self.slots.resize(candidates.len(), Default::default());
+            self.pushes.reserve(candidates.len());
+            self.memories.reserve(candidates.len());
         }
         let rows = (candidates, &mut self.slots[..candidates.len()]);
         let total =

@@ -15,6 +15,8 @@ pub(super) struct Memory {
     pub stiffness: f64,
     /// Force of the dashpots on the first side, N.
     pub dashpot: DVec3,
+    /// Depth of the overlap, m; zero where there was none.
+    pub overlap: f64,
     /// From the particles of both sides to where the forces act, in the reference configuration, m.
     pub arms: [DVec3; 2],
 }
@@ -23,6 +25,11 @@ impl Memory {
     /// Energy in the tangential spring, J.
     pub fn energy(&self) -> f64 {
         if self.stiffness > 0.0 { 0.5 * self.spring.length_squared() / self.stiffness } else { 0.0 }
+    }
+
+    /// Whether the contact was not there.
+    pub fn is_none(&self) -> bool {
+        self.overlap == 0.0
     }
 
     /// Whether there is nothing but an elastic force.
@@ -51,6 +58,15 @@ pub(super) struct Remembered<'a> {
 }
 
 impl Memories {
+    /// Makes room for that many contacts.
+    pub fn reserve(&mut self, count: usize) {
+        let room = |entries: &mut Vec<_>| entries.reserve(count.saturating_sub(entries.len()));
+        room(&mut self.now);
+        room(&mut self.next);
+        self.before.reserve(count);
+        self.ended.reserve(count);
+    }
+
     /// Begins a step with contacts of these pairs, ascending.
     pub fn begin(&mut self, keys: impl Iterator<Item = PairKey>) -> Remembered<'_> {
         self.before.clear();

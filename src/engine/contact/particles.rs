@@ -149,6 +149,7 @@ impl ParticleContact {
         let of_itself = self.first.body == self.second.body;
         let other = usize::from(!of_itself);
         touched.iter_mut().for_each(Touched::clear);
+        touched.iter_mut().for_each(|touched| touched.reserve(search.pairs().len()));
         for ((i, j), _) in meetings.met() {
             touched[0].take_in(*i);
             touched[other].take_in(*j);
@@ -163,8 +164,14 @@ impl ParticleContact {
         let share = move |key: PairKey| if of_itself && key.0 == key.1 { 0.5 } else { 1.0 };
         let respond = |key: PairKey, near: &Nearness, before: &Memory, tally: &mut Tally| {
             let (i, j) = (key.0 as usize, key.1 as usize);
-            let (of, share) =
-                ([touched[0].surroundings(key.0), touched[other].surroundings(key.1)], share(key));
+            // What is new may need the velocity where the others do not.
+            let new = (before.is_none() && !moving)
+                .then(|| [first.surroundings(i, true), second.surroundings(j, true)]);
+            let of = match &new {
+                Some([first, second]) => [first, second],
+                None => [touched[0].surroundings(key.0), touched[other].surroundings(key.1)],
+            };
+            let share = share(key);
             // The forces of the last step on the motion of this one.
             if !before.is_elastic() {
                 tally.losses.add_work(share, before, velocity(of, before.arms), dt);
@@ -173,7 +180,7 @@ impl ParticleContact {
             let radius = first.radius(i) * second.radius(j) / reach;
             let mobility = [of[0].mobility(near.arms[0]), of[1].mobility(mirror.turn(near.arms[1]))];
             let meeting = Meeting {
-                touch: Touch { overlap: near.overlap, radius, length: reach },
+                touch: Touch { overlap: near.overlap, radius, length: reach, depth: reach },
                 normal: near.normal,
                 scale: near.scale,
                 arms: near.arms,

@@ -1,4 +1,4 @@
-//! A linear spring.
+//! A spring that hardens as particles are pressed in.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -7,8 +7,9 @@ use super::law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
 use crate::materials::ParameterError;
 use crate::scene::Dimension;
 
-/// Linear spring between surfaces: f = k d with the depth d of the overlap. The stiffness follows from the materials: in
-/// three dimensions k = E* l, with l the distance of two particles that just touch; in two k = E* per metre of
+/// Spring between surfaces: f = k d (1 + 10 (d/D)^2) with the depth d of the overlap, and D that at which the centre of a particle is at the
+/// surface, so that pressures of the order of the modulus do not push it through; between rigid bodies f = k d. The stiffness follows from
+/// the materials: in three dimensions k = 1.5 E* l, with l the distance of two particles that just touch; in two k = 1.5 E* per metre of
 /// thickness, whatever the spacing. 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -18,6 +19,12 @@ pub struct Penalty {
     /// Factor on the stiffness that follows from the materials \[-\].
     pub factor: f64,
 }
+
+/// k over E* per metre of thickness: two equal bodies that touch give way like one and a third spacings of them. With less an impact
+/// lasts longer (S22), with more a contact that is a few particles wide becomes narrower (C1).
+const STIFFNESS: f64 = 1.5;
+/// Share of the stiffness by which the spring hardens.
+const HARDENING: f64 = 10.0;
 
 impl Default for Penalty {
     fn default() -> Self {
@@ -33,35 +40,44 @@ impl ContactLaw for Penalty {
         ParameterError::require_positive("factor", self.factor)?;
         if let Some(stiffness) = self.stiffness {
             ParameterError::require_positive("stiffness", stiffness)?;
-            return Ok(Box::new(Linear { constant: stiffness, per_length: 0.0 }));
+            return Ok(Box::new(Hardening { constant: stiffness, per_length: 0.0 }));
         }
-        let modulus = self.factor * pair.modulus_or("stiffness")?;
+        let modulus = STIFFNESS * self.factor * pair.modulus_or("stiffness")?;
         Ok(Box::new(match pair.dimension {
-            Dimension::Two => Linear { constant: modulus, per_length: 0.0 },
-            Dimension::Three => Linear { constant: 0.0, per_length: modulus },
+            Dimension::Two => Hardening { constant: modulus, per_length: 0.0 },
+            Dimension::Three => Hardening { constant: 0.0, per_length: modulus },
         }))
     }
 }
 
 /// k = constant + per_length l.
-struct Linear {
+struct Hardening {
     constant: f64,
     per_length: f64,
 }
 
-impl Linear {
+impl Hardening {
     fn stiffness(&self, touch: &Touch) -> f64 {
         self.constant + self.per_length * touch.length
     }
 }
 
-impl NormalForce for Linear {
+impl NormalForce for Hardening {
     fn at(&self, touch: &Touch) -> Spring {
         let (k, d) = (self.stiffness(touch), touch.overlap);
-        Spring { force: k * d, stiffness: k, energy: 0.5 * k * d * d }
+        let harder = HARDENING * (d / touch.depth).powi(2);
+        Spring {
+            force: k * d * (1.0 + harder),
+            stiffness: k * (1.0 + 3.0 * harder),
+            energy: 0.5 * k * d * d * (1.0 + 0.5 * harder),
+        }
     }
 
-    fn stiffness_of_impact(&self, touch: &Touch, _: f64, _: f64) -> f64 {
-        self.stiffness(touch)
+    fn stiffness_of_impact(&self, touch: &Touch, mass: f64, speed: f64) -> f64 {
+        // With q = (d/D)^2 at the deepest point, k D^2/2 (q + HARDENING/2 q^2) is the energy m v^2/2 that the motion had.
+        let k = self.stiffness(touch);
+        let energy = mass * (speed / touch.depth).powi(2) / k;
+        let harder = (1.0 + 2.0 * HARDENING * energy).sqrt() - 1.0;
+        k * (1.0 + 3.0 * harder)
     }
 }

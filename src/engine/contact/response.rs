@@ -63,9 +63,10 @@ impl Interaction {
         before: &Memory,
     ) -> Response {
         let Meeting { touch, normal, velocity, scale, arms } = meeting;
-        let spring = self.law.at(touch).along(*scale);
+        let mut spring = self.law.at(touch).along(*scale);
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
+        spring.force *= share_of_step(touch, scale * approach * dt, before);
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
         let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force, dt);
         let pressure = (spring.force + pull).max(0.0);
@@ -76,15 +77,17 @@ impl Interaction {
         Response {
             force: pressure * *normal + tangential + drag,
             spring,
-            memory: Memory { spring: tangential, stiffness, dashpot, arms: *arms },
+            memory: Memory { spring: tangential, stiffness, dashpot, overlap: touch.overlap, arms: *arms },
         }
     }
 
     /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the share of a
     /// step for which it is to act in the kicks around the end of its first one.
     fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &Memory) -> f64 {
-        let is_new = before.stiffness == 0.0 && approach * dt > 0.0;
-        if is_new && self.law.at(&Touch { overlap: 0.0, ..*touch }).stiffness > 0.0 {
+        if before.is_none()
+            && approach * dt > 0.0
+            && self.law.at(&Touch { overlap: 0.0, ..*touch }).stiffness > 0.0
+        {
             0.5 + (touch.overlap / (approach * dt)).min(1.0)
         } else {
             1.0
@@ -134,6 +137,15 @@ impl Interaction {
         let room = limit - held;
         (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
     }
+}
+
+/// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a contact has acted since the sides met, with
+/// half of that force in the mean; in its last it acts until they part. Without this share a touch would miss up to an eighth of
+/// `k (v dt)^2` of its energy at either end. Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
+fn share_of_step(touch: &Touch, approach: f64, before: &Memory) -> f64 {
+    let overlap = touch.overlap;
+    let way = if before.is_none() { approach } else { before.overlap - overlap };
+    if way > overlap && touch.depth.is_finite() { 0.5 + 0.5 * overlap / way } else { 1.0 }
 }
 
 impl Losses {

@@ -114,6 +114,7 @@ impl SurfaceContact {
         let (mut rigid, mut particle) = (0.0, 0.0_f64);
         let of_particles = self.sides.nodes.particles();
         self.touched.clear();
+        self.touched.reserve(self.nearby.candidates().len());
         for ((node, _), push) in self.meetings.pushes() {
             rigid += push.stiffness[1];
             if of_particles.is_some() {
@@ -228,7 +229,8 @@ fn evaluate(
         }
     };
     let respond = |(node, _): PairKey, meet: &Meet, before: &Memory, tally: &mut Tally| {
-        let (i, motion) = (node as usize, nodes.motion(node as usize, moving));
+        let i = node as usize;
+        let motion = nodes.motion(i, moving || before.is_none());
         work_before(node, &motion, before, tally);
         let Meet { x, shift, point, near } = *meet;
         let (arm, normal) = (near.arms[0], near.normal);
@@ -276,5 +278,6 @@ fn touch_of(nodes: &NodeView<'_>, i: usize, tool: &RigidBody, overlap: f64) -> T
     let length = nodes.size(i);
     let own = if nodes.radius(i) > 0.0 { nodes.radius(i) } else { 0.5 * length };
     let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
-    Touch { overlap, radius, length }
+    let depth = if matches!(nodes, NodeView::Particles(_)) { own } else { f64::INFINITY };
+    Touch { overlap, radius, length, depth }
 }

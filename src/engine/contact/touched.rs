@@ -42,6 +42,19 @@ impl Touched {
         self.stiffness.clear();
     }
 
+    /// Makes room for that many particles.
+    pub fn reserve(&mut self, count: usize) {
+        let count = count.min(self.numbers.len());
+        if self.nodes.capacity() < count {
+            let more = count - self.nodes.len();
+            self.nodes.reserve(more);
+            self.surroundings.reserve(count);
+            self.forces.reserve(more);
+            self.couples.reserve(more);
+            self.stiffness.reserve(more);
+        }
+    }
+
     /// Takes in a particle.
     pub fn take_in(&mut self, node: u32) {
         let number = &mut self.numbers[node as usize];

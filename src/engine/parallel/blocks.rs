@@ -94,6 +94,8 @@ fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     let count = block_count(rows.rows());
     sums.clear();
     sums.resize(count, R::default());
+    // A single thread need not be woken: the caller does it.
+    let per_task = if rayon::current_num_threads() == 1 { count } else { per_task };
     if count > 0 {
         divide(per_task, 0, rows, sums, body);
     }

@@ -19,7 +19,7 @@ fn laws() -> Vec<Box<dyn NormalForce>> {
 }
 
 fn touch(overlap: f64) -> Touch {
-    Touch { overlap, radius: RADIUS, length: 2.0 * RADIUS }
+    Touch { overlap, radius: RADIUS, length: 2.0 * RADIUS, depth: RADIUS }
 }
 
 #[test]
