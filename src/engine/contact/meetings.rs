@@ -3,7 +3,7 @@
 
 use super::memory::{Memories, Memory, PairKey};
 use super::tally::Tally;
-use crate::parallel::{BLOCK, BlockSum, for_each_heavy_block};
+use crate::parallel::{BLOCK, BlockSum, block_count, for_each_heavy_block};
 
 /// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is what else the candidates tell.
 pub(super) struct Meetings<T, P, E> {
@@ -45,10 +45,13 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send, E: BlockSum> Mee
         test: impl Fn(&C, &mut E) -> Option<(PairKey, T)> + Sync,
     ) -> E {
         if self.slots.len() < candidates.len() {
-            // Room for all that the list may bring, so that steps between two lists allocate nothing.
-            self.slots.resize(candidates.len(), Default::default());
-            self.pushes.reserve(candidates.len());
-            self.memories.reserve(candidates.len());
+            // Room for all that the list may bring, and the next ones: steps allocate nothing.
+            let room = (2 * candidates.len()).max(BLOCK);
+            self.slots.resize(room, Default::default());
+            self.found.reserve(block_count(room));
+            self.sums.reserve(block_count(room));
+            self.pushes.reserve(room);
+            self.memories.reserve(room);
         }
         let rows = (candidates, &mut self.slots[..candidates.len()]);
         let total =

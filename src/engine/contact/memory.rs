@@ -63,8 +63,8 @@ impl Memories {
         let room = |entries: &mut Vec<_>| entries.reserve(count.saturating_sub(entries.len()));
         room(&mut self.now);
         room(&mut self.next);
-        self.before.reserve(count);
-        self.ended.reserve(count);
+        self.before.reserve(count.saturating_sub(self.before.len()));
+        self.ended.reserve(count.saturating_sub(self.ended.len()));
     }
 
     /// Begins a step with contacts of these pairs, ascending.

@@ -44,11 +44,12 @@ impl Touched {
 
     /// Makes room for that many particles.
     pub fn reserve(&mut self, count: usize) {
-        let count = count.min(self.numbers.len());
-        if self.nodes.capacity() < count {
+        let particles = self.numbers.len();
+        if self.nodes.capacity() < count.min(particles) {
+            let count = (2 * count).min(particles);
             let more = count - self.nodes.len();
             self.nodes.reserve(more);
-            self.surroundings.reserve(count);
+            self.surroundings.reserve(count - self.surroundings.len());
             self.forces.reserve(more);
             self.couples.reserve(more);
             self.stiffness.reserve(more);
