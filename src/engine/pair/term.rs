@@ -82,9 +82,11 @@ impl<A: Arithmetic> Rates<A> {
 
     #[inline(always)]
     pub(super) fn sum(self) -> RowRates {
+        let Vector { x, y, z } = self.force;
+        let sums = self.density.arithmetic().sums([x.lanes(), y.lanes(), z.lanes(), self.density.lanes()]);
         RowRates {
-            force: self.force.sum(),
-            density: self.density.sum(),
+            force: sums.xyz(),
+            density: sums.0[3],
             damping: self.damping.sum(),
             stiffness: self.stiffness.sum(),
         }

@@ -52,6 +52,13 @@ pub trait Arithmetic: Copy + Send + Sync {
     /// Rows and columns exchanged: four records of four numbers become four lanes of each number.
     fn transpose(self, rows: [Lanes4; 4]) -> [Lanes4; 4];
 
+    /// The sum of the lanes of each, in the order of [`Lanes4::sum`].
+    #[inline(always)]
+    fn sums(self, of: [Lanes4; 4]) -> Lanes4 {
+        let [a, b, c, d] = self.transpose(of);
+        self.plus(self.plus(a, b), self.plus(c, d))
+    }
+
     /// `s a`.
     #[inline(always)]
     fn scale(self, s: f64, a: Lanes4) -> Lanes4 {

@@ -102,10 +102,11 @@ fn advance(
     (density, compression, rate, mass, removed): Rows<'_>,
 ) -> Change {
     let mut change = Change::default();
-    let energy = |rho| state.eos.energy(rho, state.density, state.sound_speed);
+    let FluidState { eos, density: rho_0, sound_speed, .. } = *state;
+    let released = |from, to| -eos.energy_change(from, to, rho_0, sound_speed);
     for (k, rho) in density.iter_mut().enumerate() {
         if removed[k] != Removed::NO {
-            change.removed += mass[k].0 * energy(rho.0);
+            change.removed += mass[k].0 * eos.energy(rho.0, rho_0, sound_speed);
             rho.0 = state.density;
             continue;
         }
@@ -117,13 +118,11 @@ fn advance(
         let before = rho.0 + by_terms + shift;
         let after = before * (1.0 + half) / (1.0 - half);
         if shift != 0.0 {
-            change.shifted +=
-                mass[k].0 * (energy(before - shift) - energy(before) + energy(after) - energy(after + shift));
+            change.shifted += mass[k].0 * (released(before - shift, before) + released(after, after + shift));
         }
         if by_terms != 0.0 {
             change.dissipated += mass[k].0
-                * (energy(rho.0) - energy(before - shift) + energy(after + shift)
-                    - energy(after + shift + by_terms));
+                * (released(rho.0, before - shift) + released(after + shift, after + shift + by_terms));
         }
         rho.0 = after + shift + by_terms;
         if change.broken == 0 && !(rho.0 > 0.0 && rho.0.is_finite()) {

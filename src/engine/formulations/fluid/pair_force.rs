@@ -159,20 +159,19 @@ impl Rows<'_> {
                     _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, P, true>(a),
                     _ => pairs.sum::<A, P, false>(a),
                 };
-                let of_i = sums(&sum.gradient) * own.pressure();
-                let of_j = sums(&sum.pressure);
+                let of_j = sums(a, &sum.pressure);
                 match (own_is_fluid, other.fluid().is_some()) {
                     (true, true) => pressure += of_j,
                     (true, false) => {
-                        pressure += of_i;
+                        pressure += sums(a, &sum.gradient) * own.pressure();
                         wall += of_j;
                     }
                     _ => {
                         pressure += of_j;
-                        wall += of_i;
+                        wall += sums(a, &sum.gradient) * own.pressure();
                     }
                 }
-                viscous += sums(&sum.viscous);
+                viscous += sums(a, &sum.viscous);
             }
             let volume = own.volume();
             let force = (viscous - pressure - wall) * volume;

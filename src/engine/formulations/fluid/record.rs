@@ -218,10 +218,10 @@ pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lan
 
 /// The vector of the sums of the lanes of each axis.
 #[inline(always)]
-pub(super) fn sums<const D: usize>(v: &[Lanes4; D]) -> DVec3 {
-    let mut out = DVec3::ZERO;
+pub(super) fn sums<A: Arithmetic, const D: usize>(a: A, v: &[Lanes4; D]) -> DVec3 {
+    let mut axes = [Lanes4::ZERO; 4];
     for axis in 0..D {
-        out[axis] = v[axis].sum();
+        axes[axis] = v[axis];
     }
-    out
+    a.sums(axes).xyz()
 }

@@ -106,8 +106,8 @@ impl Rows<'_> {
             if total > LEAST_SHARE {
                 let mean = 1.0 / total;
                 out.pressure = pressure.sum() * mean;
-                out.moment = sums(&moment) * mean;
-                out.velocity = sums(&velocity) * mean;
+                out.moment = sums(a, &moment) * mean;
+                out.velocity = sums(a, &velocity) * mean;
             }
         }
     }
