@@ -220,8 +220,6 @@ pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lan
 #[inline(always)]
 pub(super) fn sums<A: Arithmetic, const D: usize>(a: A, v: &[Lanes4; D]) -> DVec3 {
     let mut axes = [Lanes4::ZERO; 4];
-    for axis in 0..D {
-        axes[axis] = v[axis];
-    }
+    axes[..D].copy_from_slice(v);
     a.sums(axes).xyz()
 }
