@@ -4,21 +4,25 @@
 //! `e_ij^i = F_i X_ij - x_ij`. Eq. 31 has W_ij and eq. 32 multiplies with it again; it belongs there once. The force is
 //! not the gradient of an energy: its work is booked as dissipated, and may be negative.
 
+use std::marker::PhantomData;
+
+use glam::DMat3;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Matrix, Number};
-use meshless_engine::world::{DeformationGradient, HourglassModulus};
+use meshless_engine::world::{Column, HourglassModulus};
 
-/// The form of the paper for one body.
-pub struct Ganzenmueller2015 {
+/// The form of the paper for one body; `F` is the column of the deformation gradient.
+pub struct Ganzenmueller2015<F> {
     /// alpha.
     pub alpha: f64,
     /// Density rho_0, kg/m3.
     pub density: f64,
+    pub measure: PhantomData<F>,
 }
 
-impl PairTerm for Ganzenmueller2015 {
-    type ReadI = (DeformationGradient, HourglassModulus);
-    type ReadJ = (DeformationGradient, HourglassModulus);
+impl<F: Column<Value = DMat3>> PairTerm for Ganzenmueller2015<F> {
+    type ReadI = (F, HourglassModulus);
+    type ReadJ = (F, HourglassModulus);
 
     const READS_VELOCITY: bool = false;
 

@@ -4,16 +4,22 @@
 //! zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of the mean,
 //! `e_ij = F_i X_ij - x_ij`.
 
+mod cracks;
 mod ganzenmueller_2015;
 mod resistance;
 mod variational;
 mod viscous;
 
+use std::marker::PhantomData;
+
+use cracks::{OffCracks, add_off_cracks, can_fail};
 use ganzenmueller_2015::Ganzenmueller2015;
 use meshless_engine::formulations::total_lagrangian::{BodyBondTerm, BondTerm};
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::world::{BodySet, ColumnSet, HourglassMisfit, HourglassModulus};
+use meshless_engine::world::{
+    BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus,
+};
 pub use resistance::AfterYield;
 use resistance::Resistance;
 use schemars::JsonSchema;
@@ -132,8 +138,14 @@ impl HourglassControl {
         let term: Box<dyn BondTerm> = Box::new(Resistance(self.after_yield));
         sim.extend(BodyBondTerm { bodies: bodies.clone(), account: None, released: None, term });
         for id in bodies.iter() {
-            let term = Ganzenmueller2015 { alpha, density: sim.body(id).material.density };
-            sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
+            let density = sim.body(id).material.density;
+            if can_fail(sim, id)? {
+                let term = Ganzenmueller2015::<HourglassGradient> { alpha, density, measure: PhantomData };
+                add_off_cracks(sim, id, "hourglass_work", OffCracks(term));
+            } else {
+                let term = Ganzenmueller2015::<DeformationGradient> { alpha, density, measure: PhantomData };
+                sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
+            }
         }
         Ok(())
     }
@@ -147,7 +159,13 @@ fn add_viscous(zeta: f64, bodies: &BodySet, sim: &mut SimBuilder<'_>) -> Result<
         let body = sim.body(id);
         let density = body.material.density;
         let sound_speed = (body.solid_law()?.elastic().bulk / density).sqrt();
-        sim.add_pair_term(BodySet::new([id]), "hourglass_viscosity", Viscous { zeta, sound_speed, density });
+        if can_fail(sim, id)? {
+            let term = Viscous::<HourglassGradient> { zeta, sound_speed, density, measure: PhantomData };
+            add_off_cracks(sim, id, "hourglass_viscosity", OffCracks(term));
+        } else {
+            let term = Viscous::<DeformationGradient> { zeta, sound_speed, density, measure: PhantomData };
+            sim.add_pair_term(BodySet::new([id]), "hourglass_viscosity", term);
+        }
     }
     Ok(())
 }

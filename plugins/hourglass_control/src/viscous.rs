@@ -5,23 +5,27 @@
 //! gradient of the kernel is a vector, and its sign is that of pair vectors from i to j. The force is along the bond and
 //! against the relative motion: momentum and angular momentum are kept, energy is only ever taken out.
 
+use std::marker::PhantomData;
+
+use glam::DMat3;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Matrix};
-use meshless_engine::world::DeformationGradient;
+use meshless_engine::world::Column;
 
-/// The viscous form for one body.
-pub struct Viscous {
+/// The viscous form for one body; `F` is the column of the deformation gradient.
+pub struct Viscous<F> {
     /// zeta.
     pub zeta: f64,
     /// Speed of bulk waves c = sqrt(K / rho_0), m/s.
     pub sound_speed: f64,
     /// Density rho_0, kg/m3.
     pub density: f64,
+    pub measure: PhantomData<F>,
 }
 
-impl PairTerm for Viscous {
-    type ReadI = (DeformationGradient,);
-    type ReadJ = (DeformationGradient,);
+impl<F: Column<Value = DMat3>> PairTerm for Viscous<F> {
+    type ReadI = (F,);
+    type ReadJ = (F,);
 
     const READS_KERNEL: bool = false;
 

@@ -64,6 +64,8 @@ column! {
     pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
     /// Error of the mean deformation that hourglass control last resisted, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
     pub struct HourglassMisfit(f64) = "hourglass_misfit", "e^2", "1";
+    /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the neighbours that hold.
+    pub struct HourglassGradient(DMat3) = "hourglass_gradient", "F_h", "1";
 }
 
 impl Removed {

@@ -1,11 +1,14 @@
 //! The open slots of the hot passes: what is linear in X_ij or x_ij costs nothing per pair.
 
+use std::ops::Range;
+
 use glam::DMat3;
 
 use super::rows::PairStressRows;
 
 /// A block of particles of one body, after their stress is known and before the pass over pairs that makes the force.
-/// All slices have one length.
+/// All slices have one length. Beside particles that have failed, displacement gradient and error are those of a fit to the neighbours that
+/// hold, and what a term adds does not act on those that have failed: no bond across a crack carries a force of a term.
 pub struct BondRows<'a> {
     /// Deformation gradient F_i.
     pub deformation: &'a [DMat3],
@@ -15,7 +18,7 @@ pub struct BondRows<'a> {
     pub modulus: &'a [f64],
     /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
     pub strength: &'a [f64],
-    /// What terms that become softer remember of the last step.
+    /// What terms leave in columns.
     pub memory: BondMemory<'a>,
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub misfit: &'a [f64],
@@ -25,22 +28,54 @@ pub struct BondRows<'a> {
     pub pair_stress: PairStressRows<'a>,
 }
 
-/// Modulus and error of the mean deformation of the last step, for terms that become softer on the way. Slices are
-/// those of columns, and empty where no plugin has added them.
+impl BondRows<'_> {
+    /// Some of the rows.
+    pub(super) fn part(&mut self, rows: Range<usize>) -> BondRows<'_> {
+        BondRows {
+            deformation: &self.deformation[rows.clone()],
+            displacement_gradient: &self.displacement_gradient[rows.clone()],
+            modulus: &self.modulus[rows.clone()],
+            strength: &self.strength[rows.clone()],
+            memory: self.memory.part(rows.clone()),
+            misfit: &self.misfit[rows.clone()],
+            volume: &self.volume[rows.clone()],
+            pair_stress: PairStressRows(&mut self.pair_stress.0[rows]),
+        }
+    }
+}
+
+/// What terms leave in columns: modulus and error of the mean deformation of the last step, for terms that become softer on the way, and the fit
+/// for pair terms. A slice is empty where no plugin has added its column.
 #[derive(Default)]
 pub struct BondMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
     pub modulus: &'a mut [f64],
     /// Error of the mean deformation: column [`HourglassMisfit`](crate::world::HourglassMisfit).
     pub misfit: &'a mut [f64],
+    /// Deformation gradient that fits the neighbours that hold: column [`HourglassGradient`](crate::world::HourglassGradient).
+    pub gradient: &'a mut [DMat3],
 }
 
 impl BondMemory<'_> {
+    /// Some of the rows.
+    fn part(&mut self, rows: Range<usize>) -> BondMemory<'_> {
+        let Self { modulus, misfit, gradient } = self;
+        BondMemory {
+            modulus: modulus.get_mut(rows.clone()).unwrap_or_default(),
+            misfit: misfit.get_mut(rows.clone()).unwrap_or_default(),
+            gradient: gradient.get_mut(rows).unwrap_or_default(),
+        }
+    }
+
     /// The rows before and from `at`.
     pub(super) fn split(self, at: usize) -> (Self, Self) {
         let (modulus, modulus_rest) = self.modulus.split_at_mut(at.min(self.modulus.len()));
         let (misfit, misfit_rest) = self.misfit.split_at_mut(at.min(self.misfit.len()));
-        (Self { modulus, misfit }, Self { modulus: modulus_rest, misfit: misfit_rest })
+        let (gradient, gradient_rest) = self.gradient.split_at_mut(at.min(self.gradient.len()));
+        (
+            Self { modulus, misfit, gradient },
+            Self { modulus: modulus_rest, misfit: misfit_rest, gradient: gradient_rest },
+        )
     }
 }
 

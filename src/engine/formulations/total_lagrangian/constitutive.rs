@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
 use super::damping::{self, DampedStrain, DampingRows, DampingStress};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
+use super::edges::EdgeRows;
 use super::formulation::{BodyBondTerm, PackedRows};
 use super::frame::Frame;
 use super::removed::RemovedRows;
@@ -20,8 +21,9 @@ use crate::parallel::{Split, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
 use crate::world::{
-    BodyId, Column, ColumnSet, Damage, DeformationGradient, HourglassMisfit, HourglassModulus, PhaseId,
-    PhaseView, PiolaStress, Position, ReferencePosition, ReferenceVolume, World,
+    BodyId, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
+    HourglassModulus, PhaseId, PhaseView, PiolaStress, Position, ReferencePosition, ReferenceVolume,
+    Velocity, World,
 };
 
 /// A body as the deformation system sees it.
@@ -77,17 +79,19 @@ pub(super) struct Deformation {
     pub(super) phase: PhaseId,
     pub(super) plane: bool,
     pub(super) laws: Vec<BodyLaw>,
-    terms: Vec<BodyBondTerm>,
+    pub(super) terms: Vec<BodyBondTerm>,
     /// What the pass has found in each body.
     pub(super) found: Vec<DeformationSum>,
     sums: Vec<DeformationSum>,
     pub(super) removed: RemovedRows,
+    /// Rows that had failed when the step began, and have not been removed; ascending.
+    pub(super) failed: Vec<u32>,
 }
 
 impl Deformation {
     pub fn new(phase: PhaseId, plane: bool, laws: Vec<BodyLaw>, terms: Vec<BodyBondTerm>) -> Self {
         let (found, sums, removed) = (Vec::new(), Vec::new(), RemovedRows::default());
-        Self { phase, plane, laws, terms, found, sums, removed }
+        Self { phase, plane, laws, terms, found, sums, removed, failed: Vec::new() }
     }
 
     /// The state columns of all laws.
@@ -105,7 +109,7 @@ impl Deformation {
         (dt, is_short): (f64, bool),
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, frames, .. } = packed;
+        let PackedRows { bonds, images, origin, sites, pair_stress, own_pull, frames, cracks, .. } = packed;
         pack(&view, *origin, self.removed.rows(), &mut sites[..view.len()])?;
         images.fill_sites(*origin, sites);
         let mut gradient = view.write::<DeformationGradient>()?;
@@ -114,6 +118,8 @@ impl Deformation {
         let mut misfit = view.write::<HourglassMisfit>().ok();
         let mut strain = view.write::<DampedStrain>().ok();
         let mut damping = view.write::<DampingStress>().ok();
+        let mut measured = view.write::<HourglassGradient>().ok();
+        let velocity = view.read::<Velocity>()?;
         self.found.clear();
         frames.clear();
         for law in &self.laws {
@@ -127,12 +133,15 @@ impl Deformation {
             frames.push(frame);
             let pass = DeformationPass {
                 bonds,
+                images,
                 sites,
                 law: &*law.law,
                 terms: &terms[..law.terms.len()],
                 frame: &frame,
                 first_row: rows.start,
                 refits: self.removed.refits(),
+                marks: &cracks.marks,
+                velocity: &velocity,
                 plane: self.plane,
                 dt,
                 is_short,
@@ -149,6 +158,7 @@ impl Deformation {
                     memory: BondMemory {
                         modulus: modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
                         misfit: misfit.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
+                        gradient: measured.as_deref_mut().map_or(&mut [], |all| rows_of(all, &rows)),
                     },
                     damping: match (&mut strain, &mut damping) {
                         (Some(strain), Some(damping)) if law.damped => {
@@ -156,12 +166,14 @@ impl Deformation {
                         }
                         _ => DampingRows::default(),
                     },
+                    edges: EdgeRows::of(&mut cracks.edges, rows.start, rows.len()),
                 };
                 sum = pass.run(written, &mut self.sums);
             });
             self.found.push(sum);
         }
         images.fill_pair_stress(frames, sites, pair_stress);
+        cracks.settle();
         Ok(())
     }
 
@@ -182,6 +194,8 @@ impl Run for Deformation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
         let mut packed = resources.get_mut::<PackedRows>();
+        self.take_up_restored(step.world, &mut packed)?;
+        self.take_up_failed(step.world, &mut packed)?;
         if !self.take_up_removed(step, &mut packed)? {
             self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
             self.book(step)?;
@@ -203,18 +217,21 @@ impl Run for Deformation {
 
     fn save(&self) -> Vec<u8> {
         let factors: Vec<f64> = self.laws.iter().map(|law| law.stretch_factor).collect();
-        postcard::to_stdvec(&(factors, self.removed.rows(), self.removed.refits().entries()))
+        postcard::to_stdvec(&(factors, self.removed.rows(), self.removed.refits().entries(), &self.failed))
             .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<u32>, Vec<(u32, glam::DMat3)>);
-        let Ok((factors, removed, refits)) = postcard::from_bytes::<Saved>(state) else { return false };
+        type Saved = (Vec<f64>, Vec<u32>, Vec<(u32, glam::DMat3)>, Vec<u32>);
+        let Ok((factors, removed, refits, failed)) = postcard::from_bytes::<Saved>(state) else {
+            return false;
+        };
         if factors.len() != self.laws.len() {
             return false;
         }
         self.laws.iter_mut().zip(factors).for_each(|(law, factor)| law.stretch_factor = factor);
         self.removed = RemovedRows::restored(removed, refits);
+        self.failed = failed;
         true
     }
 }
@@ -275,7 +292,7 @@ impl BodyLaw {
     }
 }
 
-/// The rows of a body in a column of numbers.
+/// The rows of a body in a column.
 fn rows_of<'a, C: Column>(column: &'a mut [C], rows: &Range<usize>) -> &'a mut [C::Value] {
     bytemuck::cast_slice_mut(&mut column[rows.clone()])
 }

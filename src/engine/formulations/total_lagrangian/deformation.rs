@@ -8,16 +8,18 @@ use glam::{DMat3, DVec3};
 
 use super::bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
 use super::bonds::Bonds;
+use super::cracks::Mark;
 use super::damping::{Damping, DampingRows};
+use super::edges::EdgeRows;
 use super::frame::Frame;
+use super::gather::{Gather, MakePairStress};
+use super::images::Images;
 use super::refit::{self, Refits};
 use super::rows::{PairStress, PairStressRows, Site};
-use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
 use crate::materials::{SolidLaw, StateRows, StressRows};
-use crate::parallel::{
-    Arithmetic, BLOCK, BlockSum, HotLoop, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot, run_hot_in,
-};
+use crate::parallel::{BLOCK, BlockSum, Split, for_each_block, run_hot, run_hot_in};
+use crate::world::Velocity;
 
 /// Largest number of bond terms on one body.
 pub(super) const MAX_TERMS: usize = 4;
@@ -69,6 +71,7 @@ pub(super) struct DeformationRows<'a> {
     pub state: StateRows<'a>,
     pub memory: BondMemory<'a>,
     pub damping: DampingRows<'a>,
+    pub edges: EdgeRows<'a>,
 }
 
 impl Split for DeformationRows<'_> {
@@ -84,8 +87,9 @@ impl Split for DeformationRows<'_> {
         let (state, state_rest) = self.state.split(at);
         let (memory, memory_rest) = self.memory.split(at);
         let (damping, damping_rest) = self.damping.split(at);
+        let (edges, edges_rest) = self.edges.split(at);
         (
-            Self { deformation, stress, pair_stress, own_pull, state, memory, damping },
+            Self { deformation, stress, pair_stress, own_pull, state, memory, damping, edges },
             Self {
                 deformation: deformation_rest,
                 stress: stress_rest,
@@ -94,6 +98,7 @@ impl Split for DeformationRows<'_> {
                 state: state_rest,
                 memory: memory_rest,
                 damping: damping_rest,
+                edges: edges_rest,
             },
         )
     }
@@ -102,6 +107,7 @@ impl Split for DeformationRows<'_> {
 /// The pass over one body.
 pub(super) struct DeformationPass<'a> {
     pub bonds: &'a Bonds,
+    pub images: &'a Images,
     pub sites: &'a [Site],
     pub law: &'a dyn SolidLaw,
     pub terms: &'a [&'a dyn BondTerm],
@@ -110,6 +116,9 @@ pub(super) struct DeformationPass<'a> {
     pub first_row: usize,
     /// Measures of deformation that outlast cuts in the neighbourhood.
     pub refits: &'a Refits,
+    /// Which rows have failed; looked at where there are edges.
+    pub marks: &'a [Mark],
+    pub velocity: &'a [Velocity],
     /// Plane strain.
     pub plane: bool,
     /// Length of the step, s; zero before the first.
@@ -186,19 +195,17 @@ impl DeformationPass<'_> {
             run_hot(MakePairStress { stress: &damped[..n], inverse_moment, pair_stress });
         }
         refit::to_column(refits, first, stress);
-        let memory = rows.memory;
-        for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
-            *sum = term.add(&mut BondRows {
-                deformation: rows.deformation,
-                displacement_gradient: &gradient[..n],
-                modulus,
-                strength: &strength[..n],
-                memory: BondMemory { modulus: &mut *memory.modulus, misfit: &mut *memory.misfit },
-                misfit: &misfit[..n],
-                volume: &volume[..n],
-                pair_stress: PairStressRows(rows.pair_stress),
-            });
-        }
+        let bond_rows = BondRows {
+            deformation: rows.deformation,
+            displacement_gradient: &gradient[..n],
+            modulus,
+            strength: &strength[..n],
+            memory: rows.memory,
+            misfit: &misfit[..n],
+            volume: &volume[..n],
+            pair_stress: PairStressRows(rows.pair_stress),
+        };
+        self.add_terms(bond_rows, rows.edges, &mut sum.terms);
         let completed = rows.pair_stress.iter_mut().zip(rows.own_pull);
         for (k, (pair_stress, own_pull)) in completed.enumerate() {
             pair_stress.complete(self.frame, &sites[first + k]);
@@ -214,71 +221,5 @@ impl DeformationPass<'_> {
         let inverted = resisting.position(|(f, modulus)| f.determinant() <= 0.0 && *modulus != 0.0);
         sum.inverted = inverted.map_or(0, |k| first + k + 1);
         sum
-    }
-}
-
-struct Gather<'a> {
-    bonds: &'a Bonds,
-    sites: &'a [Site],
-    first: usize,
-    deformation: &'a mut [DMat3],
-    gradient: &'a mut [DMat3; BLOCK],
-    misfit: &'a mut [f64; BLOCK],
-    /// `sum_j V_j w_ij u_ij`.
-    stretch: &'a mut [DVec3; BLOCK],
-    volume: &'a mut [f64; BLOCK],
-}
-
-impl PlaneOrSolid for Gather<'_> {
-    #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, sites, first, deformation, gradient, misfit, stretch, volume } = self;
-        for (k, f_i) in deformation.iter_mut().enumerate() {
-            let i = first + k;
-            let site = sites[i];
-            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let (mut even, mut odd) = (Spread::<D>::ZERO, Spread::<D>::ZERO);
-            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
-            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
-            for (j, weight) in pairs.iter().zip(weights) {
-                even.add(a, site.displacement, &sites[j[0] as usize], weight[0]);
-                odd.add(a, site.displacement, &sites[j[1] as usize], weight[1]);
-            }
-            for (&j, &weight) in last.iter().zip(last_weight) {
-                even.add(a, site.displacement, &sites[j as usize], weight);
-            }
-            let Spread { mut spread, stretched, square } = even.plus(a, &odd);
-            for axis in 0..D {
-                spread[axis] = a.scale_add(-site.reference.0[axis], stretched, spread[axis]);
-            }
-            // A free particle has a zero inverse, and so F = I.
-            let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
-            // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
-            let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
-            misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
-            stretch[k] = stretched.xyz();
-            volume[k] = site.reference.0[3];
-            gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
-            *f_i = DMat3::IDENTITY + gradient[k];
-        }
-    }
-}
-
-struct MakePairStress<'a> {
-    stress: &'a [DMat3],
-    inverse_moment: &'a [Sym3],
-    pair_stress: &'a mut [PairStress],
-}
-
-impl HotLoop for MakePairStress<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
-        for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
-            let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
-            let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
-            out.columns = fit::<A, 3>(a, &columns, inverse);
-        }
     }
 }

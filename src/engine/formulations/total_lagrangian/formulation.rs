@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::bond_terms::BondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::constitutive::{Deformation, body_law};
+use super::cracks::Cracks;
 use super::damping::{DampedBodies, DampedStrain, DampingStress};
 use super::frame::Frame;
 use super::images::{Images, MirrorPlane, Repeat};
@@ -23,8 +24,9 @@ use crate::plugin::{BodyPlan, Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
 use crate::world::{
-    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, HourglassMisfit, HourglassModulus, Mass,
-    PhaseId, PiolaStress, Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
+    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, HourglassGradient, HourglassMisfit,
+    HourglassModulus, Mass, PhaseId, PiolaStress, Position, ReferencePosition, ReferenceVolume, Removed,
+    SupportRadius, Velocity,
 };
 
 /// Total-Lagrangian solid: neighbours, weights and corrections stay those of the reference configuration.
@@ -87,6 +89,7 @@ pub(crate) struct PackedRows {
     pub(super) own_pull: Vec<DVec3>,
     /// Of every body, in the order of rows.
     pub(super) frames: Vec<Frame>,
+    pub(super) cracks: Cracks,
     pub(super) kernels: Vec<BodyKernel>,
     /// Stable step of each body in its reference configuration, s.
     pub(super) stable_step: Vec<f64>,
@@ -148,6 +151,9 @@ impl Formulation for TotalLagrangian {
         }
         if !damped.is_empty() {
             state.add::<DampedStrain>().add::<DampingStress>();
+        }
+        if sim.columns(phase).get(HourglassGradient::NAME).is_some() {
+            state.add::<HourglassGradient>();
         }
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])
@@ -292,6 +298,7 @@ fn set_up(
         pair_stress,
         own_pull,
         frames: Vec::with_capacity(bodies.len()),
+        cracks: Cracks::default(),
         kernels,
         stable_step,
     });

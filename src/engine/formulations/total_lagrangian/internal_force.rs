@@ -13,8 +13,10 @@
 use glam::DVec3;
 
 use super::bonds::Bonds;
+use super::cracks::Cracks;
 use super::formulation::PackedRows;
 use super::frame::{Frame, frame_of};
+use super::images::Images;
 use super::rows::{PairStress, Site};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
@@ -23,6 +25,8 @@ use crate::world::{Force, Mass, PhaseId};
 /// The pass over all bodies of the phase.
 pub(super) struct InternalForce<'a> {
     pub bonds: &'a Bonds,
+    pub images: &'a Images,
+    pub cracks: &'a Cracks,
     pub sites: &'a [Site],
     pub pair_stress: &'a [PairStress],
     pub own_pull: &'a [DVec3],
@@ -40,7 +44,12 @@ impl InternalForce<'_> {
     /// Writes the force on every particle: gravity plus internal force, N.
     pub fn run(&self, force: &mut [Force]) {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
-            run_hot_in(self.plane, ForceRows { pass: self, first, force });
+            run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force });
+            let Self { bonds, images, cracks, sites, .. } = *self;
+            for &row in cracks.rows_of_block(first, force.len()) {
+                let row = row as usize;
+                force[row - first].0 -= cracks.force_across(row, bonds, images, sites);
+            }
         });
     }
 }
@@ -124,6 +133,8 @@ pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bo
     let mut force = view.write::<Force>()?;
     let pass = InternalForce {
         bonds: &packed.bonds,
+        images: &packed.images,
+        cracks: &packed.cracks,
         sites: &packed.sites,
         pair_stress: &packed.pair_stress,
         own_pull: &packed.own_pull,

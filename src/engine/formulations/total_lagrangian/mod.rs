@@ -7,12 +7,15 @@
 mod bond_terms;
 mod bonds;
 mod constitutive;
+mod cracks;
 mod damping;
 mod deformation;
+mod edges;
 mod families;
 mod fields;
 mod formulation;
 mod frame;
+mod gather;
 mod images;
 mod internal_force;
 mod pairs;

@@ -41,6 +41,18 @@ impl RemovedRows {
 }
 
 impl Deformation {
+    /// Takes what a checkpoint says is removed out of the bonds.
+    pub(super) fn take_up_restored(
+        &mut self,
+        world: &World,
+        packed: &mut PackedRows,
+    ) -> Result<(), StepError> {
+        if std::mem::take(&mut self.removed.restored) {
+            self.cut(world, packed)?;
+        }
+        Ok(())
+    }
+
     /// Takes up what has been removed since the last step; returns whether the pass has been run with it.
     ///
     /// The passes run twice from the same places, with the bonds that are gone and without them: what these held leaves
@@ -51,9 +63,6 @@ impl Deformation {
         step: &mut Step<'_>,
         packed: &mut PackedRows,
     ) -> Result<bool, StepError> {
-        if std::mem::take(&mut self.removed.restored) {
-            self.cut(step.world, packed)?;
-        }
         let view = step.world.phase(self.phase);
         let removed = view.read::<Removed>()?;
         if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
@@ -112,6 +121,8 @@ impl Deformation {
         let mass = view.read::<Mass>()?;
         InternalForce {
             bonds: &packed.bonds,
+            images: &packed.images,
+            cracks: &packed.cracks,
             sites: &packed.sites,
             pair_stress: &packed.pair_stress,
             own_pull: &packed.own_pull,
@@ -124,15 +135,19 @@ impl Deformation {
         Ok(force)
     }
 
-    /// Takes the removed particles out of the moment matrices of their neighbours.
-    fn cut(&self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
+    /// Takes the removed particles out of the moment matrices of their neighbours, and off the edges of cracks.
+    fn cut(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let reference = view.read::<ReferencePosition>()?;
         let volume = view.read::<ReferenceVolume>()?;
         let mut volume: Vec<f64> = volume.iter().map(|volume| volume.0).collect();
         self.removed.rows.iter().for_each(|&row| volume[row as usize] = 0.0);
         let dimension = world.dimension().count();
-        let PackedRows { bonds, images, stable_step, .. } = packed;
+        let PackedRows { bonds, images, cracks, stable_step, .. } = packed;
+        if !self.failed.is_empty() {
+            self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
+            cracks.relist(&self.failed, view.len(), bonds, images);
+        }
         for (law, stable_step) in self.laws.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, images);

@@ -1,0 +1,96 @@
+//! Pair forms of the control in bodies that can fail.
+//!
+//! A bond with a failed particle at either end carries no hourglass force: its error is how far the sides of a crack are apart. Nor is such an error part of
+//! the deformation gradient that other bonds are compared with. The variational form needs nothing of this, as bond terms do not act across cracks.
+
+use glam::DMat3;
+use meshless_engine::formulations::total_lagrangian::{BodyBondTerm, BondEnergy, BondRows, BondTerm};
+use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::parallel::{Arithmetic, Matrix, Number};
+use meshless_engine::plugin::{SetupError, SimBuilder};
+use meshless_engine::world::{
+    BodyId, BodySet, Column, ColumnSet, Damage, HourglassGradient, HourglassModulus,
+};
+
+use crate::ganzenmueller_2015::Ganzenmueller2015;
+use crate::viscous::Viscous;
+
+/// Whether the material of a body can fail.
+pub fn can_fail(sim: &SimBuilder<'_>, id: BodyId) -> Result<bool, SetupError> {
+    let mut state = ColumnSet::default();
+    sim.body(id).solid_law()?.state(&mut state);
+    Ok(state.get(Damage::NAME).is_some())
+}
+
+/// Adds a pair form to a body that can fail.
+pub fn add_off_cracks(sim: &mut SimBuilder<'_>, id: BodyId, account: &str, term: impl PairTerm) {
+    let bodies = BodySet::new([id]);
+    sim.add_column_to::<HourglassGradient>(&bodies);
+    let measure =
+        BodyBondTerm { bodies: bodies.clone(), account: None, released: None, term: Box::new(Measure) };
+    sim.extend(measure);
+    sim.add_pair_term(bodies, account, term);
+}
+
+/// Writes the fit to the neighbours that hold to its column.
+struct Measure;
+
+impl BondTerm for Measure {
+    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+        for (column, gradient) in rows.memory.gradient.iter_mut().zip(rows.displacement_gradient) {
+            *column = DMat3::IDENTITY + *gradient;
+        }
+        BondEnergy::default()
+    }
+
+    fn stiffness_factor(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A pair form that does not act on bonds with a failed particle.
+pub struct OffCracks<T>(pub T);
+
+/// The pair, in which a neighbour across a crack is none: it has no volume.
+#[inline(always)]
+fn off_cracks<A: Arithmetic>(pair: &Pair<A>, damage_i: Number<A>, damage_j: Number<A>) -> Pair<A> {
+    let mut whole = *pair;
+    whole.volume_j = damage_i.if_below(1.0, damage_j.if_below(1.0, pair.volume_j));
+    whole
+}
+
+impl PairTerm for OffCracks<Ganzenmueller2015<HourglassGradient>> {
+    type ReadI = (HourglassGradient, HourglassModulus, Damage);
+    type ReadJ = (HourglassGradient, HourglassModulus, Damage);
+
+    const READS_VELOCITY: bool = false;
+
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (f_i, e_i, damage_i): (Matrix<A>, Number<A>, Number<A>),
+        (f_j, e_j, damage_j): (Matrix<A>, Number<A>, Number<A>),
+        rates: &mut Rates<A>,
+    ) {
+        self.0.pair(&off_cracks(pair, damage_i, damage_j), (f_i, e_i), (f_j, e_j), rates);
+    }
+}
+
+impl PairTerm for OffCracks<Viscous<HourglassGradient>> {
+    type ReadI = (HourglassGradient, Damage);
+    type ReadJ = (HourglassGradient, Damage);
+
+    const READS_KERNEL: bool = false;
+
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (f_i, damage_i): (Matrix<A>, Number<A>),
+        (f_j, damage_j): (Matrix<A>, Number<A>),
+        rates: &mut Rates<A>,
+    ) {
+        self.0.pair(&off_cracks(pair, damage_i, damage_j), (f_i,), (f_j,), rates);
+    }
+}

@@ -1,0 +1,172 @@
+//! Cracks: bonds that lead from a particle that holds to one that has failed and is still there. Terms on bonds do not act along them.
+//!
+//! A [`BondTerm`](super::BondTerm) of a particle at the edge of a crack is given the fit over the neighbours that hold (see
+//! [`edges`](super::edges)), so that its energy, and with it its force, is that of a body without those that have failed. The second pass knows one
+//! pair stress per particle, which acts on all its neighbours: what the terms put on bonds across a crack is taken back, on both sides of the bond.
+//!
+//! A particle that fails in a step crosses over at the start of the next, as in a step a block of particles does not see what the others do.
+
+use glam::{DMat3, DVec3};
+
+use super::bonds::Bonds;
+use super::constitutive::Deformation;
+use super::formulation::PackedRows;
+use super::images::Images;
+use super::rows::Site;
+use crate::world::{Damage, MissingColumn, Removed, World};
+
+/// What a particle is to its neighbours.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Mark {
+    /// It holds.
+    #[default]
+    Holds,
+    /// It has failed in the last step.
+    Fresh,
+    /// It has failed before.
+    Failed,
+}
+
+/// A particle that holds and has failed neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// Row in the phase.
+    pub row: u32,
+    /// Whether a neighbour has failed in the last step.
+    pub is_new: bool,
+    /// What bond terms have added to the pair stress A_i.
+    pub stress: DMat3,
+    /// What they have added to the bond stiffness k_i.
+    pub stiffness: f64,
+}
+
+/// All cracks of the phase.
+#[derive(Debug, Default)]
+pub(super) struct Cracks {
+    /// Of every row; empty before anything fails.
+    pub marks: Vec<Mark>,
+    /// Ascending by row.
+    pub edges: Vec<Edge>,
+    /// Rows at either side of a crack, ascending.
+    rows: Vec<u32>,
+    /// Number of failed rows that the marks know of.
+    failed: usize,
+    has_fresh: bool,
+}
+
+impl Cracks {
+    /// Takes up what has failed since the last step. `known` holds the rows that had failed before, ascending; the others are added to it.
+    pub fn take_up(
+        &mut self,
+        known: &mut Vec<u32>,
+        damage: &[Damage],
+        removed: &[Removed],
+        bonds: &Bonds,
+        images: &Images,
+    ) {
+        if self.failed != known.len() {
+            self.relist(known, damage.len(), bonds, images);
+        }
+        let is_failed = |row: usize| damage[row].0 >= 1.0 && removed[row] == Removed::NO;
+        if (0..damage.len()).filter(|&row| is_failed(row)).count() == known.len() {
+            return;
+        }
+        self.marks.resize(damage.len(), Mark::Holds);
+        for row in (0..damage.len()).filter(|&row| is_failed(row)) {
+            if self.marks[row] == Mark::Holds {
+                self.marks[row] = Mark::Fresh;
+                self.has_fresh = true;
+                known.push(row as u32);
+            }
+        }
+        known.sort_unstable();
+        self.failed = known.len();
+        self.list(known, bonds, images);
+    }
+
+    /// Makes the marks of the given failed rows of a phase of `len` anew.
+    pub fn relist(&mut self, failed: &[u32], len: usize, bonds: &Bonds, images: &Images) {
+        self.marks.clear();
+        self.marks.resize(len, Mark::Holds);
+        failed.iter().for_each(|&row| self.marks[row as usize] = Mark::Failed);
+        self.has_fresh = false;
+        self.failed = failed.len();
+        self.list(failed, bonds, images);
+    }
+
+    fn list(&mut self, failed: &[u32], bonds: &Bonds, images: &Images) {
+        let Self { marks, edges, rows, .. } = self;
+        let neighbors = |row: u32| bonds.row(row as usize).map(|(j, _)| images.source(j));
+        rows.clear();
+        rows.extend(failed.iter().flat_map(|&row| neighbors(row)).map(|j| j as u32));
+        rows.retain(|&row| marks[row as usize] == Mark::Holds);
+        rows.sort_unstable();
+        rows.dedup();
+        edges.clear();
+        edges.extend(rows.iter().map(|&row| Edge {
+            row,
+            is_new: neighbors(row).any(|j| marks[j] == Mark::Fresh),
+            stress: DMat3::ZERO,
+            stiffness: 0.0,
+        }));
+        let holds = |j: usize| marks[j] == Mark::Holds;
+        rows.extend(failed.iter().filter(|&&row| neighbors(row).any(holds)));
+        rows.sort_unstable();
+    }
+
+    /// A pass has been run: what failed before it is no news any more.
+    pub fn settle(&mut self) {
+        if std::mem::take(&mut self.has_fresh) {
+            self.edges.iter_mut().for_each(|edge| edge.is_new = false);
+            self.marks.iter_mut().filter(|mark| **mark == Mark::Fresh).for_each(|mark| *mark = Mark::Failed);
+        }
+    }
+
+    /// Those of `n` rows from `first` on that are at a crack.
+    pub fn rows_of_block(&self, first: usize, n: usize) -> &[u32] {
+        let until = |row: usize| self.rows.partition_point(|&entry| (entry as usize) < row);
+        if self.rows.is_empty() { &[] } else { &self.rows[until(first)..until(first + n)] }
+    }
+
+    /// The force, N, that the second pass puts on a row at a crack by what bond terms have added to pair stresses on the other side of a bond or on this one.
+    pub fn force_across(&self, row: usize, bonds: &Bonds, images: &Images, sites: &[Site]) -> DVec3 {
+        let edge_of = |row: usize| {
+            let place = self.edges.binary_search_by_key(&row, |edge| edge.row as usize);
+            place.ok().map(|k| &self.edges[k])
+        };
+        let own = edge_of(row);
+        let site = &sites[row];
+        let mut force = DVec3::ZERO;
+        for (j, weight) in bonds.row(row) {
+            let source = images.source(j);
+            let has_failed = self.marks[source] != Mark::Holds;
+            let edge = if has_failed { own } else { edge_of(source).filter(|_| own.is_none()) };
+            let Some(edge) = edge else { continue };
+            // The terms of an image are those of its source in the mirror: S A S.
+            let signs = if has_failed { None } else { images.mirror(j) }.unwrap_or(DVec3::ONE);
+            let arm = sites[j].reference.xyz() - site.reference.xyz();
+            let change = sites[j].displacement.xyz() - site.displacement.xyz();
+            let pull = signs * (edge.stress * (signs * arm)) + change * edge.stiffness;
+            force += pull * (f64::from(weight) * sites[j].reference.0[3]);
+        }
+        force * site.reference.0[3]
+    }
+}
+
+impl Deformation {
+    /// Takes up what has failed in the last step.
+    pub(super) fn take_up_failed(
+        &mut self,
+        world: &World,
+        packed: &mut PackedRows,
+    ) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        // Without terms on bonds, nothing of them crosses a crack.
+        let damage = view.read::<Damage>().ok().filter(|_| !self.terms.is_empty());
+        let Some(damage) = damage else { return Ok(()) };
+        let removed = view.read::<Removed>()?;
+        let PackedRows { bonds, images, cracks, .. } = packed;
+        cracks.take_up(&mut self.failed, &damage, &removed, bonds, images);
+        Ok(())
+    }
+}

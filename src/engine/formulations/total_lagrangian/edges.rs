@@ -1,0 +1,179 @@
+//! Bond terms of particles at the edge of a crack: without the neighbours that have failed.
+//!
+//! The energy of a term is that of the error of a fit, so that the fit is made anew over the neighbours that hold: the force is then the gradient of an
+//! energy in which those that have failed do not occur. What the bonds held that a failure cuts is released: at the places where a step ends it is the
+//! difference of the energies, and the motion of the step was made by the old forces, that of the next by the new ones.
+
+use glam::{DMat3, DVec3};
+
+use super::bond_terms::{BondEnergy, BondRows, BondTerm};
+use super::cracks::{Edge, Mark};
+use super::deformation::{DeformationPass, MAX_TERMS};
+use crate::correction::MomentMatrix;
+
+/// The edges in a block of rows, to be written.
+pub(super) struct EdgeRows<'a> {
+    edges: &'a mut [Edge],
+    /// First row of the block in the phase.
+    first: usize,
+}
+
+impl<'a> EdgeRows<'a> {
+    /// Those of `edges` in `n` rows from `first` on.
+    pub fn of(edges: &'a mut [Edge], first: usize, n: usize) -> Self {
+        let all = EdgeRows { edges, first: 0 };
+        let (_, rest) = all.split(first);
+        rest.split(n).0
+    }
+
+    /// Those before row `at` of the block, and those from it on.
+    pub fn split(self, at: usize) -> (Self, Self) {
+        let Self { edges, first } = self;
+        let until = edges.partition_point(|edge| (edge.row as usize) < first + at);
+        let (edges, rest) = edges.split_at_mut(until);
+        (Self { edges, first }, Self { edges: rest, first: first + at })
+    }
+}
+
+/// The displacement gradient that fits the neighbours which count, and its error.
+struct Fit {
+    gradient: DMat3,
+    misfit: f64,
+    /// Whether there are enough neighbours for one.
+    is_one: bool,
+}
+
+/// A bond of a particle.
+struct Bond {
+    /// Row of the neighbour, which may be an image.
+    to: usize,
+    /// V_j w_ij.
+    weight: f64,
+    /// X_ij, m.
+    arm: DVec3,
+    /// u_ij, m.
+    change: DVec3,
+}
+
+/// What a term has added to the pair stress and to the bond stiffness of a particle.
+#[derive(Clone, Copy)]
+struct Added {
+    stress: DMat3,
+    stiffness: f64,
+}
+
+impl DeformationPass<'_> {
+    /// Adds all bond terms to a block.
+    pub(super) fn add_terms(
+        &self,
+        mut rows: BondRows<'_>,
+        edges: EdgeRows<'_>,
+        sums: &mut [BondEnergy; MAX_TERMS],
+    ) {
+        let EdgeRows { edges, first } = edges;
+        let mut next = 0;
+        for edge in edges {
+            let k = edge.row as usize - first;
+            self.add_to(&mut rows.part(next..k), sums);
+            self.add_at_edge(edge, &mut rows.part(k..k + 1), sums);
+            next = k + 1;
+        }
+        let end = rows.volume.len();
+        self.add_to(&mut rows.part(next..end), sums);
+    }
+
+    fn add_to(&self, rows: &mut BondRows<'_>, sums: &mut [BondEnergy; MAX_TERMS]) {
+        for (sum, term) in sums.iter_mut().zip(self.terms) {
+            let energy = term.add(rows);
+            sum.stored += energy.stored;
+            sum.released += energy.released;
+        }
+    }
+
+    /// Adds all bond terms to the row of an edge. Where a neighbour has failed in the last step they are added as they were before it, first, and what
+    /// they lose with it is released.
+    fn add_at_edge(&self, edge: &mut Edge, row: &mut BondRows<'_>, sums: &mut [BondEnergy; MAX_TERMS]) {
+        (edge.stress, edge.stiffness) = (DMat3::ZERO, 0.0);
+        let i = edge.row as usize;
+        let held = |mark: Mark| mark != Mark::Failed;
+        let holds = |mark: Mark| mark == Mark::Holds;
+        let of_all = row.displacement_gradient[0];
+        let old = edge.is_new.then(|| self.fit(i, of_all, held));
+        let new = self.fit(i, of_all, holds);
+        for (sum, term) in sums.iter_mut().zip(self.terms) {
+            if let Some(old) = &old {
+                let others = row.pair_stress.0[0];
+                let (energy, added) = add_fitted(*term, row, old);
+                sum.released += energy.released + energy.stored + 0.5 * self.dt * self.power(i, &added, held);
+                row.pair_stress.0[0] = others;
+            }
+            let (energy, added) = add_fitted(*term, row, &new);
+            sum.stored += energy.stored;
+            sum.released += energy.released;
+            if old.is_some() {
+                sum.released -= energy.stored + 0.5 * self.dt * self.power(i, &added, holds);
+            }
+            edge.stress += added.stress;
+            edge.stiffness += added.stiffness;
+        }
+    }
+
+    /// The fit over the neighbours whose marks count; the one `of_all` where these are too few, and then nothing resists.
+    fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(Mark) -> bool) -> Fit {
+        let mut moment = MomentMatrix::new(if self.plane { 2 } else { 3 });
+        self.bonds_of(i, &counts).for_each(|bond| moment.add(bond.weight, bond.arm));
+        let Some(inverse) = moment.inverse() else {
+            return Fit { gradient: of_all, misfit: 0.0, is_one: false };
+        };
+        let mut gradient = DMat3::ZERO;
+        // What holds may be nearly a plane, and its inverse lose digits: the second time finds them again.
+        for _ in 0..2 {
+            let mut rest = DMat3::ZERO;
+            for bond in self.bonds_of(i, &counts) {
+                let (arm, error) = (bond.arm * bond.weight, bond.change - gradient * bond.arm);
+                rest += DMat3::from_cols(error * arm.x, error * arm.y, error * arm.z);
+            }
+            gradient += rest * inverse.to_matrix();
+        }
+        let error = |bond: Bond| bond.weight * (gradient * bond.arm - bond.change).length_squared();
+        Fit { gradient, misfit: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
+    }
+
+    /// The power, W, of what a term has added, on the particle and on the neighbours that count.
+    fn power(&self, i: usize, added: &Added, counts: impl Fn(Mark) -> bool) -> f64 {
+        let of_bond = |Bond { to, weight, arm, change }: Bond| {
+            let signs = self.images.mirror(to).unwrap_or(DVec3::ONE);
+            let parting = self.velocity[i].0 - signs * self.velocity[self.images.source(to)].0;
+            weight * (added.stress * arm + change * added.stiffness).dot(parting)
+        };
+        self.sites[i].reference.0[3] * self.bonds_of(i, &counts).map(of_bond).sum::<f64>()
+    }
+
+    /// The bonds with the neighbours whose marks count.
+    fn bonds_of(&self, i: usize, counts: &impl Fn(Mark) -> bool) -> impl Iterator<Item = Bond> {
+        let own = &self.sites[i];
+        let that_count = move |(j, _): &(usize, f32)| counts(self.marks[self.images.source(*j)]);
+        self.bonds.row(i).filter(that_count).map(move |(j, weight)| {
+            let other = &self.sites[j];
+            let arm = other.reference.xyz() - own.reference.xyz();
+            let change = other.displacement.xyz() - own.displacement.xyz();
+            Bond { to: j, weight: f64::from(weight) * other.reference.0[3], arm, change }
+        })
+    }
+}
+
+/// Adds a term to a row with another fit than its own.
+fn add_fitted(term: &dyn BondTerm, row: &mut BondRows<'_>, fit: &Fit) -> (BondEnergy, Added) {
+    let before = row.pair_stress.0[0];
+    let modulus = if fit.is_one { row.modulus[0] } else { 0.0 };
+    let energy = term.add(&mut BondRows {
+        displacement_gradient: &[fit.gradient],
+        misfit: &[fit.misfit],
+        modulus: &[modulus],
+        ..row.part(0..1)
+    });
+    let after = &row.pair_stress.0[0];
+    let [x, y, z] = [0, 1, 2].map(|axis| after.columns[axis].xyz() - before.columns[axis].xyz());
+    let stress = DMat3::from_cols(x, y, z);
+    (energy, Added { stress, stiffness: after.stiffness() - before.stiffness() })
+}

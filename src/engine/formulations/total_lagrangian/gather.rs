@@ -1,0 +1,78 @@
+//! The sums of the first pass over the bonds of every particle, and what they are fitted to.
+
+use glam::{DMat3, DVec3};
+
+use super::bonds::Bonds;
+use super::rows::{PairStress, Site};
+use super::spread::{Spread, fit};
+use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid};
+
+/// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
+pub(super) struct Gather<'a> {
+    pub bonds: &'a Bonds,
+    pub sites: &'a [Site],
+    /// First row of the block in the phase.
+    pub first: usize,
+    pub deformation: &'a mut [DMat3],
+    pub gradient: &'a mut [DMat3; BLOCK],
+    pub misfit: &'a mut [f64; BLOCK],
+    /// `sum_j V_j w_ij u_ij`.
+    pub stretch: &'a mut [DVec3; BLOCK],
+    pub volume: &'a mut [f64; BLOCK],
+}
+
+impl PlaneOrSolid for Gather<'_> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+        let Self { bonds, sites, first, deformation, gradient, misfit, stretch, volume } = self;
+        for (k, f_i) in deformation.iter_mut().enumerate() {
+            let i = first + k;
+            let site = sites[i];
+            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+            let (mut even, mut odd) = (Spread::<D>::ZERO, Spread::<D>::ZERO);
+            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+            for (j, weight) in pairs.iter().zip(weights) {
+                even.add(a, site.displacement, &sites[j[0] as usize], weight[0]);
+                odd.add(a, site.displacement, &sites[j[1] as usize], weight[1]);
+            }
+            for (&j, &weight) in last.iter().zip(last_weight) {
+                even.add(a, site.displacement, &sites[j as usize], weight);
+            }
+            let Spread { mut spread, stretched, square } = even.plus(a, &odd);
+            for axis in 0..D {
+                spread[axis] = a.scale_add(-site.reference.0[axis], stretched, spread[axis]);
+            }
+            // A free particle has a zero inverse, and so F = I.
+            let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
+            // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
+            let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
+            misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
+            stretch[k] = stretched.xyz();
+            volume[k] = site.reference.0[3];
+            gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
+            *f_i = DMat3::IDENTITY + gradient[k];
+        }
+    }
+}
+
+/// Makes A_i = P_i M_i^-1 of a block.
+pub(super) struct MakePairStress<'a> {
+    pub stress: &'a [DMat3],
+    pub inverse_moment: &'a [Sym3],
+    pub pair_stress: &'a mut [PairStress],
+}
+
+impl HotLoop for MakePairStress<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
+            let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
+            let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
+            out.columns = fit::<A, 3>(a, &columns, inverse);
+        }
+    }
+}
