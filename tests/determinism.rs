@@ -4,6 +4,7 @@ mod common;
 
 use common::coupled::coupled;
 use common::thin::thin;
+use common::touching::{tool_of_triangles, touching};
 use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
@@ -32,11 +33,24 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (2, failing()),
         (2, failing_metals()),
         (2, crash()),
+        (2, touching()),
+        (3, tool_of_triangles()),
     ];
     for (dimension, source) in scenes {
         let one = hash_after(&source, 1, 150);
         assert_eq!(one, hash_after(&source, 2, 150), "{dimension} dimensions, two threads");
         assert_eq!(one, hash_after(&source, 7, 150), "{dimension} dimensions, seven threads");
         assert_ne!(one, hash_after(&source, 1, 149), "the hash tells states apart");
+    }
+}
+
+#[test]
+fn what_is_to_touch_and_to_flow_does() {
+    for source in [touching(), tool_of_triangles()] {
+        let mut sim = simulation(&source);
+        sim.run(|sim| sim.clock().step < 150).expect("a run");
+        for account in ["contact", "contact_damping", "friction", "plastic_work"] {
+            assert!(sim.ledger().total_named(account) > 0.0, "{account}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod coupled;
 pub mod thin;
+pub mod touching;
 
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
@@ -214,7 +215,12 @@ pub fn failing_metals() -> Source {
             "form: Ganzenmueller2015",
             &format!("{fracture}, growth: CrackSpeed(factor: 0.2), then: NoTension"),
         ),
-        strip("gone", 0.0243, "", "criterion: MaximumPrincipalStress(limit: 3e8), then: Removed"),
+        strip(
+            "gone",
+            0.0243,
+            "after_yield: Young",
+            "criterion: MaximumPrincipalStress(limit: 3e8), then: Removed",
+        ),
     ];
     let contacts = ["flowing\", \"hot", "hot\", \"turned", "turned\", \"gone"].map(|pair| {
         format!("Contact(between: (\"{pair}\"), law: Penalty(), friction: 0.2, restitution: 0.6)")

@@ -10,32 +10,76 @@ use super::heating::Heating;
 use super::j2::plastic;
 use super::law::{Material, MaterialModel, ParameterError};
 
-/// Flow stress sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m),
-/// T* = (T - reference_temperature) / (melt_temperature - reference_temperature) between 0 and 1.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JohnsonCookFlow {
-    /// Yield stress A at the reference rate and temperature, Pa.
-    pub a: f64,
-    /// Hardening coefficient B, Pa.
-    pub b: f64,
-    /// Hardening exponent n.
-    pub n: f64,
-    /// Rate coefficient C.
-    #[serde(default)]
-    pub c: f64,
-    /// Thermal exponent m.
-    #[serde(default = "one")]
-    pub m: f64,
-    /// Plastic strain rate at and below which the rate has no influence, 1/s.
-    #[serde(default = "one")]
-    pub reference_rate: f64,
-    /// Temperature at and below which temperature has no influence, K.
-    #[serde(default = "room")]
-    pub reference_temperature: f64,
-    /// Temperature at which the strength is gone, K.
-    pub melt_temperature: f64,
+/// Hands the parameters of the flow stress, declared once, to another macro.
+///
+/// A scene gives them side by side with those of a material, or as its `hardening`; structs in structs would change what it has to write.
+macro_rules! flow_parameters {
+    ($declare:ident { $($own:tt)* }) => {
+        $declare! {
+            [
+                /// Yield stress A at the reference rate and temperature, Pa.
+                a,
+                /// Hardening coefficient B, Pa.
+                b,
+                /// Hardening exponent n.
+                n,
+                /// Rate coefficient C.
+                #[serde(default)]
+                c,
+                /// Thermal exponent m.
+                #[serde(default = "one")]
+                m,
+                /// Plastic strain rate at and below which the rate has no influence, 1/s.
+                #[serde(default = "one")]
+                reference_rate,
+                /// Temperature at and below which temperature has no influence, K.
+                #[serde(default = "room")]
+                reference_temperature,
+                /// Temperature at which the strength is gone, K.
+                melt_temperature,
+            ]
+            $($own)*
+        }
+    };
 }
+
+macro_rules! flow_stress {
+    ([$($(#[$meta:meta])* $field:ident,)*]) => {
+        /// Flow stress sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m),
+        /// T* = (T - reference_temperature) / (melt_temperature - reference_temperature) between 0 and 1.
+        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct JohnsonCookFlow {
+            $($(#[$meta])* pub $field: f64,)*
+        }
+
+        impl JohnsonCookFlow {
+            const FIELDS: [&'static str; 8] = [$(stringify!($field)),*];
+            /// The fields as errors name them where the flow stress is the `hardening` of another material.
+            pub(super) const FIELDS_OF_HARDENING: [&'static str; 8] = [$(concat!("hardening.", stringify!($field))),*];
+        }
+    };
+}
+
+macro_rules! metal {
+    ([$($(#[$meta:meta])* $field:ident,)*] $($own:tt)*) => {
+        elastic_parameters! {
+            /// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
+            pub struct JohnsonCook {
+                $($(#[$meta])* pub $field: f64,)*
+                $($own)*
+            }
+        }
+
+        impl JohnsonCook {
+            fn flow(&self) -> JohnsonCookFlow {
+                JohnsonCookFlow { $($field: self.$field),* }
+            }
+        }
+    };
+}
+
+flow_parameters! { flow_stress {} }
 
 pub(super) fn one() -> f64 {
     1.0
@@ -47,20 +91,6 @@ pub(super) fn room() -> f64 {
 }
 
 impl JohnsonCookFlow {
-    const FIELDS: [&'static str; 8] =
-        ["a", "b", "n", "c", "m", "reference_rate", "reference_temperature", "melt_temperature"];
-    /// The fields as errors name them where the flow stress is the `hardening` of another material.
-    pub(super) const FIELDS_OF_HARDENING: [&'static str; 8] = [
-        "hardening.a",
-        "hardening.b",
-        "hardening.n",
-        "hardening.c",
-        "hardening.m",
-        "hardening.reference_rate",
-        "hardening.reference_temperature",
-        "hardening.melt_temperature",
-    ];
-
     /// Checks the parameters; `fields` are their names for errors.
     pub(super) fn check(&self, fields: &[&'static str; 8]) -> Result<(), ParameterError> {
         let [a, b, n, c, m, rate, reference, melt] = *fields;
@@ -114,29 +144,8 @@ impl JohnsonCookFlow {
     }
 }
 
-elastic_parameters! {
-    /// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
-    pub struct JohnsonCook {
-        /// Yield stress A at the reference rate and temperature, Pa.
-        pub a: f64,
-        /// Hardening coefficient B, Pa.
-        pub b: f64,
-        /// Hardening exponent n.
-        pub n: f64,
-        /// Rate coefficient C.
-        #[serde(default)]
-        pub c: f64,
-        /// Thermal exponent m.
-        #[serde(default = "one")]
-        pub m: f64,
-        /// Plastic strain rate at and below which the rate has no influence, 1/s.
-        #[serde(default = "one")]
-        pub reference_rate: f64,
-        /// Temperature at and below which temperature has no influence, K.
-        #[serde(default = "room")]
-        pub reference_temperature: f64,
-        /// Temperature at which the strength is gone, K.
-        pub melt_temperature: f64,
+flow_parameters! {
+    metal {
         /// Specific heat, J/(kg K). Without it plastic work does not heat the metal.
         #[serde(default)]
         pub specific_heat: Option<f64>,
@@ -158,16 +167,7 @@ impl MaterialModel for JohnsonCook {
 
     fn build(self) -> Result<Material, ParameterError> {
         let elastic = self.elastic()?;
-        let flow = JohnsonCookFlow {
-            a: self.a,
-            b: self.b,
-            n: self.n,
-            c: self.c,
-            m: self.m,
-            reference_rate: self.reference_rate,
-            reference_temperature: self.reference_temperature,
-            melt_temperature: self.melt_temperature,
-        };
+        let flow = self.flow();
         flow.check(&JohnsonCookFlow::FIELDS)?;
         let heating = Heating {
             specific_heat: self.specific_heat,

@@ -249,7 +249,12 @@ fn assemble(scene: &Scene, parsed: Vec<Parsed<'_>>, sim: &mut SimBuilder<'_>) ->
         sim.scope = BodySet::new(bodies.iter().map(|(id, _)| *id));
         sim.cite(entry.reference);
         let item = &scene.bodies[first.0].formulation;
-        (entry.assemble)(bodies, sim).map_err(|error| error.into_problems(item))?;
+        (entry.assemble)(bodies, sim).map_err(|error| match error {
+            super::SetupError::Parameter { ref field, .. } if field.starts_with("bodies[") => {
+                at_scene(scene, error)
+            }
+            error => error.into_problems(item),
+        })?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::materials::ParameterError;
 use crate::scene::{Item, Problem};
+use crate::world::BodyId;
 
 /// A fault found while the scene is made into a simulation.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -32,6 +33,13 @@ impl SetupError {
     /// A fault of the engine or of a plugin, not of the scene.
     pub fn internal(error: &dyn std::error::Error) -> Self {
         Self::parameter("", error.to_string(), "this is a fault of the program, not of the scene")
+    }
+
+    /// The fault at a parameter of the formulation of one body: formulations are assembled for all of their bodies at once.
+    pub fn of_formulation(self, id: BodyId) -> Self {
+        let Self::Parameter { field, message, help } = self else { return self };
+        let dot = if field.is_empty() { "" } else { "." };
+        Self::Parameter { field: format!("bodies[{}].formulation{dot}{field}", id.0), message, help }
     }
 
     /// The problems with their place, `item` being what was built.

@@ -103,7 +103,7 @@ impl Rigid {
             (None, Some(Rotation::Free)) => Turning::Free,
             (None, Some(Rotation::Held)) => Turning::Held,
             (None, Some(Rotation::About(axis))) => {
-                Turning::About(checked_axis(axis.0, sim.dimension(), &at(""))?)
+                Turning::About(checked_axis(axis.0, sim.dimension(), &at(".rotation"))?)
             }
             (None, None) if drives.is_empty() => Turning::Free,
             (None, None) => Turning::Held,
@@ -123,9 +123,18 @@ impl Rigid {
         let of_shape = MassProperties::new(plan, &*surface, sim.dimension());
         let mass = self.mass.unwrap_or(of_shape.mass);
         let has_mass = mass > 0.0 && mass.is_finite();
+        let place = format!("bodies[{}].formulation{}", id.0, if self.mass.is_some() { ".mass" } else { "" });
+        if mass < 0.0 || mass.is_nan() {
+            let message = format!("the mass of rigid body `{}` is {mass} kg", plan.name);
+            return Err(SetupError::parameter(
+                place,
+                message,
+                "leave it out: it follows from density and shape",
+            ));
+        }
         if !has_mass && !constraint.is_complete() {
             return Err(SetupError::parameter(
-                format!("bodies[{}].formulation", id.0),
+                place,
                 format!("rigid body `{}` moves freely and has a mass of {mass} kg", plan.name),
                 "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`",
             ));

@@ -39,16 +39,14 @@ impl Formulation for Fluid {
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         for (id, parameters) in bodies {
             let body = sim.body(id);
-            body.fluid_law()?;
+            body.fluid_law().map_err(|error| error.of_formulation(id))?;
             let usual = if sim.dimension() == Dimension::Two { 3.0 } else { 2.6 };
             let share = parameters.support.unwrap_or(usual);
             let fewest = 2.0;
             if !(share >= fewest && share <= 10.0) {
-                return Err(SetupError::parameter(
-                    "support",
-                    format!("a support radius of {share} spacings does not work"),
-                    format!("give a support of {fewest} to 10 spacings; {usual} is usual"),
-                ));
+                let message = format!("a support radius of {share} spacings does not work");
+                let help = format!("give a support of {fewest} to 10 spacings; {usual} is usual");
+                return Err(SetupError::parameter("support", message, help).of_formulation(id));
             }
             let support = share * body.spacing;
             sim.extend(FluidBody { id, parameters, support });

@@ -114,22 +114,24 @@ impl Formulation for TotalLagrangian {
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         for (id, parameters) in &bodies {
-            parameters.check(sim.body(*id))?;
+            parameters.check(sim.body(*id)).map_err(|error| error.of_formulation(*id))?;
         }
         let phase = sim.body(bodies[0].0).phase;
         super::fields::add(sim);
         let planes: Vec<MirrorPlane> = sim.take_extensions();
         let repeats_of = |(id, parameters): &(BodyId, Self)| {
             let body = sim.body(*id);
-            repeats_of(body, parameters.support * body.spacing, &planes, sim)
+            let repeats = repeats_of(body, parameters.support * body.spacing, &planes, sim);
+            repeats.map_err(|error| error.of_formulation(*id))
         };
         let repeats = bodies.iter().map(repeats_of).collect::<Result<Vec<_>, _>>()?;
         // Contacts see mirror images too.
         planes.into_iter().for_each(|plane| sim.extend(plane));
-        for ((_, parameters), repeats) in bodies.iter().zip(&repeats) {
+        for ((id, parameters), repeats) in bodies.iter().zip(&repeats) {
             if parameters.neighbors.is_some() && !repeats.is_empty() {
                 let message = "neighbours cannot be counted across a symmetry plane or a periodic side";
-                return Err(SetupError::parameter("neighbors", message, "give a `support` instead"));
+                let error = SetupError::parameter("neighbors", message, "give a `support` instead");
+                return Err(error.of_formulation(*id));
             }
         }
         let terms: Vec<BodyBondTerm> = sim.take_extensions();
@@ -139,8 +141,10 @@ impl Formulation for TotalLagrangian {
             sim.add_column_to::<DampingStress>(bodies);
         });
         let is_damped = |id| damped.iter().any(|bodies| bodies.0.contains(id));
-        let laws = bodies.iter().map(|(id, _)| body_law(*id, sim, &terms, is_damped(*id)));
-        let laws = laws.collect::<Result<Vec<_>, _>>()?;
+        let law_of = |id: BodyId| {
+            body_law(id, sim, &terms, is_damped(id)).map_err(|error| error.of_formulation(id))
+        };
+        let laws = bodies.iter().map(|(id, _)| law_of(*id)).collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));

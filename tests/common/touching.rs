@@ -1,0 +1,61 @@
+//! Solids and tools that touch each other, by every contact law.
+
+use meshless::scene::Source;
+
+/// In the plane: metal between a floor and a tool that presses and shears it with friction that sticks, a horseshoe that closes on itself, a disc that jumps.
+pub fn touching() -> Source {
+    let text = r#"(dimension: Two, gravity: (0.0, -0.1),
+        materials: {
+            "metal": J2(density: 1, young: 1, poisson: 0.3, hardening: Linear(yield_stress: 0.03, modulus: 0.05), eos: Linear),
+            "rubber": DecoupledNeoHookean(density: 1, young: 1, poisson: 0.3),
+            "steel": NeoHookean(density: 8, young: 50, poisson: 0.3),
+        },
+        bodies: [
+            (name: "metal", material: "metal", shape: Box(min: (0, 0), max: (0.6, 0.3)), spacing: 0.05, formulation: TotalLagrangian,
+             plugins: [hourglass_control(form: Viscous)]),
+            (name: "horseshoe", material: "rubber", spacing: 0.05, formulation: TotalLagrangian, plugins: [hourglass_control()],
+             shape: Difference(Box(min: (1, 0), max: (1.6, 0.5)), Box(min: (1.2, 0.2), max: (1.7, 0.3)))),
+            (name: "floor", material: "steel", shape: Box(min: (-0.5, -0.2), max: (3, 0)), spacing: 0.05, formulation: Rigid()),
+            (name: "tool", material: "steel", shape: Box(min: (0.1, 0.3), max: (0.5, 0.5)), spacing: 0.05, formulation: Rigid()),
+            (name: "disc", material: "steel", shape: Sphere(center: (2.3, 0.21), radius: 0.2), spacing: 0.05, velocity: (0.3, -0.5),
+             formulation: Rigid(spin: (0, 0, 2))),
+        ],
+        contacts: [
+            Contact(between: ("metal", "floor"), law: Hertz(), friction: 0.8),
+            Contact(between: ("metal", "tool"), law: Hertz(plane: Sphere), friction: 0.8, restitution: 0.3),
+            Contact(between: ("horseshoe", "horseshoe"), law: Penalty(factor: 2.0), friction: 0.3),
+            Contact(between: ("horseshoe", "floor"), law: Penalty(), friction: 0.1),
+            Contact(between: ("disc", "floor"), law: Penalty(), friction: 0.3, restitution: 0.5),
+        ],
+        conditions: [
+            Fix(on: Select(body: "floor")),
+            Displacement(on: Select(body: "tool"), value: ("0.002*sin(3*t)", "-0.06*smoothstep(t/2)")),
+            InitialVelocity(on: Select(body: "horseshoe"), value: (None, "-2*(x - 1.1)*(y - 0.25)*step(x - 1.2)")),
+        ],
+        time: (end: 10.0))"#;
+    Source::new("touching.ron", text.to_owned())
+}
+
+/// In space: a block of triangles is driven into a cube of metal that stands on a plate.
+pub fn tool_of_triangles() -> Source {
+    let text = format!(
+        r#"(dimension: Three,
+            materials: {{"metal": Copper(density: 9000), "steel": Steel}},
+            bodies: [
+                (name: "cube", material: "metal", shape: Box(min: (0, 0, 0), max: (3e-3, 3e-3, 3e-3)), spacing: 5e-4,
+                 formulation: TotalLagrangian, plugins: [hourglass_control(after_yield: Young)]),
+                (name: "plate", material: "steel", shape: Box(min: (-2e-3, -2e-3, -1e-3), max: (5e-3, 5e-3, 0)), spacing: 5e-4,
+                 formulation: Rigid()),
+                (name: "tool", material: "steel", spacing: 2.5e-4, formulation: Rigid(),
+                 shape: Translate(shape: Mesh(file: "{}/tests/scenes/meshes/box.obj", scale: 1e-3), by: (0.5e-3, 0.4e-3, 3.01e-3))),
+            ],
+            contacts: [Contact(between: ("cube", "tool"), law: Penalty(), friction: 0.4, restitution: 0.7),
+                       Contact(between: ("cube", "plate"), law: Hertz(), friction: 0.2)],
+            conditions: [Fix(on: Select(body: "plate")),
+                         Velocity(on: Select(body: "tool"), value: ("5*sin(2e6*t)", None, "-50*smoothstep(t/1e-7)"))],
+            plugins: [artificial_viscosity()],
+            time: (end: 1e-3))"#,
+        env!("CARGO_MANIFEST_DIR")
+    );
+    Source::new("tool_of_triangles.ron", text)
+}
