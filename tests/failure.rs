@@ -1,9 +1,10 @@
 //! Bodies that fail, with the standard plugins about them.
 
+use meshless::prelude::DVec3;
 use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
-use meshless::world::{BodyId, Damage};
+use meshless::world::{BodyId, Damage, Mass, Velocity};
 use meshless::{plugin, standard_plugins};
 
 /// A notched strip of metal that is pulled apart, with the given plugins.
@@ -20,6 +21,30 @@ fn strip(plugins: &str) -> Simulation {
     );
     let (scene, source) = parse(Source::new("strip.ron", text)).unwrap_or_else(|error| panic!("{error}"));
     plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A strip in flight that breaks, with that form of the control.
+fn flying(form: &str, then: &str) -> Simulation {
+    let text = format!(
+        r#"(dimension: Two, materials: {{"brittle": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+            bodies: [(name: "strip", material: "brittle", shape: Box(min: (0, 0), max: (1.0, 0.4)), spacing: 0.04,
+                      formulation: TotalLagrangian,
+                      plugins: [hourglass_control(form: {form}),
+                                failure(criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: {then})])],
+            conditions: [InitialVelocity(on: Select(), value: ("0.3*(x - 0.5)*(1 + x)", "0.05*sin(9*x)"))],
+            time: (end: 10.0))"#
+    );
+    let (scene, source) = parse(Source::new("strip.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Momentum, and the sum of its sizes.
+fn momentum(sim: &Simulation) -> (DVec3, f64) {
+    let (view, _) = sim.world().body_view(BodyId(0));
+    let (mass, velocity) =
+        (view.read::<Mass>().expect("masses"), view.read::<Velocity>().expect("velocities"));
+    let each = mass.iter().zip(velocity.iter()).map(|(mass, velocity)| mass.0 * velocity.0);
+    each.fold((DVec3::ZERO, 0.0), |(sum, size), p| (sum + p, size + p.length()))
 }
 
 fn failed(sim: &Simulation) -> usize {
@@ -56,4 +81,22 @@ fn the_order_of_plugins_in_the_scene_does_not_matter() {
         hash(&format!("{failure}, hourglass_control()")),
         hash(&format!("hourglass_control(), {failure}"))
     );
+}
+
+#[test]
+fn cracks_keep_momentum_and_books_with_every_control() {
+    for form in ["Variational", "Ganzenmueller2015", "Viscous", "Combined"] {
+        for then in ["NoTension", "NoDeviator", "Removed"] {
+            let mut sim = flying(form, then);
+            sim.start().expect("a start");
+            let (start, size) = momentum(&sim);
+            sim.run(|sim| sim.clock().step < 400).unwrap_or_else(|error| panic!("{form} {then}: {error}"));
+            assert!(failed(&sim) > 20, "{form} {then}: {}", failed(&sim));
+            let drift = momentum(&sim).0.distance(start);
+            // What is removed takes its momentum along.
+            assert!(then == "Removed" || drift < 1e-12 * size, "{form} {then}: {drift} of {size}");
+            let error = sim.ledger().relative_error();
+            assert!(error.abs() < 1e-2, "{form} {then}: balance error {error}");
+        }
+    }
 }

@@ -79,9 +79,9 @@ impl SolidLaw for Crumbling {
     }
 }
 
-/// An irregular block, 1 m long, not started yet: particles with |X - 0.5| < `half` have failed; with `half` below zero none has, and those that will bear what
+/// An irregular block, 1 m long, at the start: particles with |X - 0.5| < `half` have failed; with `half` below zero none has, and those that will bear what
 /// they did.
-fn block(
+fn started(
     dimension: usize,
     control: &str,
     half: f64,
@@ -94,12 +94,13 @@ fn block(
     let body = format!(
         "shape: Box(min: {low}, max: {high}), lattice: Relaxed(seed: 3), plugins: [{control} crumble(bears: {bears})]"
     );
-    let sim = scene(dimension, &body, "");
+    let mut sim = scene(dimension, &body, "");
     for_each(&sim, |x, v, damage| {
         damage.0 = if (x.0.x - 0.5).abs() < half { 1.0 } else { 0.0 };
         v.0 = velocity(x.0);
         x.0 = place(x.0);
     });
+    sim.start().expect("a start");
     sim
 }
 
@@ -126,18 +127,6 @@ fn for_each(sim: &Simulation, change: impl Fn(&mut Position, &mut Velocity, &mut
     for k in 0..view.len() {
         change(&mut x[k], &mut v[k], &mut damage[k]);
     }
-}
-
-fn started(
-    dimension: usize,
-    control: &str,
-    half: f64,
-    place: impl Fn(DVec3) -> DVec3,
-    velocity: impl Fn(DVec3) -> DVec3,
-) -> Simulation {
-    let mut sim = block(dimension, control, half, place, velocity);
-    sim.start().expect("a start");
-    sim
 }
 
 fn column<C: Column>(sim: &Simulation) -> Vec<C> {
@@ -309,13 +298,12 @@ fn a_crack_through_a_symmetry_plane_is_half_a_crack() {
     };
     let forces = |shape: &str, conditions: &str| {
         let body = format!(r#"shape: {shape}, plugins: [hourglass_control(), crumble(bears: false)]"#);
-        let sim = scene(2, &body, conditions);
+        let mut sim = scene(2, &body, conditions);
         for_each(&sim, |x, v, damage| {
             damage.0 = if (x.0.y - 0.25).abs() < 0.06 { 1.0 } else { 0.0 };
             v.0 = DVec3::ZERO;
             x.0 = place(x.0);
         });
-        let mut sim = sim;
         sim.start().expect("a start");
         let reference = column::<ReferencePosition>(&sim);
         let force = column::<Force>(&sim);

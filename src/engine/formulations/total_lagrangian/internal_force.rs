@@ -40,7 +40,14 @@ pub(super) struct InternalForce<'a> {
     pub plane: bool,
 }
 
-impl InternalForce<'_> {
+impl<'a> InternalForce<'a> {
+    /// The pass over what the first one has left.
+    pub fn of(packed: &'a PackedRows, mass: &'a [Mass], gravity: DVec3, plane: bool) -> Self {
+        let PackedRows { bonds, images, cracks, sites, pair_stress, own_pull, frames, .. } = packed;
+        let mass = bytemuck::cast_slice(mass);
+        Self { bonds, images, cracks, sites, pair_stress, own_pull, frames, mass, gravity, plane }
+    }
+
     /// Writes the force on every particle: gravity plus internal force, N.
     pub fn run(&self, force: &mut [Force]) {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
@@ -131,18 +138,6 @@ pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bo
     let packed = step.resources.get::<PackedRows>();
     let mass = view.read::<Mass>()?;
     let mut force = view.write::<Force>()?;
-    let pass = InternalForce {
-        bonds: &packed.bonds,
-        images: &packed.images,
-        cracks: &packed.cracks,
-        sites: &packed.sites,
-        pair_stress: &packed.pair_stress,
-        own_pull: &packed.own_pull,
-        frames: &packed.frames,
-        mass: bytemuck::cast_slice(&mass),
-        gravity,
-        plane,
-    };
-    pass.run(&mut force);
+    InternalForce::of(&packed, &mass, gravity, plane).run(&mut force);
     Ok(())
 }

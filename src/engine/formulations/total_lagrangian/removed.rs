@@ -119,19 +119,7 @@ impl Deformation {
         let view = step.world.phase(self.phase);
         let mut force = vec![Force::default(); view.len()];
         let mass = view.read::<Mass>()?;
-        InternalForce {
-            bonds: &packed.bonds,
-            images: &packed.images,
-            cracks: &packed.cracks,
-            sites: &packed.sites,
-            pair_stress: &packed.pair_stress,
-            own_pull: &packed.own_pull,
-            frames: &packed.frames,
-            mass: bytemuck::cast_slice(&mass),
-            gravity: glam::DVec3::ZERO,
-            plane: self.plane,
-        }
-        .run(&mut force);
+        InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane).run(&mut force);
         Ok(force)
     }
 
