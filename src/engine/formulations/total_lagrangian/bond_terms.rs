@@ -5,6 +5,8 @@ use std::ops::Range;
 use glam::DMat3;
 
 use super::rows::PairStressRows;
+use crate::plugin::SimBuilder;
+use crate::world::BodySet;
 
 /// A block of particles of one body, after their stress is known and before the pass over pairs that makes the force.
 /// All slices have one length. Beside particles that have failed, displacement gradient and error are those of a fit to the neighbours that
@@ -98,4 +100,25 @@ pub trait BondTerm: Send + Sync + 'static {
     /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
     /// step follows from it.
     fn stiffness_factor(&self) -> f64;
+}
+
+/// A bond term with the bodies it acts on; plugins add it with [`SimBuilder::extend`].
+pub struct BodyBondTerm {
+    /// Bodies.
+    pub bodies: BodySet,
+    /// Account of the energy ledger that holds what the term stores; none if it stores nothing.
+    pub account: Option<String>,
+    /// Account of the energy that the term has given up without work; none if it never does.
+    pub released: Option<String>,
+    /// The term.
+    pub term: Box<dyn BondTerm>,
+}
+
+impl SimBuilder<'_> {
+    /// Adds a force term that is linear in the pair vectors to total-Lagrangian bodies. The energy that it stores goes
+    /// to the account of that name.
+    pub fn add_bond_term(&mut self, bodies: BodySet, account: &str, term: impl BondTerm) {
+        let account = Some(account.to_owned());
+        self.extend(BodyBondTerm { bodies, account, released: None, term: Box::new(term) });
+    }
 }

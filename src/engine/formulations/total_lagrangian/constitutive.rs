@@ -4,26 +4,23 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::DVec3;
-
-use super::bond_terms::{BondEnergy, BondMemory, BondTerm};
+use super::bond_terms::{BodyBondTerm, BondEnergy, BondMemory, BondTerm};
 use super::damping::{self, DampedStrain, DampingRows, DampingStress};
 use super::deformation::{DeformationPass, DeformationRows, DeformationSum, MAX_TERMS};
 use super::edges::EdgeRows;
-use super::formulation::{BodyBondTerm, PackedRows};
+use super::formulation::PackedRows;
 use super::frame::Frame;
 use super::removed::RemovedRows;
-use super::rows::Site;
+use super::rows::pack;
 use super::stable_step::StepEstimate;
 use super::stretches;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows};
-use crate::parallel::{Split, for_each_block};
+use crate::parallel::Split;
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Ledger, Run, Step, StepError};
 use crate::world::{
     BodyId, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
-    HourglassModulus, PhaseId, PhaseView, PiolaStress, Position, ReferencePosition, ReferenceVolume,
-    Velocity, World,
+    HourglassModulus, PhaseId, PiolaStress, Velocity, World,
 };
 
 /// A body as the deformation system sees it.
@@ -295,23 +292,4 @@ impl BodyLaw {
 /// The rows of a body in a column.
 fn rows_of<'a, C: Column>(column: &'a mut [C], rows: &Range<usize>) -> &'a mut [C::Value] {
     bytemuck::cast_slice_mut(&mut column[rows.clone()])
-}
-
-/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.
-fn pack(view: &PhaseView<'_>, origin: DVec3, removed: &[u32], sites: &mut [Site]) -> Result<(), StepError> {
-    let position = view.read::<Position>()?;
-    let reference = view.read::<ReferencePosition>()?;
-    let volume = view.read::<ReferenceVolume>()?;
-    let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
-    type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
-    for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
-        for (k, site) in sites.iter_mut().enumerate() {
-            let reference = reference[k].0;
-            *site = Site::new(reference - origin, x[k].0 - reference, volume[k].0);
-        }
-    });
-    for &row in removed {
-        sites[row as usize].reference.0[3] = 0.0;
-    }
-    Ok(())
 }

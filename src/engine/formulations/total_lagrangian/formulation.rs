@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::bond_terms::BondTerm;
+use super::bond_terms::BodyBondTerm;
 use super::bonds::{BodyBonds, Bonds};
 use super::constitutive::{Deformation, body_law};
 use super::cracks::Cracks;
@@ -24,7 +24,7 @@ use crate::plugin::{BodyPlan, Formulation, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
 use crate::world::{
-    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, HourglassGradient, HourglassMisfit,
+    BodyId, Column, ColumnSet, DeformationGradient, Force, HourglassGradient, HourglassMisfit,
     HourglassModulus, Mass, PhaseId, PiolaStress, Position, ReferencePosition, ReferenceVolume, Removed,
     SupportRadius, Velocity,
 };
@@ -48,27 +48,6 @@ const USUAL_SUPPORT: f64 = 2.41;
 impl Default for TotalLagrangian {
     fn default() -> Self {
         Self { kernel: KernelName::Spiky, support: USUAL_SUPPORT, neighbors: None }
-    }
-}
-
-/// A bond term with the bodies it acts on; plugins add it with [`SimBuilder::extend`].
-pub struct BodyBondTerm {
-    /// Bodies.
-    pub bodies: BodySet,
-    /// Account of the energy ledger that holds what the term stores; none if it stores nothing.
-    pub account: Option<String>,
-    /// Account of the energy that the term has given up without work; none if it never does.
-    pub released: Option<String>,
-    /// The term.
-    pub term: Box<dyn BondTerm>,
-}
-
-impl SimBuilder<'_> {
-    /// Adds a force term that is linear in the pair vectors to total-Lagrangian bodies. The energy that it stores goes
-    /// to the account of that name.
-    pub fn add_bond_term(&mut self, bodies: BodySet, account: &str, term: impl BondTerm) {
-        let account = Some(account.to_owned());
-        self.extend(BodyBondTerm { bodies, account, released: None, term: Box::new(term) });
     }
 }
 
@@ -141,9 +120,8 @@ impl Formulation for TotalLagrangian {
             sim.add_column_to::<DampingStress>(bodies);
         });
         let is_damped = |id| damped.iter().any(|bodies| bodies.0.contains(id));
-        let law_of = |id: BodyId| {
-            body_law(id, sim, &terms, is_damped(id)).map_err(|error| error.of_formulation(id))
-        };
+        let law_of =
+            |id: BodyId| body_law(id, sim, &terms, is_damped(id)).map_err(|error| error.of_formulation(id));
         let laws = bodies.iter().map(|(id, _)| law_of(*id)).collect::<Result<Vec<_>, _>>()?;
         let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;

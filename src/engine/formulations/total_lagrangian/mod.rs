@@ -30,12 +30,12 @@ mod state_tests;
 mod stretches;
 mod support;
 
-pub use bond_terms::{BondEnergy, BondMemory, BondRows, BondTerm};
+pub use bond_terms::{BodyBondTerm, BondEnergy, BondMemory, BondRows, BondTerm};
 pub use bonds::{BondError, Bonds};
 pub(crate) use damping::DampedBodies;
 pub(crate) use families::{Surroundings, packed_rows};
 pub(crate) use formulation::PackedRows;
-pub use formulation::{BodyBondTerm, INTERNAL_FORCE, TotalLagrangian};
+pub use formulation::{INTERNAL_FORCE, TotalLagrangian};
 pub use images::Images;
 pub(crate) use images::MirrorPlane;
 pub use rows::{PairStress, PairStressRows, Site};

@@ -4,7 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 
 use super::frame::Frame;
-use crate::parallel::Lanes4;
+use crate::parallel::{Lanes4, for_each_block};
+use crate::schedule::StepError;
+use crate::world::{PhaseView, Position, ReferencePosition, ReferenceVolume};
 
 /// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x - X.
 ///
@@ -29,6 +31,30 @@ impl Site {
     pub fn is_present(&self) -> bool {
         self.reference.0[3] > 0.0
     }
+}
+
+/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.
+pub(super) fn pack(
+    view: &PhaseView<'_>,
+    origin: DVec3,
+    removed: &[u32],
+    sites: &mut [Site],
+) -> Result<(), StepError> {
+    let position = view.read::<Position>()?;
+    let reference = view.read::<ReferencePosition>()?;
+    let volume = view.read::<ReferenceVolume>()?;
+    let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
+    type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
+    for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
+        for (k, site) in sites.iter_mut().enumerate() {
+            let reference = reference[k].0;
+            *site = Site::new(reference - origin, x[k].0 - reference, volume[k].0);
+        }
+    });
+    for &row in removed {
+        sites[row as usize].reference.0[3] = 0.0;
+    }
+    Ok(())
 }
 
 /// The pair stress of a particle, and all that its neighbours need to know of it.
