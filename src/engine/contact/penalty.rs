@@ -7,7 +7,7 @@ use super::law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
 use crate::materials::ParameterError;
 use crate::scene::Dimension;
 
-/// Spring between surfaces: f = k d (1 + 10 (d/D)^2) with the depth d of the overlap, and D that at which the centre of a particle is at the
+/// Spring between surfaces: f = k d (1 + b (d/D)^2) with the depth d of the overlap, and D that at which the centre of a particle is at the
 /// surface, so that pressures of the order of the modulus do not push it through; between rigid bodies f = k d. The stiffness follows from
 /// the materials: in three dimensions k = 1.5 E* l, with l the distance of two particles that just touch; in two k = 1.5 E* per metre of
 /// thickness, whatever the spacing. 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
@@ -18,17 +18,17 @@ pub struct Penalty {
     pub stiffness: Option<f64>,
     /// Factor on the stiffness that follows from the materials \[-\].
     pub factor: f64,
+    /// Share b of the stiffness by which the spring hardens; 0 is a linear spring.
+    pub hardening: f64,
 }
 
 /// k over E* per metre of thickness: two equal bodies that touch give way like one and a third spacings of them. With less an impact
 /// lasts longer (S22), with more a contact that is a few particles wide becomes narrower (C1).
 const STIFFNESS: f64 = 1.5;
-/// Share of the stiffness by which the spring hardens.
-const HARDENING: f64 = 10.0;
 
 impl Default for Penalty {
     fn default() -> Self {
-        Self { stiffness: None, factor: 1.0 }
+        Self { stiffness: None, factor: 1.0, hardening: 10.0 }
     }
 }
 
@@ -38,14 +38,16 @@ impl ContactLaw for Penalty {
 
     fn build(self, pair: &ContactPair) -> Result<Box<dyn NormalForce>, ParameterError> {
         ParameterError::require_positive("factor", self.factor)?;
+        ParameterError::require_not_negative("hardening", self.hardening)?;
+        let hardening = self.hardening;
         if let Some(stiffness) = self.stiffness {
             ParameterError::require_positive("stiffness", stiffness)?;
-            return Ok(Box::new(Hardening { constant: stiffness, per_length: 0.0 }));
+            return Ok(Box::new(Hardening { constant: stiffness, per_length: 0.0, hardening }));
         }
         let modulus = STIFFNESS * self.factor * pair.modulus_or("stiffness")?;
         Ok(Box::new(match pair.dimension {
-            Dimension::Two => Hardening { constant: modulus, per_length: 0.0 },
-            Dimension::Three => Hardening { constant: 0.0, per_length: modulus },
+            Dimension::Two => Hardening { constant: modulus, per_length: 0.0, hardening },
+            Dimension::Three => Hardening { constant: 0.0, per_length: modulus, hardening },
         }))
     }
 }
@@ -54,6 +56,7 @@ impl ContactLaw for Penalty {
 struct Hardening {
     constant: f64,
     per_length: f64,
+    hardening: f64,
 }
 
 impl Hardening {
@@ -65,7 +68,7 @@ impl Hardening {
 impl NormalForce for Hardening {
     fn at(&self, touch: &Touch) -> Spring {
         let (k, d) = (self.stiffness(touch), touch.overlap);
-        let harder = HARDENING * (d / touch.depth).powi(2);
+        let harder = self.hardening * (d / touch.depth).powi(2);
         Spring {
             force: k * d * (1.0 + harder),
             stiffness: k * (1.0 + 3.0 * harder),
@@ -74,10 +77,10 @@ impl NormalForce for Hardening {
     }
 
     fn stiffness_of_impact(&self, touch: &Touch, mass: f64, speed: f64) -> f64 {
-        // With q = (d/D)^2 at the deepest point, k D^2/2 (q + HARDENING/2 q^2) is the energy m v^2/2 that the motion had.
+        // With q = (d/D)^2 at the deepest point, k D^2/2 (q + b/2 q^2) is the energy m v^2/2 that the motion had.
         let k = self.stiffness(touch);
         let energy = mass * (speed / touch.depth).powi(2) / k;
-        let harder = (1.0 + 2.0 * HARDENING * energy).sqrt() - 1.0;
+        let harder = (1.0 + 2.0 * self.hardening * energy).sqrt() - 1.0;
         k * (1.0 + 3.0 * harder)
     }
 }

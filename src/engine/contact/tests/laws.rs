@@ -11,7 +11,8 @@ fn laws() -> Vec<Box<dyn NormalForce>> {
     vec![
         Penalty::default().build(&two).unwrap(),
         Penalty::default().build(&three).unwrap(),
-        Penalty { stiffness: Some(3.0e3), factor: 1.0 }.build(&three).unwrap(),
+        Penalty { stiffness: Some(3.0e3), ..Penalty::default() }.build(&three).unwrap(),
+        Penalty { stiffness: Some(3.0e3), hardening: 0.0, ..Penalty::default() }.build(&three).unwrap(),
         Hertz::default().build(&two).unwrap(),
         Hertz::default().build(&three).unwrap(),
         Hertz { plane: PlaneForce::Sphere, ..Hertz::default() }.build(&two).unwrap(),
@@ -37,6 +38,15 @@ fn force_is_the_derivative_of_energy_and_stiffness_that_of_force() {
 }
 
 #[test]
+fn without_hardening_the_penalty_is_linear() {
+    let pair = ContactPair { dimension: Dimension::Three, modulus: 1.0 };
+    let law = Penalty { stiffness: Some(3.0e3), hardening: 0.0, ..Penalty::default() }.build(&pair).unwrap();
+    for d in [1e-5, 4e-3, 9e-3] {
+        assert!((law.at(&touch(d)).force - 3.0e3 * d).abs() < 1e-12 * d);
+    }
+}
+
+#[test]
 fn the_stiffness_of_an_impact_is_that_where_the_spring_has_all_energy() {
     let (mass, speed) = (0.3, 1.7);
     for law in laws() {
@@ -55,7 +65,8 @@ fn the_stiffness_of_an_impact_is_that_where_the_spring_has_all_energy() {
 #[test]
 fn parameters_out_of_range_are_refused() {
     let pair = ContactPair { dimension: Dimension::Three, modulus: 1.0 };
-    assert!(Penalty { stiffness: Some(0.0), factor: 1.0 }.build(&pair).is_err());
-    assert!(Penalty { stiffness: None, factor: -1.0 }.build(&pair).is_err());
+    assert!(Penalty { stiffness: Some(0.0), ..Penalty::default() }.build(&pair).is_err());
+    assert!(Penalty { factor: -1.0, ..Penalty::default() }.build(&pair).is_err());
+    assert!(Penalty { hardening: -1.0, ..Penalty::default() }.build(&pair).is_err());
     assert!(Hertz { modulus: Some(f64::NAN), ..Hertz::default() }.build(&pair).is_err());
 }
