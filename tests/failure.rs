@@ -69,6 +69,22 @@ fn a_metal_strip_breaks_and_the_books_close() {
 }
 
 #[test]
+fn fragments_of_a_brittle_bar_do_not_pull_on_each_other() {
+    let text = include_str!("../assets/scenes/brittle_bar.ron");
+    let text = text
+        .replace("then: Removed", "then: NoDeviator")
+        .replace("rerun_recorder(color_by: \"max_principal_stretch\")", "");
+    assert!(text.contains("NoDeviator"), "the scene has changed");
+    let (scene, source) =
+        parse(Source::new("brittle_bar.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    let mut sim =
+        plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+    assert!(failed(&sim) > 200, "{}", failed(&sim));
+    assert!(sim.ledger().relative_error().abs() < 1e-2, "{}", sim.ledger().relative_error());
+}
+
+#[test]
 fn the_order_of_plugins_in_the_scene_does_not_matter() {
     let hash = |plugins: &str| -> StateHash {
         let mut sim = strip(plugins);

@@ -65,11 +65,22 @@ impl FailingLaw {
     /// A particle that has failed in an earlier step.
     fn failed(&self, k: usize, given: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
         let f = &rows.deformation[k];
-        let (volume, mean) = (f.determinant(), cauchy(&rows.stress[k], given).trace() / 3.0);
-        let mean = self.then.borne(mean);
+        let (volume, cofactor) = (f.determinant(), cofactor(f));
+        let was_torn = own.volume[k].0.is_infinite();
+        if was_torn || self.then.is_torn(volume, &cofactor) {
+            if !was_torn {
+                // What it held, and what its last stress does on the way here.
+                own.fracture[k].0 += own.energy[k].0 + 0.5 * own.mean[k].0 * (volume - own.volume[k].0);
+            }
+            (own.energy[k].0, own.volume[k].0, own.mean[k].0) = (0.0, f64::INFINITY, 0.0);
+            (rows.stress[k], rows.energy[k]) = (DMat3::ZERO, 0.0);
+            (rows.plastic_work[k], rows.modulus[k]) = (0.0, 0.0);
+            return;
+        }
+        let mean = self.then.borne(cauchy(&rows.stress[k], given).trace() / 3.0);
         own.energy[k].0 += 0.5 * (own.mean[k].0 + mean) * (volume - own.volume[k].0);
         (own.volume[k].0, own.mean[k].0) = (volume, mean);
-        rows.stress[k] = cofactor(f) * mean;
+        rows.stress[k] = cofactor * mean;
         rows.energy[k] = own.energy[k].0;
         rows.plastic_work[k] = 0.0;
         rows.modulus[k] = 0.0;

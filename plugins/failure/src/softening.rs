@@ -11,7 +11,8 @@ pub enum Then {
     /// It resists compression of its volume alone, like rubble. On the way there damage takes from positive principal stresses.
     #[default]
     NoTension,
-    /// It resists changes of its volume alone, like a liquid, tension included. On the way there damage takes from the deviator.
+    /// It resists changes of its volume alone, like a liquid, tension included, until it is torn to pieces: blown up to twice its volume, turned inside
+    /// out, or with areas three times as large. It then bears nothing any more. On the way there damage takes from the deviator.
     NoDeviator,
     /// It is taken out of the run. On the way there damage takes from positive principal stresses.
     Removed,
@@ -35,6 +36,19 @@ impl Then {
     /// The mean stress, Pa, that a failed particle bears of the one that its volume would have.
     pub(crate) fn borne(self, mean: f64) -> f64 {
         if self == Self::NoDeviator { mean } else { mean.min(0.0) }
+    }
+}
+
+/// Volume ratio, and mean ratio of areas, beyond which a liquid has been torn to pieces.
+const TORN: [f64; 2] = [2.0, 3.0];
+
+impl Then {
+    /// Whether a failed particle of that deformation, volume ratio and cofactor is no liquid any more: it would pull on what is far
+    /// away, at shapes that no time step follows.
+    pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
+        let [x, y, z] = [cofactor.x_axis, cofactor.y_axis, cofactor.z_axis];
+        let area = ((x.length_squared() + y.length_squared() + z.length_squared()) / 3.0).sqrt();
+        self == Self::NoDeviator && !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
     }
 }
 
@@ -78,6 +92,19 @@ mod tests {
         let left = Then::NoDeviator.soften(&stress, 0.25);
         assert!((left.to_matrix() - (stress * 0.75).to_matrix()).abs_diff_eq(DMat3::ZERO, 1e-14));
         assert_eq!(Then::NoDeviator.borne(5.0), 5.0);
+    }
+
+    #[test]
+    fn a_liquid_is_torn_by_volume_by_shear_and_inside_out() {
+        let torn = |then: Then, x, y, z| {
+            let f = DMat3::from_diagonal(DVec3::new(x, y, z));
+            then.is_torn(f.determinant(), &cofactor(&f))
+        };
+        assert!(!torn(Then::NoDeviator, 1.0, 1.0, 1.9) && torn(Then::NoDeviator, 1.0, 1.0, 2.1));
+        assert!(torn(Then::NoDeviator, 1.0, 1.0, -1.0) && !torn(Then::NoDeviator, 0.5, 0.5, 0.5));
+        // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of 1.6.
+        assert!(torn(Then::NoDeviator, 0.25, 0.25, 16.0) && !torn(Then::NoDeviator, 0.5, 0.5, 4.0));
+        assert!(!torn(Then::NoTension, 1.0, 1.0, 9.0));
     }
 
     #[test]
