@@ -127,7 +127,8 @@ fn divide_and_sum<S: Split, R: BlockSum>(
     let (left, right) = rows.split(half * BLOCK);
     let left = || divide_and_sum(first_row, half, left, body);
     let right = || divide_and_sum(first_row + half * BLOCK, count - half, right, body);
-    let (mut sum, next) = if count > BLOCKS_PER_TASK { rayon::join(left, right) } else { (left(), right()) };
+    let shared = count > BLOCKS_PER_TASK && rayon::current_num_threads() > 1;
+    let (mut sum, next) = if shared { rayon::join(left, right) } else { (left(), right()) };
     sum.add(&next);
     sum
 }
