@@ -66,7 +66,8 @@ impl Execution {
     pub fn carry_out(mut self, how: &How) -> Result<(), Failure> {
         let interrupt = Interrupt::listen()?;
         let mut progress = Progress::new(&self.sim, how.quiet);
-        let steps = self.steps(how.steps, &interrupt, &mut progress);
+        // On a thread of the pool: a parallel loop that begins outside has to wake one each time.
+        let steps = rayon::scope(|_| self.steps(how.steps, &interrupt, &mut progress));
         progress.finish(&self.sim);
         let failed_state = steps.is_err().then(|| self.keep_failed_state()).flatten();
         let finished = self.sim.finish();
