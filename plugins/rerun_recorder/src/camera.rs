@@ -32,6 +32,17 @@ impl Bounds {
         (0..3).any(|k| beyond(k) > OUTGROWN * diagonal)
     }
 
+    /// By how much the scene is drawn larger than it is.
+    pub fn enlargement(&self) -> f64 {
+        let diagonal = (0..3).map(|k| (self.max[k] - self.min[k]).powi(2)).sum::<f64>().sqrt();
+        if diagonal < SMALL { ENLARGED } else { 1.0 }
+    }
+
+    /// The box as it is drawn.
+    pub fn enlarged(&self, by: f64) -> Self {
+        Self { min: self.min.map(|x| by * x), max: self.max.map(|x| by * x) }
+    }
+
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..8).map(|corner| {
             std::array::from_fn(|k| if corner >> k & 1 == 0 { self.min[k] } else { self.max[k] })
@@ -50,6 +61,10 @@ pub struct Eye {
     pub up: [f64; 3],
 }
 
+/// Diagonal below which a scene is small, m: the viewer leaves out what is within 0.01 of its eye, so that a scene of a few millimetres could not be seen.
+const SMALL: f64 = 0.1;
+/// Small scenes are drawn in millimetres.
+const ENLARGED: f64 = 1000.0;
 /// Share of the diagonal of what is in view by which particles may leave it.
 const OUTGROWN: f64 = 0.1;
 /// Half the vertical opening angle of the viewer's camera is 27.5 degrees; its tangent.
@@ -110,6 +125,14 @@ mod tests {
         assert_eq!((eye.position[0], eye.position[1]), (1.0, 0.5));
         let half_width_in_view = eye.position[2] * OPENING * ASPECT;
         assert!((half_width_in_view / (MARGIN * 1.0) - 1.0).abs() < 1e-12, "{half_width_in_view}");
+    }
+
+    #[test]
+    fn small_scenes_are_drawn_larger() {
+        let plate = Bounds { min: [0.0, 0.0, 0.0], max: [0.006, 0.003, 0.0] };
+        assert_eq!(plate.enlargement(), 1000.0);
+        assert!((plate.enlarged(1000.0).max[0] - 6.0).abs() < 1e-12);
+        assert_eq!(Bounds { max: [0.2, 0.1, 0.0], ..plate }.enlargement(), 1.0);
     }
 
     #[test]

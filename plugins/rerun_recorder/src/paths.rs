@@ -7,6 +7,11 @@ pub fn entity<'a>(parts: impl IntoIterator<Item = &'a str>) -> EntityPath {
     EntityPath::new(parts.into_iter().map(EntityPathPart::new).collect())
 }
 
+/// All bodies.
+pub fn bodies() -> EntityPath {
+    entity(["bodies"])
+}
+
 /// The particles of a body.
 pub fn body(name: &str) -> EntityPath {
     entity(["bodies", name])

@@ -3,7 +3,9 @@
 use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder, RunInfo, Sample};
 use meshless_engine::scene::Dimension;
 use rerun::external::re_sdk_types::components::MediaType;
-use rerun::{Color, EntityPath, Points3D, Radius, Scalars, TextDocument, archetypes::ViewCoordinates};
+use rerun::{
+    Color, EntityPath, Points3D, Radius, Scalars, TextDocument, Transform3D, archetypes::ViewCoordinates,
+};
 
 use crate::camera::Bounds;
 use crate::color_scale::{ColorScale, RunningScale};
@@ -37,6 +39,8 @@ struct Open {
     bounds: Bounds,
     /// The particles that the camera has in view.
     in_view: Option<Bounds>,
+    /// By how much they are drawn larger; their coordinates stay as they are.
+    enlargement: f64,
     legend: Option<Legend>,
     series: SeriesTable,
     notes: Notes,
@@ -93,6 +97,7 @@ impl RerunFile {
             color_by: colors.map(|field| field.name.to_owned()),
             bounds: Bounds::EMPTY,
             in_view: None,
+            enlargement: 1.0,
             legend: colors.map(|field| Legend::new(field.unit)),
             series: SeriesTable::new(bodies, run.dimension, known.collect()),
             notes,
@@ -107,7 +112,10 @@ impl RerunFile {
             open.bounds.extend(body.positions, f64::from(body.radius));
         }
         match open.in_view {
-            None => open.send_layout(false)?,
+            None => {
+                open.enlarge()?;
+                open.send_layout(false)?;
+            }
             // A run that is killed shall leave a file that opens right, too.
             Some(seen) if open.bounds.outgrows(&seen) => open.send_layout(true)?,
             Some(_) => {}
@@ -183,9 +191,20 @@ fn axes(up: [f64; 3]) -> ViewCoordinates {
 }
 
 impl Open {
+    /// Decides how large the bodies are drawn.
+    fn enlarge(&mut self) -> Result<(), RerunError> {
+        self.enlargement = self.bounds.enlargement();
+        if self.enlargement != 1.0 {
+            let transform = Transform3D::from_scale(self.enlargement as f32);
+            self.output.log_static(&paths::bodies(), &transform)?;
+        }
+        Ok(())
+    }
+
     fn send_layout(&mut self, file_only: bool) -> Result<(), RerunError> {
         self.in_view = Some(self.bounds);
-        self.output.send_layout(file_only, || self.layout.messages(&self.bounds, &self.series))
+        let bounds = self.bounds.enlarged(self.enlargement);
+        self.output.send_layout(file_only, || self.layout.messages(&bounds, &self.series))
     }
 }
 
