@@ -66,6 +66,7 @@ impl FailingLaw {
     fn failed(&self, k: usize, given: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
         let f = &rows.deformation[k];
         let (volume, cofactor) = (f.determinant(), cofactor(f));
+        (rows.plastic_work[k], rows.modulus[k]) = (0.0, 0.0);
         let was_torn = own.volume[k].0.is_infinite();
         if was_torn || self.then.is_torn(volume, &cofactor) {
             if !was_torn {
@@ -74,7 +75,6 @@ impl FailingLaw {
             }
             (own.energy[k].0, own.volume[k].0, own.mean[k].0) = (0.0, f64::INFINITY, 0.0);
             (rows.stress[k], rows.energy[k]) = (DMat3::ZERO, 0.0);
-            (rows.plastic_work[k], rows.modulus[k]) = (0.0, 0.0);
             return;
         }
         let mean = self.then.borne(cauchy(&rows.stress[k], given).trace() / 3.0);
@@ -82,8 +82,6 @@ impl FailingLaw {
         (own.volume[k].0, own.mean[k].0) = (volume, mean);
         rows.stress[k] = cofactor * mean;
         rows.energy[k] = own.energy[k].0;
-        rows.plastic_work[k] = 0.0;
-        rows.modulus[k] = 0.0;
     }
 
     /// A particle in which there is damage, below or just at 1; `before` is its stress at the end of the last step, Pa.

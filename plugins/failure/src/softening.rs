@@ -37,12 +37,7 @@ impl Then {
     pub(crate) fn borne(self, mean: f64) -> f64 {
         if self == Self::NoDeviator { mean } else { mean.min(0.0) }
     }
-}
 
-/// Volume ratio, and mean ratio of areas, beyond which a liquid has been torn to pieces.
-const TORN: [f64; 2] = [2.0, 3.0];
-
-impl Then {
     /// Whether a failed particle of that deformation, volume ratio and cofactor is no liquid any more: it would pull on what is far
     /// away, at shapes that no time step follows.
     pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
@@ -51,6 +46,9 @@ impl Then {
         self == Self::NoDeviator && !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
     }
 }
+
+/// Volume ratio, and mean ratio of areas, beyond which a liquid has been torn to pieces.
+const TORN: [f64; 2] = [2.0, 3.0];
 
 /// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.
 pub(crate) fn cofactor(f: &DMat3) -> DMat3 {

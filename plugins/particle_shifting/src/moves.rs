@@ -2,7 +2,7 @@
 
 use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
 use meshless_engine::glam::{DMat3, DVec3};
-use meshless_engine::parallel::{Arithmetic, BlockSum, Largest, Vector, sum_over_blocks};
+use meshless_engine::parallel::{Arithmetic, Largest, Vector, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Velocity};
 
@@ -27,10 +27,7 @@ pub fn make(
     let spacing = step.world.body(id).spacing;
     let velocity = view.read::<Velocity>()?;
     let squared = sum_over_blocks(&velocity[rows.clone()], &|_, v: &[Velocity]| {
-        v.iter().fold(Largest::default(), |mut largest, v| {
-            largest.add(&Largest(v.0.length_squared()));
-            largest
-        })
+        Largest::of(v.iter().map(|v| v.0.length_squared()))
     });
     let h = cloud.kernel.smoothing_length();
     let pass = Moves {

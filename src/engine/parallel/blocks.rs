@@ -94,10 +94,8 @@ fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     let count = block_count(rows.rows());
     sums.clear();
     sums.resize(count, R::default());
-    // A single thread need not be woken: the caller does it.
-    let per_task = if rayon::current_num_threads() == 1 { count } else { per_task };
     if count > 0 {
-        divide(per_task, 0, rows, sums, body);
+        divide(blocks_of_task(per_task, count), 0, rows, sums, body);
     }
     let mut total = R::default();
     sums.iter().for_each(|sum| total.add(sum));
@@ -110,11 +108,17 @@ fn for_each_block_in_tasks<S: Split, R: BlockSum>(
 pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S) -> R + Sync)) -> R {
     match block_count(rows.rows()) {
         0 => R::default(),
-        count => divide_and_sum(0, count, rows, body),
+        count => divide_and_sum(blocks_of_task(BLOCKS_PER_TASK, count), 0, count, rows, body),
     }
 }
 
+/// Blocks that a task runs in sequence: all of them where there is one thread, which need not be woken, as the caller does it.
+fn blocks_of_task(usual: usize, count: usize) -> usize {
+    if rayon::current_num_threads() == 1 { count } else { usual }
+}
+
 fn divide_and_sum<S: Split, R: BlockSum>(
+    per_task: usize,
     first_row: usize,
     count: usize,
     rows: S,
@@ -125,10 +129,9 @@ fn divide_and_sum<S: Split, R: BlockSum>(
     }
     let half = count / 2;
     let (left, right) = rows.split(half * BLOCK);
-    let left = || divide_and_sum(first_row, half, left, body);
-    let right = || divide_and_sum(first_row + half * BLOCK, count - half, right, body);
-    let shared = count > BLOCKS_PER_TASK && rayon::current_num_threads() > 1;
-    let (mut sum, next) = if shared { rayon::join(left, right) } else { (left(), right()) };
+    let left = || divide_and_sum(per_task, first_row, half, left, body);
+    let right = || divide_and_sum(per_task, first_row + half * BLOCK, count - half, right, body);
+    let (mut sum, next) = if count > per_task { rayon::join(left, right) } else { (left(), right()) };
     sum.add(&next);
     sum
 }

@@ -6,6 +6,16 @@ use super::BlockSum;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest(pub f64);
 
+impl Largest {
+    /// The largest of numbers that are not negative.
+    pub fn of(numbers: impl Iterator<Item = f64>) -> Self {
+        numbers.fold(Self::default(), |mut largest, number| {
+            largest.add(&Self(number));
+            largest
+        })
+    }
+}
+
 impl BlockSum for Largest {
     fn add(&mut self, next: &Self) {
         // Not the larger one of the two by `max`, which would drop what is not a number.

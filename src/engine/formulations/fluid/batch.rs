@@ -11,9 +11,9 @@ pub(super) const BATCH: usize = 32;
 /// Two numbers for each pair of a batch.
 pub(super) struct Batch {
     /// Squares of the lengths, m2.
-    pub square: [Lanes4; BATCH],
+    square: [Lanes4; BATCH],
     /// What the kernel weight is multiplied with.
-    pub factor: [Lanes4; BATCH],
+    factor: [Lanes4; BATCH],
 }
 
 impl Batch {
