@@ -61,12 +61,7 @@ impl<'a> Cloud<'a> {
 
     /// Smallest box around the positions; an inverted box for an empty set.
     pub(super) fn bounds(&self) -> (DVec3, DVec3) {
-        let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        self.positions
-            .par_iter()
-            .with_min_len(4096)
-            .fold(empty, |(lo, hi), x| (lo.min(*x), hi.max(*x)))
-            .reduce(empty, |a, b| (a.0.min(b.0), a.1.max(b.1)))
+        bounds(self.positions)
     }
 
     pub(super) fn check(&self, set: &'static str) -> Result<(), NeighborError> {
@@ -87,4 +82,14 @@ impl<'a> Cloud<'a> {
         };
         wrong.map_or(Ok(()), |(index, value)| Err(NeighborError::SupportRadius { set, index, value }))
     }
+}
+
+/// Smallest box around positions, m; an inverted box where there are none.
+pub(crate) fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
+    let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    positions
+        .par_iter()
+        .with_min_len(4096)
+        .fold(empty, |(lo, hi), x| (lo.min(*x), hi.max(*x)))
+        .reduce(empty, |a, b| (a.0.min(b.0), a.1.max(b.1)))
 }

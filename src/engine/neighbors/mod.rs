@@ -8,6 +8,8 @@
 //! Two uses: [`NeighborList::reference`], built once (total Lagrangian), and [`VerletList`], rebuilt when something
 //! has moved more than half the skin, within one set of particles or from one set to another (fluid and solid).
 
+mod axis;
+mod buckets;
 mod cloud;
 mod error;
 mod grid;
@@ -19,9 +21,12 @@ mod search;
 mod tests;
 mod verlet;
 
+pub(crate) use buckets::Buckets;
+pub(crate) use cloud::bounds;
 pub use cloud::{Cloud, Support};
 pub use error::NeighborError;
 pub use list::NeighborList;
 pub use periodic::Periodic;
+pub(crate) use periodic::SHIFT;
 pub use search::NeighborSearch;
 pub use verlet::VerletList;

@@ -3,10 +3,11 @@
 //! Rows are found in waves that bound the memory beside the list, block by block, and copied to their places. Particles that are
 //! neighbours in the order of rows share candidates: set-up and sorting see to it that they mostly are near each other.
 
-use super::grid::Grid;
+use super::grid::{Grid, Ranges};
 use super::periodic::SHIFT;
-use super::{Cloud, NeighborList, Periodic};
+use super::{Cloud, NeighborList, Periodic, Support};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -27,6 +28,8 @@ struct Block {
     ends: Vec<usize>,
     /// Longer than what is used: four candidates are written at once, and those kept that are near.
     found: Vec<u32>,
+    /// Candidates of a row.
+    ranges: Ranges,
 }
 
 /// What a build looks for.
@@ -38,13 +41,36 @@ pub(super) struct Query<'a> {
     pub radius: f64,
     pub skin: f64,
     pub periodic: &'a Periodic,
-    /// Where the groups of the sources end: a row is ordered by groups, and within a group by cells. None for rows in ascending
-    /// order.
-    pub groups: Option<&'a [u32]>,
+    /// Whether particles differ along z.
+    pub solid: bool,
+    pub order: Order<'a>,
+}
+
+/// Order of a row.
+#[derive(Clone, Copy)]
+pub(super) enum Order<'a> {
+    /// Ascending.
+    Rows,
+    /// By groups of sources, that end here, and within a group by cells.
+    Groups(&'a [u32]),
+    /// By cells: there is one group.
+    Cells,
 }
 
 impl Query<'_> {
-    pub(super) fn fill<const PERIODIC: bool, const UNIFORM: bool>(
+    /// Replaces what the list holds.
+    pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
+        let uniform = matches!(self.targets.support, Support::Uniform(_)) && self.grid.supports.is_empty();
+        match (self.periodic.any(), uniform) {
+            (false, true) if self.solid => self.fill_as::<3, false, true>(buffers, list),
+            (false, true) => self.fill_as::<2, false, true>(buffers, list),
+            (false, false) => self.fill_as::<3, false, false>(buffers, list),
+            (true, true) => self.fill_as::<3, true, true>(buffers, list),
+            (true, false) => self.fill_as::<3, true, false>(buffers, list),
+        }
+    }
+
+    fn fill_as<const D: usize, const PERIODIC: bool, const UNIFORM: bool>(
         &self,
         buffers: &mut Buffers,
         list: &mut NeighborList,
@@ -61,7 +87,7 @@ impl Query<'_> {
             wave.par_iter_mut().enumerate().for_each(|(b, block)| {
                 let start = first + b * BLOCK;
                 let rows = start..(start + BLOCK).min(last);
-                run_hot(BlockRows::<PERIODIC, UNIFORM> { query: self, rows, block });
+                run_hot(BlockRows::<D, PERIODIC, UNIFORM> { query: self, rows, block });
             });
 
             let before = list.offsets[first];
@@ -90,80 +116,159 @@ impl Query<'_> {
     }
 }
 
-/// The rows of a block.
-struct BlockRows<'a, const PERIODIC: bool, const UNIFORM: bool> {
+/// The rows of a block, whose particles differ along the first D axes.
+struct BlockRows<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> {
     query: &'a Query<'a>,
     rows: Range<usize>,
     block: &'a mut Block,
 }
 
-impl<const PERIODIC: bool, const UNIFORM: bool> HotLoop for BlockRows<'_, PERIODIC, UNIFORM> {
+impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool> HotLoop
+    for BlockRows<'_, D, PERIODIC, UNIFORM>
+{
     type Output = ();
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        let Query { grid, targets, same_set, radius, skin, periodic, groups } = *self.query;
-        let Block { ends, found } = self.block;
-        let (length, inverse) = (periodic.lengths(), periodic.inverse_lengths());
-        let coordinates = grid.coordinates();
-        let uniform = Lanes4::splat(radius * radius);
+        let Query { grid, targets, same_set, radius, order, .. } = *self.query;
+        let test = Test::<D, PERIODIC, UNIFORM>::new(self.query);
+        let sorted = grid.rows();
+        let Block { ends, found, ranges } = self.block;
         ends.clear();
         let mut used = 0;
         for i in self.rows {
             let start = used;
             let x_i = targets.positions[i];
             let support_i = if UNIFORM { 0.0 } else { targets.support_of(i) };
-            for range in grid.around(x_i).as_slice() {
-                let room = used + range.len() + 4;
-                if found.len() < room {
-                    found.resize(room * 3 / 2, 0);
-                }
-                for first in range.clone().step_by(4) {
-                    let mut square = Lanes4::ZERO;
-                    for axis in 0..3 {
-                        let mut x = a.minus(four(coordinates[axis], first), Lanes4::splat(x_i[axis]));
-                        if PERIODIC {
-                            let shift = Lanes4::splat(SHIFT);
-                            let turns = a.minus(a.scale_add(inverse[axis], x, shift), shift);
-                            x = a.scale_add(-length[axis], turns, x);
-                        }
-                        square = a.times_add(x, x, square);
-                    }
-                    let limit = if UNIFORM {
-                        uniform
-                    } else {
-                        let sum = a.plus(four(&grid.supports, first), Lanes4::splat(support_i));
-                        let radius = a.scale_add(0.5, sum, Lanes4::splat(skin));
-                        a.times(radius, radius)
-                    };
-                    let inside = (1 << (range.end - first).min(4)) - 1;
-                    let near = a.below(square, limit) & inside;
-                    let rows = &grid.rows[first..first + 4];
-                    let packed = a.pack([rows[0], rows[1], rows[2], rows[3]], near);
+            grid.around(x_i, radius, ranges);
+            if found.len() < used + ranges.room {
+                found.resize((used + ranges.room) * 3 / 2, 0);
+            }
+            let found = found.as_mut_slice();
+            for range in &ranges.found {
+                let before = used;
+                let mut left = (range.end - range.first) as usize;
+                let (candidates, four_rows) = test.candidates(sorted, range.first as usize, left.div_ceil(4));
+                for (k, four_rows) in four_rows.iter().enumerate() {
+                    let near = test.near(a, &candidates, k, (x_i, support_i)) & MASKS[left.min(4)];
                     if let Some(out) = found[used..].first_chunk_mut() {
-                        *out = packed;
+                        *out = a.pack(*four_rows, near);
                     }
                     used += near.count_ones() as usize;
+                    left = left.saturating_sub(4);
+                }
+                if same_set && range.holds_own {
+                    used = without(&mut found[..used], before, i as u32);
                 }
             }
-            if same_set && let Some(own) = found[start..used].iter().position(|&j| j == i as u32) {
-                found.copy_within(start + own + 1..used, start + own);
-                used -= 1;
-            }
             let row = &mut found[start..used];
-            if groups.is_none_or(|groups| is_mixed(row, groups)) {
-                row.sort_unstable();
+            match order {
+                Order::Cells => {}
+                Order::Groups(ends) if !is_mixed(row, ends) => {}
+                Order::Groups(_) | Order::Rows => row.sort_unstable(),
             }
             ends.push(used);
         }
     }
 }
 
-/// Four numbers of a column.
+/// The lanes that hold one of that many candidates.
+const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
+
+/// Takes one value out of those from `first` on; their new end.
 #[inline(always)]
-fn four(column: &[f64], first: usize) -> Lanes4 {
-    let four = &column[first..first + 4];
-    Lanes4([four[0], four[1], four[2], four[3]])
+fn without(values: &mut [u32], first: usize, value: u32) -> usize {
+    let mut kept = first;
+    for k in first..values.len() {
+        values[kept] = values[k];
+        kept += usize::from(values[k] != value);
+    }
+    kept
+}
+
+/// Decides who is near, from distances along the first D axes.
+struct Test<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> {
+    coordinates: [&'a [f64]; 3],
+    supports: &'a [f64],
+    length: DVec3,
+    inverse: DVec3,
+    skin: f64,
+    /// Square of the largest pair radius.
+    square: f64,
+}
+
+impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> Test<'a, D, PERIODIC, UNIFORM> {
+    #[inline(always)]
+    fn new(query: &Query<'a>) -> Self {
+        let Query { grid, periodic, skin, radius, .. } = *query;
+        let (length, inverse) = (periodic.lengths(), periodic.inverse_lengths());
+        Self {
+            coordinates: grid.coordinates(),
+            supports: &grid.supports,
+            length,
+            inverse,
+            skin,
+            square: radius * radius,
+        }
+    }
+
+    /// Coordinates and support radii of that many fours of sorted particles from `first` on, and their rows.
+    #[inline(always)]
+    fn candidates(
+        &self,
+        sorted: &'a [u32],
+        first: usize,
+        fours: usize,
+    ) -> (Candidates<'a, D>, &'a [[u32; 4]]) {
+        let mut coordinates: [&[[f64; 4]]; D] = [&[]; D];
+        for axis in 0..D {
+            coordinates[axis] = fours_of(self.coordinates[axis], first, fours);
+        }
+        let supports = if UNIFORM { &[] } else { fours_of(self.supports, first, fours) };
+        (Candidates { coordinates, supports }, fours_of(sorted, first, fours))
+    }
+
+    /// Which of the k-th four candidates are near a place: a bit for each.
+    #[inline(always)]
+    fn near<A: Arithmetic>(
+        &self,
+        a: A,
+        candidates: &Candidates<'_, D>,
+        k: usize,
+        (x_i, support_i): (DVec3, f64),
+    ) -> usize {
+        let x_i = [x_i.x, x_i.y, x_i.z];
+        let mut square = Lanes4::ZERO;
+        for axis in 0..D {
+            let mut x = a.minus(Lanes4(candidates.coordinates[axis][k]), Lanes4::splat(x_i[axis]));
+            if PERIODIC {
+                let shift = Lanes4::splat(SHIFT);
+                let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
+                x = a.scale_add(-self.length[axis], turns, x);
+            }
+            square = a.times_add(x, x, square);
+        }
+        let limit = if UNIFORM {
+            Lanes4::splat(self.square)
+        } else {
+            let sum = a.plus(Lanes4(candidates.supports[k]), Lanes4::splat(support_i));
+            let radius = a.scale_add(0.5, sum, Lanes4::splat(self.skin));
+            a.times(radius, radius)
+        };
+        a.below(square, limit)
+    }
+}
+
+/// Fours of sorted particles.
+struct Candidates<'a, const D: usize> {
+    coordinates: [&'a [[f64; 4]]; D],
+    supports: &'a [[f64; 4]],
+}
+
+/// That many fours from `first` on.
+#[inline(always)]
+fn fours_of<T>(column: &[T], first: usize, fours: usize) -> &[[T; 4]] {
+    column[first..first + 4 * fours].as_chunks().0
 }
 
 /// Whether a row has members of several groups.

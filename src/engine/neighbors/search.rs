@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::periodic::AXIS_NAMES;
-use super::rows::{Buffers, Query};
+use super::rows::{Buffers, Order, Query};
 use super::{Cloud, NeighborError, NeighborList, Periodic, Support};
 
 /// Neighbour search with buffers that are kept: from the second build of like size on it does not allocate.
@@ -83,9 +83,11 @@ impl NeighborSearch {
                 return Err(NeighborError::PeriodicTooShort { axis: AXIS_NAMES[a], length, needed });
             }
         }
-        let mut bounds = sources.bounds();
-        if !same_set && periodic.any() {
+        let mut bounds = if sources.positions.is_empty() { Default::default() } else { sources.bounds() };
+        let mut solid = bounds.0.z < bounds.1.z;
+        if !same_set {
             let more = targets.bounds();
+            solid |= bounds.0.z.min(more.0.z) < bounds.1.z.max(more.1.z);
             for a in (0..3).filter(|&a| periodic.axes()[a]) {
                 bounds.0[a] = bounds.0[a].min(more.0[a]);
                 bounds.1[a] = bounds.1[a].max(more.1[a]);
@@ -93,15 +95,16 @@ impl NeighborSearch {
         }
         let uniform =
             matches!((targets.support, sources.support), (Support::Uniform(_), Support::Uniform(_)));
-        self.grid.build(sources, !uniform, bounds, radius, periodic);
+        let particles = targets.positions.len().max(sources.positions.len());
+        self.grid.build((sources, !uniform), bounds, radius, periodic, particles);
 
-        let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic, groups };
-        match (periodic.any(), uniform) {
-            (false, true) => query.fill::<false, true>(&mut self.buffers, list),
-            (false, false) => query.fill::<false, false>(&mut self.buffers, list),
-            (true, true) => query.fill::<true, true>(&mut self.buffers, list),
-            (true, false) => query.fill::<true, false>(&mut self.buffers, list),
-        }
+        let order = match groups {
+            None => Order::Rows,
+            Some(ends) if ends.iter().all(|&end| end as usize >= sources.positions.len()) => Order::Cells,
+            Some(ends) => Order::Groups(ends),
+        };
+        let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order };
+        query.fill(&mut self.buffers, list);
         Ok(())
     }
 }

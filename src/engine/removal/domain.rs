@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::system::RemovalRule;
+use crate::parallel::{BLOCK, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::scene::{Axis, Dimension, Outside};
 use crate::schedule::{Step, StepError};
@@ -33,21 +34,44 @@ impl DomainBox {
     }
 
     /// Whether a place is in the box; one that is not a number is not.
+    #[inline]
     pub fn contains(&self, x: DVec3) -> bool {
-        x.cmpge(self.min).all() && x.cmple(self.max).all()
+        (x.cmpge(self.min) & x.cmple(self.max)).all()
     }
 }
 
-impl RemovalRule for DomainBox {
+/// Removes what is outside of the box.
+pub(super) struct RemoveOutside {
+    domain: DomainBox,
+    /// Particles outside, block by block.
+    counts: Vec<f64>,
+}
+
+impl RemoveOutside {
+    pub fn new(domain: DomainBox) -> Self {
+        Self { domain, counts: Vec::new() }
+    }
+}
+
+impl RemovalRule for RemoveOutside {
     fn rows(&mut self, step: &Step<'_>, body: BodyId, out: &mut Vec<u32>) -> Result<(), StepError> {
+        let Self { domain, counts } = self;
         let (view, rows) = step.world.body_view(body);
         let position = view.read::<Position>()?;
-        let outside = |row: &usize| {
-            let x = position[*row].0;
+        let position = &position[rows.clone()];
+        let outside = |x: &Position| !domain.contains(x.0);
+        let any = for_each_block(position, counts, &|_, block: &[Position]| {
+            block.iter().map(|x| f64::from(u8::from(outside(x)))).sum::<f64>()
+        });
+        if any == 0.0 {
+            return Ok(());
+        }
+        for (b, block) in position.chunks(BLOCK).enumerate().filter(|(b, _)| counts[*b] > 0.0) {
             // What is not finite is for the watchdog: it must not vanish from sight.
-            x.is_finite() && !self.contains(x)
-        };
-        out.extend(rows.filter(outside).map(|row| row as u32));
+            let gone = |(_, x): &(usize, &Position)| outside(x) && x.0.is_finite();
+            let first = rows.start + b * BLOCK;
+            out.extend(block.iter().enumerate().filter(gone).map(|(k, _)| (first + k) as u32));
+        }
         Ok(())
     }
 }

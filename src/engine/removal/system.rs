@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::domain::DomainBox;
+use super::domain::{DomainBox, RemoveOutside};
 use crate::plugin::SimBuilder;
 use crate::scene::Outside;
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
@@ -39,7 +39,7 @@ impl SimBuilder<'_> {
 pub fn add_system(sim: &mut SimBuilder<'_>) {
     let mut rules: Vec<Box<dyn RemovalRule>> = sim.take_extensions();
     if let Some(domain) = DomainBox::of_scene(sim).filter(|domain| domain.outside == Outside::Remove) {
-        rules.push(Box::new(domain));
+        rules.push(Box::new(RemoveOutside::new(domain)));
     }
     sim.add_system(
         System::new(Stage::Neighbors, REMOVAL, Removal { rules, rows: Vec::new() })

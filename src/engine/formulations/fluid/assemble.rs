@@ -89,7 +89,6 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         kernel: FluidKernel::new(support, dimension),
         plane,
         periods: Periods::new(&periodic),
-        positions: vec![DVec3::ZERO; total],
         before: Vec::new(),
         records: vec![Record::default(); total],
         pairs: FlowPairs::new(skins, periodic, ends, thin),

@@ -9,11 +9,7 @@ use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
 use crate::materials::EquationOfState;
-use crate::parallel::for_each_block;
-use crate::world::{
-    BodyId, Density, Mass, MissingColumn, PhaseId, Position, Pressure, ReferenceVolume, Removed, Velocity,
-    World,
-};
+use crate::world::{BodyId, PhaseId};
 
 /// The equation of state of a body, with its constants.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +111,6 @@ pub struct FlowCloud {
     pub kernel: FluidKernel,
     pub(super) plane: bool,
     pub(super) periods: Periods,
-    pub(super) positions: Vec<DVec3>,
     /// Positions of what bounds the flow at the start of the step, of bodies that take short steps alone.
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
@@ -133,73 +128,6 @@ pub struct FlowCloud {
 }
 
 impl FlowCloud {
-    /// Takes positions out of the columns.
-    pub(super) fn read_positions(&mut self, world: &World) -> Result<(), MissingColumn> {
-        for group in &self.groups {
-            let position = world.phase(group.phase).read::<Position>()?;
-            let rows = (&mut self.positions[group.cloud.clone()], &position[group.rows.clone()]);
-            for_each_block(rows, &mut Vec::new(), &|_, (to, from): (&mut [DVec3], &[Position])| {
-                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.0);
-            });
-        }
-        Ok(())
-    }
-
-    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without.
-    pub(super) fn pack(&mut self, world: &World) -> Result<(), MissingColumn> {
-        use crate::parallel::Lanes4;
-        for group in &self.groups {
-            let view = world.phase(group.phase);
-            let velocity = view.read::<Velocity>()?;
-            let (x, v) = (&self.positions[group.cloud.clone()], &velocity[group.rows.clone()]);
-            let records = &mut self.records[group.cloud.clone()];
-            if group.fluid().is_some() {
-                let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
-                let (pressure, removed) = (view.read::<Pressure>()?, view.read::<Removed>()?);
-                let rows = group.rows.clone();
-                let slices = (
-                    records,
-                    x,
-                    v,
-                    &mass[rows.clone()],
-                    &density[rows.clone()],
-                    &pressure[rows.clone()],
-                    &removed[rows],
-                );
-                type Rows<'a> = (
-                    &'a mut [Record],
-                    &'a [DVec3],
-                    &'a [Velocity],
-                    &'a [Mass],
-                    &'a [Density],
-                    &'a [Pressure],
-                    &'a [Removed],
-                );
-                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, m, rho, p, removed): Rows<'_>| {
-                    for (k, out) in out.iter_mut().enumerate() {
-                        let volume = if removed[k] == Removed::NO { m[k].0 / rho[k].0 } else { 0.0 };
-                        out.place = Lanes4::new(x[k], volume);
-                        out.motion = Lanes4::new(v[k].0, p[k].0);
-                    }
-                });
-            } else {
-                let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
-                let rows = group.rows.clone();
-                let slices = (records, x, v, &volume[rows.clone()], &removed[rows]);
-                type Rows<'a> =
-                    (&'a mut [Record], &'a [DVec3], &'a [Velocity], &'a [ReferenceVolume], &'a [Removed]);
-                for_each_block(slices, &mut Vec::new(), &|_, (out, x, v, volume, removed): Rows<'_>| {
-                    for (k, out) in out.iter_mut().enumerate() {
-                        let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
-                        out.place = Lanes4::new(x[k], volume);
-                        out.motion = Lanes4::new(v[k].0, 0.0);
-                    }
-                });
-            }
-        }
-        Ok(())
-    }
-
     /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
     /// `i` is its row in the phase of fluids.
     #[inline]

@@ -84,7 +84,7 @@ pub(super) fn add(
 impl FlowCloud {
     /// Keeps the positions of a phase at the start of the long step.
     fn remember(&mut self, phase: PhaseId, world: &crate::world::World) -> Result<(), StepError> {
-        self.before.resize(self.positions.len() - self.fluid, DVec3::ZERO);
+        self.before.resize(self.records.len() - self.fluid, DVec3::ZERO);
         for group in self.groups.iter().filter(|group| group.phase == phase) {
             let position = world.phase(group.phase).read::<Position>()?;
             let before = &mut self.before[group.cloud.start - self.fluid..group.cloud.end - self.fluid];
@@ -98,14 +98,14 @@ impl FlowCloud {
         if dt == 0.0 {
             return;
         }
-        let Self { groups, records, positions, before, fluid, .. } = self;
+        let Self { groups, records, before, fluid, .. } = self;
         for group in groups.iter().filter(|group| group.short) {
             let before = &before[group.cloud.start - *fluid..group.cloud.end - *fluid];
-            let slices = (&mut records[group.cloud.clone()], &positions[group.cloud.clone()], before);
-            type Rows<'a> = (&'a mut [super::Record], &'a [DVec3], &'a [DVec3]);
-            for_each_block(slices, &mut Vec::new(), &|_, (records, now, before): Rows<'_>| {
-                for (k, record) in records.iter_mut().enumerate() {
-                    record.motion = Lanes4::new((now[k] - before[k]) / dt, 0.0);
+            let slices = (&mut records[group.cloud.clone()], before);
+            type Rows<'a> = (&'a mut [super::Record], &'a [DVec3]);
+            for_each_block(slices, &mut Vec::new(), &|_, (records, before): Rows<'_>| {
+                for (record, before) in records.iter_mut().zip(before) {
+                    record.motion = Lanes4::new((record.position() - *before) / dt, 0.0);
                 }
             });
         }
@@ -182,7 +182,7 @@ impl Run for Coupling {
             let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
             let particles = Particles {
                 dt: step.clock.dt,
-                position: &cloud.positions[group.cloud.clone()],
+                records: &cloud.records[group.cloud.clone()],
                 before,
                 mass: &mass[rows.clone()],
                 mobility: &mobility[rows.clone()],

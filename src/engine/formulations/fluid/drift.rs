@@ -7,7 +7,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::neighbors::Periodic;
+use super::record::Record;
+use super::spread::{Growing, Spread};
+use crate::neighbors::{Buckets, Periodic, SHIFT, bounds};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
 /// What has to hold for lists to be good, m.
 #[derive(Clone, Copy, Debug)]
@@ -35,35 +38,6 @@ impl Skins {
     }
 }
 
-/// Displacements of some particles: the box around them; inverted where there are none.
-#[derive(Clone, Copy, Debug)]
-struct Spread {
-    low: DVec3,
-    high: DVec3,
-}
-
-impl Spread {
-    const NONE: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-
-    fn with(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// Adds a displacement; one that is no number is as far as can be.
-    #[inline(always)]
-    fn add(self, d: DVec3) -> Self {
-        if !d.is_finite() {
-            return Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY };
-        }
-        Self { low: self.low.min(d), high: self.high.max(d) }
-    }
-
-    /// Most that a displacement of one box and one of the other differ, m; zero where one has none.
-    fn farthest(self, other: Self) -> f64 {
-        (self.high - other.low).max(other.high - self.low).max(DVec3::ZERO).length()
-    }
-}
-
 /// Displacements in a cell: of fluids, and of what bounds them.
 type Pair = [Spread; 2];
 
@@ -73,13 +47,14 @@ pub(super) struct Drift {
     counts: [usize; 3],
     /// Axes whose last cell is beside the first.
     wraps: [bool; 3],
+    /// Periods of those axes, m, and one over them; zero on the others.
+    periods: [Lanes4; 2],
     /// Least length of a cell, m.
     length: f64,
-    /// Cell of each particle.
-    cells: Vec<u32>,
-    /// Particles of cell c are `order[starts[c]..starts[c + 1]]`, ascending.
-    starts: Vec<u32>,
-    order: Vec<u32>,
+    /// The particles of each cell, ascending.
+    cells: Buckets,
+    /// Where they were, m, in the order of cells.
+    then: Vec<Lanes4>,
     spreads: Vec<Pair>,
     window: Vec<Pair>,
 }
@@ -87,10 +62,12 @@ pub(super) struct Drift {
 impl Drift {
     /// Sorts particles into cells of at least that length, m.
     pub fn sort(&mut self, positions: &[DVec3], length: f64, periodic: &Periodic) {
-        let low = positions.iter().fold(DVec3::INFINITY, |a, x| a.min(*x));
-        let high = positions.iter().fold(DVec3::NEG_INFINITY, |a, x| a.max(*x));
+        let (low, high) = bounds(positions);
         self.wraps = periodic.axes();
-        let lengths = DVec3::select(glam::BVec3::from_array(self.wraps), periodic.lengths(), high - low);
+        let period = periodic.lengths();
+        let inverse = DVec3::from_array(period.to_array().map(|l| if l > 0.0 { 1.0 / l } else { 0.0 }));
+        self.periods = [Lanes4::new(period, 0.0), Lanes4::new(inverse, 0.0)];
+        let lengths = DVec3::select(glam::BVec3::from_array(self.wraps), period, high - low);
         let lengths = lengths.max(DVec3::ZERO);
         self.length = length;
         // Not more cells than particles: drops that fly far apart have larger ones.
@@ -103,83 +80,102 @@ impl Drift {
             }
             self.length *= 2.0;
         }
-        let [nx, ny, nz] = self.counts;
-        let wraps = self.wraps;
+        let ([nx, ny, nz], wraps) = (self.counts, self.wraps);
         let origin = DVec3::select(glam::BVec3::from_array(wraps), periodic.min(), low);
         let cell = DVec3::from_array(
             [0, 1, 2].map(|a| if wraps[a] { self.counts[a] as f64 / lengths[a] } else { 1.0 / self.length }),
         );
         let key = |x: DVec3| {
-            let at = (periodic.wrap(x) - origin) * cell;
+            let x = if periodic.any() { periodic.wrap(x) } else { x };
+            let at = (x - origin) * cell;
             let [i, j, k] = [(at.x, nx), (at.y, ny), (at.z, nz)].map(|(at, n)| (at as usize).min(n - 1));
             ((k * ny + j) * nx + i) as u32
         };
-        self.cells.resize(positions.len(), 0);
-        self.cells.par_iter_mut().with_min_len(4096).zip(positions).for_each(|(cell, x)| *cell = key(*x));
-        self.starts.clear();
-        self.starts.resize(nx * ny * nz + 2, 0);
-        self.cells.iter().for_each(|&cell| self.starts[cell as usize + 2] += 1);
-        for c in 2..self.starts.len() {
-            self.starts[c] += self.starts[c - 1];
-        }
-        self.order.resize(positions.len(), 0);
-        for (row, &cell) in self.cells.iter().enumerate() {
-            let at = &mut self.starts[cell as usize + 1];
-            self.order[*at as usize] = row as u32;
-            *at += 1;
-        }
-        self.starts.pop();
-    }
-
-    /// Whether lists built at `then` miss no pair `now`; the first `fluid` particles are those of the fluid.
-    pub fn is_small(
-        &mut self,
-        (then, now): (&[DVec3], &[DVec3]),
-        fluid: usize,
-        skins: Skins,
-        periodic: &Periodic,
-    ) -> bool {
-        let Self { starts, order, spreads, .. } = self;
-        spreads.resize(starts.len() - 1, [Spread::NONE; 2]);
-        spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
-            *spread = [Spread::NONE; 2];
-            for &row in &order[starts[cell] as usize..starts[cell + 1] as usize] {
-                let row = row as usize;
-                let moved = now[row] - then[row];
-                let moved = if periodic.any() { periodic.minimal_image(moved) } else { moved };
-                let of = &mut spread[usize::from(row >= fluid)];
-                *of = of.add(moved);
+        self.cells.sort(positions, nx * ny * nz, key);
+        self.then.resize(positions.len(), Lanes4::ZERO);
+        let rows = (&mut self.then[..], &self.cells.rows[..]);
+        sum_over_blocks(rows, &|_, (then, rows): (&mut [Lanes4], &[u32])| {
+            for (then, &row) in then.iter_mut().zip(rows) {
+                *then = Lanes4::new(positions[row as usize], 0.0);
             }
         });
+    }
+
+    /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
+    /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid.
+    pub fn room(&mut self, records: &[Record], fluid: usize, skins: Skins) -> f64 {
+        if self.then.len() != records.len() {
+            return f64::NEG_INFINITY;
+        }
+        let Self { cells, then, spreads, periods, .. } = self;
+        spreads.resize(cells.count(), [Spread::NONE; 2]);
+        spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
+            let range = cells.range(cell);
+            let (rows, then) = (&cells.rows[range.clone()], &then[range]);
+            let wet = rows.partition_point(|&row| (row as usize) < fluid);
+            let part = |rows, then| run_hot(Moved { records, rows, then, periods });
+            *spread = [part(&rows[..wet], &then[..wet]), part(&rows[wet..], &then[wet..])];
+        });
         let all = spreads.iter().fold(Spread::NONE, |all, [fluid, walls]| all.with(*fluid).with(*walls));
-        if all.farthest(all) > self.length - skins.support {
-            return false;
+        let far_apart = self.length - skins.support - all.farthest(all);
+        if far_apart < 0.0 {
+            return far_apart;
         }
         (0..3).for_each(|axis| self.widen(axis));
-        self.spreads.iter().all(|[fluid, walls]| {
-            fluid.farthest(*fluid) <= skins.fluid && fluid.farthest(*walls) <= skins.walls
-        })
+        let least = |[fluid, walls]: &Pair| {
+            (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls))
+        };
+        let near = self.spreads.par_iter().with_min_len(256).map(least).reduce(|| f64::INFINITY, f64::min);
+        far_apart.min(near)
     }
 
     /// Joins each cell with those beside it along an axis.
     fn widen(&mut self, axis: usize) {
         let Self { counts, wraps, spreads, window, .. } = self;
         let stride: usize = counts[..axis].iter().product();
-        let count = counts[axis];
+        let (count, wraps) = (counts[axis], wraps[axis]);
         if count == 1 {
             return;
         }
-        window.clone_from(spreads);
-        for (cell, spread) in spreads.iter_mut().enumerate() {
+        std::mem::swap(spreads, window);
+        spreads.resize(window.len(), [Spread::NONE; 2]);
+        spreads.par_iter_mut().with_min_len(256).enumerate().for_each(|(cell, spread)| {
             let k = cell / stride % count;
             let first = cell - k * stride;
-            let before = if k > 0 { Some(k - 1) } else { wraps[axis].then_some(count - 1) };
-            let after = if k + 1 < count { Some(k + 1) } else { wraps[axis].then_some(0) };
+            let before = if k > 0 { Some(k - 1) } else { wraps.then_some(count - 1) };
+            let after = if k + 1 < count { Some(k + 1) } else { wraps.then_some(0) };
+            *spread = window[cell];
             for beside in [before, after].into_iter().flatten() {
                 let [fluid, walls] = window[first + beside * stride];
                 *spread = [spread[0].with(fluid), spread[1].with(walls)];
             }
+        });
+    }
+}
+
+/// What some particles have moved.
+struct Moved<'a> {
+    records: &'a [Record],
+    rows: &'a [u32],
+    then: &'a [Lanes4],
+    periods: &'a [Lanes4; 2],
+}
+
+impl HotLoop for Moved<'_> {
+    type Output = Spread;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> Spread {
+        let [period, inverse] = *self.periods;
+        let shift = Lanes4::splat(SHIFT);
+        let mut moved = Growing::new();
+        for (&row, then) in self.rows.iter().zip(self.then) {
+            let x = a.minus(self.records[row as usize].place, *then);
+            // To the nearest periodic image.
+            let turns = a.minus(a.times_add(x, inverse, shift), shift);
+            moved.add(a, a.minus(x, a.times(period, turns)));
         }
+        moved.end()
     }
 }
 
@@ -197,6 +193,10 @@ mod tests {
         };
         let tile = |k: usize| DVec3::new(-1.0 + 0.1 * (k % 20) as f64, 0.0, -0.3 + 0.1 * (k / 20) as f64);
         (0..fluid).map(place).chain((0..floor).map(tile)).collect()
+    }
+
+    fn records(positions: &[DVec3]) -> Vec<Record> {
+        positions.iter().map(|&x| Record { place: Lanes4::new(x, 1e-3), ..Record::default() }).collect()
     }
 
     /// Whether a pair that the lists do not hold is within the support.
@@ -227,7 +227,7 @@ mod tests {
                     .enumerate()
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
-                let is_small = drift.is_small((&then, &now), 700, SKINS, &periodic);
+                let is_small = drift.room(&records(&now), 700, SKINS) >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -243,9 +243,12 @@ mod tests {
         let mut drift = Drift::default();
         drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
-        assert!(drift.is_small((&then, &moved(DVec3::new(70.0, -3.0, 0.1))), 700, SKINS, &Periodic::NONE));
-        let mut now = moved(DVec3::ZERO);
-        now[5].x = f64::NAN;
-        assert!(!drift.is_small((&then, &now), 700, SKINS, &Periodic::NONE));
+        let room = drift.room(&records(&moved(DVec3::new(70.0, -3.0, 0.1))), 700, SKINS);
+        assert!((room - SKINS.fluid).abs() < 1e-12, "{room}");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            let mut now = moved(DVec3::ZERO);
+            now[5].x = wrong;
+            assert!(drift.room(&records(&now), 700, SKINS) < 0.0);
+        }
     }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::coupling::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::pair_force::PARTS;
+use super::record::Record;
 use crate::integrate::constrained;
 use crate::parallel::{Split, for_each_block};
 use crate::rigid::RigidBody;
@@ -22,8 +23,9 @@ pub(super) struct ParticleRows<'a> {
 pub(super) struct Particles<'a> {
     /// Length of the long step, s; zero before the first.
     pub dt: f64,
-    /// Positions now and at the start of the long step, m.
-    pub position: &'a [DVec3],
+    /// The particles as they are now.
+    pub records: &'a [Record],
+    /// Positions at the start of the long step, m.
     pub before: &'a [DVec3],
     pub mass: &'a [Mass],
     pub mobility: &'a [Mobility],
@@ -89,7 +91,7 @@ impl Particles<'_> {
     /// after the impulse.
     fn take_up(&self, i: usize, k: usize, velocity: DVec3, rows: &mut ParticleRows<'_>, sum: &mut Exchange) {
         let (total, [friction, pressure]) = self.force_now(i);
-        let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.position[i] - *before);
+        let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.records[i].position() - *before);
         let late = 0.5 * self.dt * velocity;
         sum.parts[0] += rows.friction[k].0.dot(moved) + (friction - rows.friction[k].0).dot(late);
         sum.parts[1] += rows.pressure[k].0.dot(moved) + (pressure - rows.pressure[k].0).dot(late);
@@ -112,13 +114,13 @@ pub(super) fn give_to_rigid_body(
     for (i, frozen) in rows.frozen.iter().enumerate() {
         let change = particles.force_now(i).0 - frozen.0;
         force += change;
-        torque += (particles.position[i] - body.state.center).cross(change);
+        torque += (particles.records[i].position() - body.state.center).cross(change);
     }
     let (kinetic, constraints) = body.push_late(force, torque, 0.5 * particles.dt);
     let mut sum = Exchange { kinetic, constraints, ..Exchange::default() };
     for i in 0..rows.rows() {
         let before = rows.velocity[i].0;
-        let after = body.velocity_at(particles.position[i]);
+        let after = body.velocity_at(particles.records[i].position());
         rows.velocity[i].0 = after;
         particles.take_up(i, i, 0.5 * (before + after), &mut rows, &mut sum);
     }

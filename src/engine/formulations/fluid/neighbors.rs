@@ -12,7 +12,7 @@ use crate::schedule::{Run, Step, StepError};
 pub(super) struct Neighbors {
     /// Positions that the lists of an interrupted run were built from, m.
     restored: Vec<DVec3>,
-    /// The same of this run, for the next checkpoint.
+    /// Those that the lists of this run were built from, for the next checkpoint.
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
@@ -33,30 +33,27 @@ impl FlowCloud {
 impl Run for Neighbors {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        cloud.read_positions(step.world)?;
+        let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
             system: super::systems::NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
-        if self.restored.len() == cloud.positions.len() {
+        if self.restored.len() == cloud.records.len() {
             // Sums run in the order of the lists, four neighbours at a time: the same lists give the same bits.
             cloud.build_lists(&std::mem::take(&mut self.restored)).map_err(failed)?;
         }
-        let FlowCloud { pairs, positions, fluid, .. } = &mut *cloud;
-        let stale = pairs.is_stale(positions, *fluid);
-        if stale {
-            if self.builds >= BUILDS && self.sorter.sort(&cloud, step.world) {
+        let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
+        cloud.lists_are_new = pairs.are_stale(records, *fluid, moved);
+        if cloud.lists_are_new {
+            cloud.read_positions(&mut self.built);
+            if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;
-                cloud.read_positions(step.world)?;
+                cloud.pack(step.world)?;
+                cloud.read_positions(&mut self.built);
             }
-            let positions = std::mem::take(&mut cloud.positions);
-            cloud.build_lists(&positions).map_err(failed)?;
-            cloud.positions = positions;
-            self.built.clone_from(&cloud.pairs.built);
+            cloud.build_lists(&self.built).map_err(failed)?;
             self.builds += 1;
         }
-        cloud.lists_are_new = stale;
-        cloud.pack(step.world)?;
         cloud.average_motion(step.clock.dt);
         Ok(())
     }

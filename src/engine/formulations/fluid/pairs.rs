@@ -4,11 +4,15 @@
 use glam::DVec3;
 
 use super::drift::{Drift, Skins};
+use super::record::Record;
 use super::sides::{Sides, ThinBody};
+use super::spread::Spread;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 
 /// Length of the cells in which particles move together, over the support.
 const CELL: f64 = 2.0;
+/// Room over the support that round-off cannot take away.
+const CERTAIN: f64 = 1e-6;
 
 /// Lists that hold every pair within the support as long as particles have not moved more than the skins against those around them.
 #[derive(Debug)]
@@ -25,8 +29,8 @@ pub(super) struct FlowPairs {
     pub walls: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,
-    /// Positions that the lists were built from, m; empty where they have to be built.
-    pub built: Vec<DVec3>,
+    /// How much particles that are near each other can at least still move against each other, m.
+    room: f64,
     /// Bodies whose sides do not see each other.
     thin: Vec<ThinBody>,
     /// Number of builds.
@@ -44,7 +48,7 @@ impl FlowPairs {
             fluid: NeighborList::default(),
             walls: NeighborList::default(),
             boundary: NeighborList::default(),
-            built: Vec::new(),
+            room: f64::NEG_INFINITY,
             thin,
             builds: 0,
         }
@@ -55,15 +59,19 @@ impl FlowPairs {
         &self.periodic
     }
 
-    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` positions are those of the fluid.
-    pub fn is_stale(&mut self, positions: &[DVec3], fluid: usize) -> bool {
-        let Self { drift, built, skins, periodic, .. } = self;
-        built.len() != positions.len() || !drift.is_small((built, positions), fluid, *skins, periodic)
+    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are those of the fluid. `moved` says how
+    /// far particles have moved since the question was last asked.
+    pub fn are_stale(&mut self, records: &[Record], fluid: usize, moved: Spread) -> bool {
+        // Looking is needed when the particles may have used up the room that they had when it was last looked.
+        self.room -= moved.farthest(moved);
+        if self.room <= CERTAIN * self.skins.support {
+            self.room = self.drift.room(records, fluid, self.skins);
+        }
+        self.room < 0.0
     }
 
     /// Builds the lists; the first `fluid` positions are those of the fluid.
     pub fn build(&mut self, positions: &[DVec3], fluid: usize) -> Result<(), NeighborError> {
-        self.built.clear();
         let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
         let cloud = |positions| Cloud::uniform(positions, support);
         let (wet, dry) = (cloud(&positions[..fluid]), cloud(&positions[fluid..]));
@@ -78,7 +86,8 @@ impl FlowPairs {
         }
         self.walls.turn(fluid..positions.len(), &mut self.boundary);
         self.drift.sort(positions, CELL * support, &self.periodic);
-        self.built.extend_from_slice(positions);
+        // The particles may have moved already: those of an interrupted run have.
+        self.room = f64::NEG_INFINITY;
         self.builds += 1;
         Ok(())
     }

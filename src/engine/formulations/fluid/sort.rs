@@ -3,6 +3,8 @@
 //! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId) tells who is who. A body some of whose
 //! particles a selection holds by their rows keeps its order.
 
+use glam::DVec3;
+
 use super::cloud::{FlowCloud, Group};
 use crate::shapes::MortonSort;
 use crate::world::World;
@@ -18,12 +20,12 @@ pub(super) struct Sorter {
 }
 
 impl Sorter {
-    /// Sorts the fluids of the cloud, and says whether there was one to sort. The positions of the cloud are then those before.
-    pub fn sort(&mut self, cloud: &FlowCloud, world: &World) -> bool {
+    /// Sorts the fluids of the cloud, that are at these positions, and says whether there was one to sort. The cloud is then as before.
+    pub fn sort(&mut self, cloud: &FlowCloud, positions: &[DVec3], world: &World) -> bool {
         let free = |group: &&Group| group.fluid().is_some() && !group.held;
         for group in cloud.groups.iter().filter(free) {
             let cell = world.body(group.body).spacing;
-            let order = self.curve.order(&cloud.positions[group.cloud.clone()], cell);
+            let order = self.curve.order(&positions[group.cloud.clone()], cell);
             world.phase(group.phase).permute(group.rows.clone(), order, &mut self.scratch);
         }
         cloud.groups.iter().any(|group| free(&group))

@@ -22,7 +22,7 @@ type Rows<'a> = (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity
 impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        self.beside.resize(cloud.positions.len() - cloud.fluid, Beside::default());
+        self.beside.resize(cloud.records.len() - cloud.fluid, Beside::default());
         let mut near = std::mem::take(&mut cloud.near_boundary);
         WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
         cloud.near_boundary = near;

@@ -1,0 +1,170 @@
+//! Cells along one axis of a grid.
+
+use std::ops::Range;
+
+use super::periodic::SHIFT;
+
+/// Cells along one axis.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Axis {
+    origin: f64,
+    /// Cells per metre.
+    inverse_cell: f64,
+    /// 1 / length on a periodic axis, else zero.
+    inverse_period: f64,
+    /// Bound of the round-off in distances, m.
+    round_off: f64,
+    /// Number of cells, and of buckets that they are folded into.
+    pub cells: i64,
+    pub buckets: i64,
+}
+
+impl Axis {
+    /// Bound of the round-off in distances between coordinates from `min` to `max`, m.
+    pub fn round_off(min: f64, max: f64, radius: f64, period: Option<(f64, f64)>) -> f64 {
+        let reach = match period {
+            Some((start, length)) => (min - start).abs().max((max - start).abs()) + length,
+            None => max - min + radius,
+        };
+        8.0 * f64::EPSILON * reach
+    }
+
+    /// Cells of half of `radius`, of somewhat more on a periodic axis: between two coordinates, or in a period of that start and length, m.
+    pub fn new((min, max): (f64, f64), radius: f64, period: Option<(f64, f64)>, round_off: f64) -> Self {
+        let (origin, length) = period.unwrap_or((min, max - min));
+        // Rounding of the cell number must not put two particles within the radius farther apart than cells are looked at.
+        let cell = 0.5 * (radius * (1.0 + 1e-9) + round_off);
+        let (cells, inverse_cell, inverse_period) = if period.is_some() {
+            let cells = (length / cell).floor().max(1.0);
+            (cells as i64, cells / length, 1.0 / length)
+        } else {
+            ((length / cell).floor() as i64 + 1, 1.0 / cell, 0.0)
+        };
+        Self { origin, inverse_cell, inverse_period, round_off, cells, buckets: 1 }
+    }
+
+    /// Whether cells are buckets, side by side.
+    pub fn is_plain(&self) -> bool {
+        self.cells == self.buckets && self.inverse_period == 0.0
+    }
+
+    /// A coordinate in cells, on an axis that is not periodic.
+    #[inline(always)]
+    pub fn place(&self, x: f64) -> f64 {
+        (x - self.origin) * self.inverse_cell
+    }
+
+    /// A length in cells, round-off included.
+    #[inline(always)]
+    pub fn length(&self, radius: f64) -> f64 {
+        (radius * (1.0 + 1e-9) + self.round_off) * self.inverse_cell
+    }
+
+    /// Bucket of a coordinate: that of the last cell for those beyond.
+    #[inline(always)]
+    pub fn bucket_of(&self, x: f64) -> i64 {
+        let cell = self.cell(x).clamp(0, self.cells - 1);
+        if self.cells == self.buckets { cell } else { cell % self.buckets }
+    }
+
+    /// Cell of a coordinate; outside 0..cells for one outside the box of a bounded axis.
+    #[inline(always)]
+    fn cell(&self, x: f64) -> i64 {
+        if self.inverse_period > 0.0 {
+            let turns = (x - self.origin) * self.inverse_period;
+            (((turns - turns.floor()) * self.cells as f64) as i64).min(self.cells - 1)
+        } else {
+            whole(self.place(x))
+        }
+    }
+
+    /// The cells within a length, in cells, of a place; for axes that are not periodic.
+    #[inline(always)]
+    pub fn span(&self, place: f64, reach: f64) -> Range<u32> {
+        let last = (self.cells - 1) as f64;
+        let (first, end) = (place - reach, place + reach);
+        // In this way round all cells are within what is no number.
+        let first = if first > 0.0 { first } else { 0.0 };
+        let first = if first < last + 1.0 { first } else { last + 1.0 };
+        let end = if end < -1.0 { -1.0 } else { end };
+        let end = if end < last + 0.25 { end } else { last + 0.25 };
+        rounded(first - 0.5)..rounded(end + 0.5)
+    }
+
+    /// Buckets of the cells within the radius, m, of the cell of a coordinate, ascending, each once.
+    pub fn around(&self, x: f64, radius: f64, found: &mut Vec<i64>) {
+        found.clear();
+        let (cell, reach) = (self.cell(x), (self.length(radius) - 1e-9).ceil() as i64);
+        for near in cell.saturating_sub(reach)..=cell.saturating_add(reach) {
+            let near = match near {
+                inside if (0..self.cells).contains(&inside) => inside,
+                _ if self.inverse_period == 0.0 => continue,
+                outside => outside.rem_euclid(self.cells),
+            };
+            found.push(near % self.buckets);
+        }
+        found.sort_unstable();
+        found.dedup();
+    }
+}
+
+/// The nearest of whole numbers from zero to 2^31. Halves may go to either side: what that takes away is beyond the reach, which is longer than
+/// asked for.
+#[inline(always)]
+fn rounded(x: f64) -> u32 {
+    (x + SHIFT).to_bits() as u32
+}
+
+/// Rounded down, without a call of the library.
+#[inline(always)]
+fn whole(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from(x < whole as f64)
+}
+
+/// Numbers of buckets: the cells themselves, or fewer so that their product stays in proportion to the particles.
+pub(super) fn fold_into_buckets(axes: &mut [Axis; 3], particles: usize) {
+    let mut room = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
+    let mut order = [0, 1, 2];
+    order.sort_by_key(|&a| axes[a].cells);
+    let mut folded = [1; 3];
+    for (done, &a) in order.iter().enumerate() {
+        let share = (room as f64).powf(1.0 / (3 - done) as f64) as i64;
+        let mut buckets = axes[a].cells.min(share.max(1));
+        if buckets < axes[a].cells {
+            // Without a common divisor, a diagonal line of cells meets every bucket before it meets one again.
+            while folded.iter().any(|&other| greatest_common_divisor(other, buckets) > 1) {
+                buckets -= 1;
+            }
+            folded[done] = buckets;
+        }
+        axes[a].buckets = buckets;
+        room /= buckets;
+    }
+}
+
+fn greatest_common_divisor(a: i64, b: i64) -> i64 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, fold_into_buckets};
+
+    #[test]
+    fn folded_diagonals_meet_every_bucket() {
+        for particles in (0..100_000).step_by(37) {
+            let mut axes = [Axis { cells: 1 << 40, ..Axis::default() }; 3];
+            fold_into_buckets(&mut axes, particles);
+            let buckets = axes.map(|axis| axis.buckets);
+            let product: i64 = buckets.iter().product();
+            // The diagonal returns to its first bucket after the least common multiple: no number up to the largest
+            // divides two of them.
+            for divisor in 2..=buckets[0].max(buckets[1]).max(buckets[2]) {
+                assert!(buckets.iter().filter(|&b| b % divisor == 0).count() <= 1, "{buckets:?}");
+            }
+            let room = 4 * particles as i64 + 64;
+            assert!(product <= room && product > room / 3, "{buckets:?} for {particles}");
+        }
+    }
+}
