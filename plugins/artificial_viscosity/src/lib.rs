@@ -84,12 +84,14 @@ impl PairTerm for Friction {
         let approach = pair.v_ij.dot(pair.x_ij);
         let square = pair.distance.squared();
         let per_length = h / (square + 0.01 * h * h);
-        let push = approach.min(0.0) * per_length;
-        let mu = if self.parting { approach * per_length } else { push };
+        let mu = approach * per_length;
+        let push = mu.min(0.0);
+        let mu = if self.parting { mu } else { push };
         let slope = pair.volume_j * pair.slope_per_length();
         let linear = self.alpha * self.sound_speed;
         let pressure = mu * linear - self.beta * push * push;
-        rates.force += pair.x_ij * (slope * pressure * (pair.volume_i * self.density));
+        let force = slope * pressure * (pair.volume_i * self.density);
+        rates.force = pair.x_ij.mul_add(force, rates.force);
         // The force per mass and speed of approach: d(f/m)/d(v_ij) along the bond.
         let damping = slope * (linear - 2.0 * self.beta * push) * (square * per_length);
         rates.damping += if self.parting { damping } else { approach.if_below(0.0, damping) };

@@ -96,7 +96,7 @@ impl PairTerm for Molteni {
         rates: &mut Rates<A>,
     ) {
         let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
-        rates.density += rate * (rho_j - rho_i);
+        rates.density = rate.mul_add(rho_j - rho_i, rates.density);
         rates.damping += LIMIT * rate;
     }
 }
@@ -122,7 +122,7 @@ impl PairTerm for Antuono {
         rates: &mut Rates<A>,
     ) {
         let rate = self.strength * pair.smoothing_length() * pair.volume_j * pair.weight;
-        rates.density += rate * (rho_j - rho_i - 0.5 * (g_i + g_j).dot(pair.x_ij));
+        rates.density = rate.mul_add(rho_j - rho_i - 0.5 * (g_i + g_j).dot(pair.x_ij), rates.density);
         rates.damping += LIMIT * rate;
     }
 }

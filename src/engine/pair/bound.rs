@@ -1,16 +1,35 @@
 //! Terms bound to the columns of a phase for the length of a pass: a chain on the stack, without allocation.
 
+use glam::DVec3;
+
+use super::batch::{MAX_ROWS, PairBatch};
+use super::of_phase::Fastest;
 use super::read::ReadSet;
-use super::row::PairRow;
-use super::term::{PairReads, PairTerm, Rates, RowRates};
+use super::term::{PairReads, PairTerm, Rates};
 use crate::parallel::{Arithmetic, HotLoop, run_hot_on};
 use crate::schedule::{Access, Mode};
-use crate::world::{Column, MissingColumn, PhaseView, Velocity};
+use crate::world::{Column, DensityRate, Force, MissingColumn, PhaseView, Velocity};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
-    /// The contributions of all neighbours of row i.
-    fn row(&self, i: usize, row: &PairRow, plane: bool) -> RowRates;
+    /// Adds the contributions of all neighbours of the rows of a batch, the first of which is row `first` of the phase.
+    fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>);
+}
+
+/// What a term writes for the rows of a batch.
+pub(super) struct RowsOut<'a> {
+    /// Force of this term on each particle, among those of all terms.
+    pub by_term: &'a mut [DVec3],
+    /// Which of these is that of this term.
+    pub term: usize,
+    /// Number of terms.
+    pub terms: usize,
+    /// Force of all terms.
+    pub total: &'a mut [Force],
+    /// Density rates of all terms; empty where the phase has none.
+    pub density: &'a mut [DensityRate],
+    /// Rates that limit the step.
+    pub fastest: &'a mut [Fastest; MAX_ROWS],
 }
 
 struct Bound<'a, T: PairTerm> {
@@ -20,40 +39,54 @@ struct Bound<'a, T: PairTerm> {
 }
 
 impl<T: PairTerm> RowTerm for Bound<'_, T> {
-    fn row(&self, i: usize, row: &PairRow, plane: bool) -> RowRates {
-        run_hot_on(plane, Row { bound: self, i, row })
+    fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>) {
+        run_hot_on(plane, Rows { bound: self, first, batch, out });
     }
 }
 
-/// The neighbours of one particle, with the pair function inlined.
-struct Row<'r, 'a, T: PairTerm> {
+/// The neighbours of some particles, with the pair function inlined.
+struct Rows<'r, 'a, T: PairTerm> {
     bound: &'r Bound<'a, T>,
-    i: usize,
-    row: &'r PairRow,
+    first: usize,
+    batch: &'r PairBatch,
+    out: RowsOut<'r>,
 }
 
-impl<T: PairTerm> HotLoop for Row<'_, '_, T> {
-    type Output = RowRates;
+impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
+    type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> RowRates {
-        if self.row.is_plain() { self.sum::<A, true>(a) } else { self.sum::<A, false>(a) }
+    fn run<A: Arithmetic>(self, a: A) {
+        if self.batch.is_plain() { self.add::<A, true>(a) } else { self.add::<A, false>(a) }
     }
 }
 
-impl<T: PairTerm> Row<'_, '_, T> {
-    /// The sum over all neighbours; `PLAIN` where none is an image and x_ij is all there is.
+impl<T: PairTerm> Rows<'_, '_, T> {
+    /// Adds up the neighbours; `PLAIN` where none is an image and x_ij is all there is.
     #[inline(always)]
-    fn sum<A: Arithmetic, const PLAIN: bool>(&self, a: A) -> RowRates {
+    fn add<A: Arithmetic, const PLAIN: bool>(self, a: A) {
         let Bound { term, of_i, of_j } = *self.bound;
-        let i = T::ReadI::four(a, of_i, [self.i as u32; 4], None);
-        let mut rates = Rates::zero(a);
-        for k in 0..self.row.fours() {
-            let (rows, signs) = self.row.rows::<PLAIN>(k);
-            let j = T::ReadJ::four(a, of_j, rows, signs);
-            term.pair(&self.row.pair::<A, PLAIN>(a, k), i, j, &mut rates);
+        let RowsOut { by_term, term: own, terms, total, density, fastest } = self.out;
+        for r in 0..self.batch.rows() {
+            let row = self.batch.row::<PLAIN>(r);
+            let i = T::ReadI::four(a, of_i, [(self.first + r) as u32; 4], None);
+            let mut rates = Rates::zero(a);
+            for k in 0..row.fours() {
+                let (rows, signs) = row.rows::<PLAIN>(k);
+                let j = T::ReadJ::four(a, of_j, rows, signs);
+                term.pair(&row.pair::<A, PLAIN>(a, k), i, j, &mut rates);
+            }
+            let rates = rates.sum();
+            by_term[terms * r + own] = rates.force;
+            total[r].0 += rates.force;
+            if T::CHANGES_DENSITY
+                && let Some(density) = density.get_mut(r)
+            {
+                density.0 += rates.density;
+            }
+            fastest[r].damping += rates.damping;
+            fastest[r].stiffness += rates.stiffness;
         }
-        rates.sum()
     }
 }
 
@@ -65,13 +98,21 @@ pub(super) struct Chain<'c> {
 }
 
 impl Chain<'_> {
-    /// Calls every term once with the row; `rates` has one entry a term.
-    pub fn row(&self, i: usize, row: &PairRow, plane: bool, rates: &mut [RowRates]) {
-        let Some((own, rest)) = rates.split_last_mut() else { return };
+    /// Runs every term, the last of which is `out.term`, on the batch.
+    pub fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>) {
+        let RowsOut { by_term, term, terms, total, density, fastest } = out;
         if let Some(before) = self.before {
-            before.row(i, row, plane, rest);
+            let out = RowsOut {
+                by_term: &mut *by_term,
+                term: term - 1,
+                terms,
+                total: &mut *total,
+                density: &mut *density,
+                fastest: &mut *fastest,
+            };
+            before.rows(first, batch, plane, out);
         }
-        *own = self.term.row(i, row, plane);
+        self.term.rows(first, batch, plane, RowsOut { by_term, term, terms, total, density, fastest });
     }
 }
 

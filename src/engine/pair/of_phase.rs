@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 
-use super::bound::{Chain, ErasedTerm, bind_all};
-use super::row::PairRow;
-use super::term::{BodyPairTerm, PairReads, RowRates};
+use super::batch::{MAX_ROWS, PairBatch};
+use super::bound::{Chain, ErasedTerm, RowsOut, bind_all};
+use super::term::{BodyPairTerm, PairReads};
 use super::work;
 use crate::parallel::{BlockSum, Split};
 use crate::plugin::{SetupError, SimBuilder};
@@ -141,30 +141,33 @@ pub(crate) struct BoundTerms<'a> {
 }
 
 impl BoundTerms<'_> {
-    /// Runs all terms on the neighbours of particle `i`, its row in the phase, and writes what they make into row `k` of a block.
-    pub fn run(&self, i: usize, row: &PairRow, k: usize, block: &mut TermRows<'_>) -> Fastest {
-        let mut rates = [RowRates::default(); MAX_TERMS];
-        let rates = &mut rates[..block.terms];
-        self.chain.row(i, row, self.plane, rates);
-        if let Some(density) = block.density.get_mut(k) {
-            density.0 = rates.iter().map(|rates| rates.density).sum();
-        }
-        let mut sum = Fastest::default();
-        for (rates, force) in rates.iter().zip(&mut block.by_term[k * block.terms..]) {
-            *force = rates.force;
-            block.total[k].0 += rates.force;
-            sum.damping += rates.damping;
-            sum.stiffness += rates.stiffness;
-        }
-        sum
+    /// Runs all terms on the rows of a batch, of particle `first` of the phase and those after it, and writes what they make into
+    /// a block from row `k` on. Gives the largest rates.
+    pub fn run(&self, first: usize, batch: &PairBatch, k: usize, block: &mut TermRows<'_>) -> Fastest {
+        let rows = batch.rows();
+        let density = if block.density.is_empty() { &mut [] } else { &mut block.density[k..k + rows] };
+        density.fill(DensityRate(0.0));
+        let mut fastest = [Fastest::default(); MAX_ROWS];
+        let out = RowsOut {
+            by_term: &mut block.by_term[k * block.terms..(k + rows) * block.terms],
+            term: block.terms - 1,
+            terms: block.terms,
+            total: &mut block.total[k..k + rows],
+            density,
+            fastest: &mut fastest,
+        };
+        self.chain.rows(first, batch, self.plane, out);
+        let mut largest = Fastest::default();
+        fastest.iter().for_each(|of_row| largest.add(of_row));
+        largest
     }
 }
 
 /// The largest rates of a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Fastest {
-    damping: f64,
-    stiffness: f64,
+    pub(super) damping: f64,
+    pub(super) stiffness: f64,
 }
 
 impl Fastest {

@@ -1,9 +1,10 @@
 //! The pass over pairs that runs the pair terms of a formulation whose own passes do not.
 
 use std::cell::RefCell;
+use std::ops::Range;
 
+use super::batch::PairBatch;
 use super::of_phase::{BoundTerms, Fastest, PhaseTerms, TermRows};
-use super::row::PairRow;
 use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
@@ -11,19 +12,20 @@ use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, PhaseId};
 
 thread_local! {
-    /// The geometry of one row; kept, so that a step does not allocate.
-    static ROW: RefCell<PairRow> = RefCell::default();
+    /// The geometry of some rows; kept, so that a step does not allocate.
+    static BATCH: RefCell<PairBatch> = RefCell::default();
 }
 
-/// Lends the row of this thread.
-pub(crate) fn with_row<R>(f: impl FnOnce(&mut PairRow) -> R) -> R {
-    ROW.with_borrow_mut(f)
+/// Lends the batch of this thread.
+pub(crate) fn with_batch<R>(f: impl FnOnce(&mut PairBatch) -> R) -> R {
+    BATCH.with_borrow_mut(f)
 }
 
 /// The pairs of one body.
 pub trait PairRows: Sync {
-    /// Puts the neighbours of particle i into `row`, in the order of its neighbour list.
-    fn row(&self, i: usize, row: &mut PairRow);
+    /// Begins a batch and puts in the neighbours of the first of these particles, and of those after it until it is full, each
+    /// in the order of its neighbour list.
+    fn fill(&self, rows: Range<usize>, batch: &mut PairBatch);
 }
 
 /// Where a formulation keeps its pairs.
@@ -89,10 +91,13 @@ impl<S: PairSource> Run for PairPass<S> {
 
 fn run_block(terms: &BoundTerms<'_>, pairs: &dyn PairRows, first: usize, mut block: TermRows<'_>) -> Fastest {
     let mut fastest = Fastest::default();
-    with_row(|row| {
-        for k in 0..block.total.len() {
-            pairs.row(first + k, row);
-            fastest.add(&terms.run(first + k, row, k, &mut block));
+    let rows = block.total.len();
+    with_batch(|batch| {
+        let mut done = 0;
+        while done < rows {
+            pairs.fill(first + done..first + rows, batch);
+            fastest.add(&terms.run(first + done, batch, done, &mut block));
+            done += batch.rows();
         }
     });
     fastest

@@ -14,6 +14,7 @@ use super::record::{Periods, Record};
 use super::sides::ThinBody;
 use super::start::{StartPressure, start};
 use super::systems;
+use super::viscosities::Viscosities;
 use super::wall::WallBody;
 use crate::formulations::total_lagrangian::TotalLagrangian;
 use crate::plugin::{BodyPlan, Formulation, SetupError, SimBuilder};
@@ -87,6 +88,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         groups: groups.clone(),
         fluid,
         kernel: FluidKernel::new(support, dimension),
+        viscosities: Viscosities::new(&groups),
         plane,
         periods: Periods::new(&periodic),
         before: Vec::new(),

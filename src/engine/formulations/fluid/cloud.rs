@@ -8,6 +8,7 @@ use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
+use super::viscosities::Viscosities;
 use crate::materials::EquationOfState;
 use crate::world::{BodyId, PhaseId};
 
@@ -109,6 +110,7 @@ pub struct FlowCloud {
     pub fluid: usize,
     /// Kernel.
     pub kernel: FluidKernel,
+    pub(super) viscosities: Viscosities,
     pub(super) plane: bool,
     pub(super) periods: Periods,
     /// Positions of what bounds the flow at the start of the step, of bodies that take short steps alone.

@@ -79,7 +79,13 @@ impl FluidKernel {
         let limit = self.support * self.support;
         let square = a.scale_add(limit, fill, square);
         let volume = a.where_below(square, Lanes4::splat(limit), volume);
-        (a.larger(square, Lanes4::splat(NO_LENGTH * limit)), volume)
+        (a.larger(square, Lanes4::splat(self.least_square())), volume)
+    }
+
+    /// Square of the length of pairs in one place, m2: one may divide by it.
+    #[inline(always)]
+    pub(super) fn least_square(&self) -> f64 {
+        NO_LENGTH * self.support * self.support
     }
 
     /// Pair weight of one neighbour.

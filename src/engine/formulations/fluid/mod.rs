@@ -49,6 +49,7 @@ mod systems;
 mod tests;
 #[cfg(test)]
 mod thin_tests;
+mod viscosities;
 mod wall;
 mod wall_pressure;
 mod wall_state;

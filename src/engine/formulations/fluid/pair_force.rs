@@ -9,11 +9,10 @@
 
 use glam::DVec3;
 
-use super::batch::Batch;
-use super::cloud::{FlowCloud, Group, Role};
-use super::pair_sums::Pairs;
+use super::cloud::{FlowCloud, Group};
+use super::pair_sums::{Between, Forces, Pairs};
 use super::record::{Own, sums};
-use crate::pair::{BoundTerms, Fastest, PairRow, PhaseTerms, TermRows, with_row};
+use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
 use crate::parallel::{Arithmetic, BlockSum, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
@@ -69,8 +68,8 @@ impl PairForce<'_> {
             let rows = ForceRows { written, parts: &mut *parts };
             for_each_block(rows, sums, &|first, rows| {
                 let mut fastest = Fastest::default();
-                with_row(|row| {
-                    let terms = Some(Terms { terms, row, fastest: &mut fastest });
+                with_batch(|batch| {
+                    let terms = Some(Terms { terms, batch, fastest: &mut fastest });
                     run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms });
                 });
                 fastest
@@ -88,10 +87,10 @@ struct Rows<'a> {
     terms: Option<Terms<'a>>,
 }
 
-/// The pair terms of the group, and the row that they are given.
+/// The pair terms of the group, and the pairs that they are given.
 struct Terms<'a> {
     terms: &'a BoundTerms<'a>,
-    row: &'a mut PairRow,
+    batch: &'a mut PairBatch,
     fastest: &'a mut Fastest,
 }
 
@@ -99,22 +98,6 @@ impl PlaneOrSolid for Rows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
         if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
-    }
-}
-
-/// Twice the viscosity between two groups, Pa s.
-#[inline(always)]
-fn pair_viscosity(a: &Role, b: &Role) -> f64 {
-    match (a, b) {
-        (Role::Fluid(a), Role::Fluid(b)) => 2.0 * a.viscosity_with(b),
-        (Role::Fluid(fluid), Role::Boundary(surface)) | (Role::Boundary(surface), Role::Fluid(fluid)) => {
-            if surface.no_slip {
-                2.0 * fluid.viscosity
-            } else {
-                0.0
-            }
-        }
-        (Role::Boundary(_), Role::Boundary(_)) => 0.0,
     }
 }
 
@@ -126,20 +109,28 @@ impl Rows<'_> {
         let ForceRows { mut written, parts } = self.rows;
         let mut terms = self.terms;
         let own_is_fluid = group.fluid().is_some();
-        let mut batch = Batch::EMPTY;
-        for k in 0..written.total.len() {
-            let i = group.cloud.start + self.first + k;
+        let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
+        let first = group.cloud.start + self.first;
+        let count = written.total.len();
+        // Rows whose terms have not been run begin here.
+        let mut open = 0;
+        for k in 0..count {
+            let i = first + k;
             let own = &cloud.records[i];
             let lanes = Own::<D>::new(own);
-            if let Some(Terms { row, .. }) = &mut terms {
-                row.volume_i = own.volume();
-                row.clear();
+            if let Some(Terms { batch, .. }) = &mut terms
+                && k == open
+            {
+                batch.begin(Extras::default(), kernel.support);
             }
+            let mut is_in_batch = false;
             let mut rest =
                 if own_is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
-            let (mut pressure, mut viscous, mut wall) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-            for other in &cloud.groups {
+            let mut forces = Forces::<D>::ZERO;
+            // By number: zipped iterators would be called.
+            for n in 0..groups.len() {
                 let Some(&last) = rest.last() else { break };
+                let (other, viscosity) = (&groups[n], viscosities[n]);
                 let end = other.cloud.end as u32;
                 let count = if last < end { rest.len() } else { rest.partition_point(|&j| j < end) };
                 let (row, tail) = rest.split_at(count);
@@ -147,41 +138,41 @@ impl Rows<'_> {
                 if row.is_empty() {
                     continue;
                 }
-                let viscosity = pair_viscosity(&group.role, &other.role);
                 let pairs = Pairs { cloud, kernel, i, own: lanes, row, viscosity };
-                let sum = match &mut terms {
-                    Some(terms) if other.cloud.start == group.cloud.start && own.volume() > 0.0 => {
-                        let room = terms.row.room(row.len(), false, false);
-                        let before = (group.cloud.start - group.rows.start) as u32;
-                        let with_kernel = terms.terms.reads.kernel;
-                        pairs.sum_and_keep::<A, P>(a, room, before, &mut batch, with_kernel)
-                    }
-                    _ if own_is_fluid && other.fluid().is_some() => pairs.sum::<A, P, true>(a),
-                    _ => pairs.sum::<A, P, false>(a),
-                };
-                let of_j = sums(a, &sum.pressure);
-                match (own_is_fluid, other.fluid().is_some()) {
-                    (true, true) => pressure += of_j,
-                    (true, false) => {
-                        pressure += sums(a, &sum.gradient) * own.pressure();
-                        wall += of_j;
+                match &mut terms {
+                    Some(Terms { terms, batch, .. })
+                        if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>
+                    {
+                        is_in_batch = true;
+                        let room = batch.add_row(own.volume(), row.len());
+                        pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
                     }
                     _ => {
-                        pressure += of_j;
-                        wall += sums(a, &sum.gradient) * own.pressure();
+                        let between = match (own_is_fluid, other.fluid().is_some()) {
+                            (true, true) => Between::Fluids,
+                            (true, false) => Between::FluidAndBoundary,
+                            _ => Between::BoundaryAndFluid,
+                        };
+                        pairs.add::<A, P>(a, between, &mut forces);
                     }
                 }
-                viscous += sums(a, &sum.viscous);
             }
+            let Forces { pressure, viscous, wall } = &forces;
+            let (pressure, viscous, wall) = (sums(a, pressure), sums(a, viscous), sums(a, wall));
             let volume = own.volume();
             let force = (viscous - pressure - wall) * volume;
             let total = &mut written.total[k];
             total.0 = if adds { total.0 + force } else { force };
             parts[PARTS * k] = viscous * volume;
             parts[PARTS * k + 1] = wall * -volume;
-            if let Some(Terms { terms, row, fastest }) = &mut terms {
-                let before = group.cloud.start - group.rows.start;
-                fastest.add(&terms.run(i - before, row, k, &mut written));
+            if let Some(Terms { terms, batch, fastest }) = &mut terms {
+                if !is_in_batch {
+                    batch.add_row(volume, 0);
+                }
+                if batch.is_full() || k + 1 == count {
+                    fastest.add(&terms.run(first + open, batch, open, &mut written));
+                    open = k + 1;
+                }
             }
         }
     }

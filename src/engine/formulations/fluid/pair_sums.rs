@@ -1,9 +1,8 @@
-//! Sums over the pairs of one particle with the particles of one body: what the forces of the second pass are made of.
+//! Sums over the pairs of one particle with the particles of one body: the forces of the second pass.
 
-use super::batch::{BATCH, Batch};
 use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
-use super::record::{FILLS, Four, Own, as_rows, dot, filled_up};
+use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
 use crate::pair::{FourPairs, Room};
 use crate::parallel::{Arithmetic, Lanes4};
 
@@ -18,60 +17,30 @@ pub(super) struct Pairs<'a, const D: usize> {
     pub viscosity: f64,
 }
 
-/// Sums over the neighbours.
-pub(super) struct Sums<const D: usize> {
-    /// sum V_j w x_ij; zero between fluids.
-    pub gradient: [Lanes4; D],
-    /// sum V_j p_j w x_ij; between fluids sum V_j (p_i + p_j) w x_ij.
+/// What the neighbours of a particle do to it, per volume of it and in the lanes of the fours.
+pub(super) struct Forces<const D: usize> {
+    /// Of the pressures of fluids.
     pub pressure: [Lanes4; D],
-    /// sum V_j 2 mu w v_ij.
+    /// Of friction.
     pub viscous: [Lanes4; D],
+    /// Of the pressures of boundaries.
+    pub wall: [Lanes4; D],
 }
 
-impl<const D: usize> Sums<D> {
-    const ZERO: Self =
-        Self { gradient: [Lanes4::ZERO; D], pressure: [Lanes4::ZERO; D], viscous: [Lanes4::ZERO; D] };
+impl<const D: usize> Forces<D> {
+    pub const ZERO: Self =
+        Self { pressure: [Lanes4::ZERO; D], viscous: [Lanes4::ZERO; D], wall: [Lanes4::ZERO; D] };
 
-    #[inline(always)]
-    fn add<A: Arithmetic, const FLUIDS: bool, const VISCOUS: bool>(
-        &mut self,
-        a: A,
-        four: &Four<D>,
-        weight: Lanes4,
-        Pairs { own, viscosity, .. }: &Pairs<'_, D>,
-    ) {
-        let mut pressure = four.pressure;
-        if FLUIDS {
-            pressure = a.plus(pressure, own.pressure);
-        }
-        let pressure = a.times(weight, pressure);
-        for axis in 0..D {
-            self.pressure[axis] = a.times_add(pressure, four.x[axis], self.pressure[axis]);
-            if !FLUIDS {
-                self.gradient[axis] = a.times_add(weight, four.x[axis], self.gradient[axis]);
-            }
-        }
-        if VISCOUS {
-            let friction = a.scale(*viscosity, weight);
-            for axis in 0..D {
-                self.viscous[axis] = a.times_add(friction, four.v[axis], self.viscous[axis]);
-            }
-        }
-    }
-}
-
-impl<const D: usize> Sums<D> {
-    /// Adds four neighbours in fluids.
+    /// Adds four neighbours: V_j (p_i + p_j) w x_ij and V_j 2 mu w v_ij between fluids.
     #[inline(always)]
     fn add_fluid<A: Arithmetic, const VISCOUS: bool>(
         &mut self,
         a: A,
-        FourPairs { current, velocity, weight, volume_j, .. }: &FourPairs,
-        pressure: Lanes4,
+        FourPairs { current, velocity, weight, volume_j, kept: pressure, .. }: &FourPairs,
         viscosity: f64,
     ) {
         let weight = a.times(*weight, *volume_j);
-        let pressure = a.times(weight, pressure);
+        let pressure = a.times(weight, *pressure);
         for axis in 0..D {
             self.pressure[axis] = a.times_add(pressure, current.vector[axis], self.pressure[axis]);
         }
@@ -84,102 +53,137 @@ impl<const D: usize> Sums<D> {
     }
 }
 
+/// Whose pressures act between a particle and its neighbours.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Between {
+    /// Both are fluids.
+    Fluids,
+    /// The neighbours bound the fluid.
+    FluidAndBoundary,
+    /// The particle bounds the fluid.
+    BoundaryAndFluid,
+}
+
 impl<const D: usize> Pairs<'_, D> {
-    /// The sums.
+    /// Adds all neighbours.
     #[inline(always)]
-    pub fn sum<A: Arithmetic, const P: bool, const FLUIDS: bool>(&self, a: A) -> Sums<D> {
+    pub fn add<A: Arithmetic, const P: bool>(&self, a: A, between: Between, forces: &mut Forces<D>) {
         if self.viscosity > 0.0 {
-            self.sum_all::<A, P, FLUIDS, true>(a)
+            self.add_all::<A, P, true>(a, between, forces);
         } else {
-            self.sum_all::<A, P, FLUIDS, false>(a)
+            self.add_all::<A, P, false>(a, between, forces);
         }
     }
 
     #[inline(always)]
-    fn sum_all<A: Arithmetic, const P: bool, const FLUIDS: bool, const VISCOUS: bool>(
+    fn add_all<A: Arithmetic, const P: bool, const VISCOUS: bool>(
         &self,
         a: A,
-    ) -> Sums<D> {
-        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
-        let mut sum = Sums::ZERO;
-        for chunk in self.row.chunks(4) {
-            let rows = as_rows(filled_up(chunk, self.i));
-            let four = Four::<D>::gather::<A, P>(a, records, own, rows, periods);
+        between: Between,
+        Forces { pressure, viscous, wall }: &mut Forces<D>,
+    ) {
+        // sum V_j w x_ij, and the same with p_j.
+        let (mut gradient, mut of_j) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
+        let (fours, rest) = self.row.as_chunks();
+        for k in 0..fours.len() + usize::from(!rest.is_empty()) {
+            let rows = if k < fours.len() { fours[k] } else { filled_up(rest, self.i) };
+            let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
+            let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
             let distance = a.sqrt(dot(a, &four.x, &four.x));
             let weight = a.times(kernel.weights(a, distance), four.volume);
-            sum.add::<A, FLUIDS, VISCOUS>(a, &four, weight, self);
+            let weight_j = a.times(weight, four.pressure);
+            let friction = a.scale(self.viscosity, weight);
+            for axis in 0..D {
+                gradient[axis] = a.times_add(weight, four.x[axis], gradient[axis]);
+                of_j[axis] = a.times_add(weight_j, four.x[axis], of_j[axis]);
+                if VISCOUS {
+                    viscous[axis] = a.times_add(friction, four.v[axis], viscous[axis]);
+                }
+            }
         }
-        sum
+        for axis in 0..D {
+            let of_i = a.times(gradient[axis], self.own.pressure);
+            let (of_fluid, of_wall) = match between {
+                Between::Fluids => (a.plus(of_i, of_j[axis]), Lanes4::ZERO),
+                Between::FluidAndBoundary => (of_i, of_j[axis]),
+                Between::BoundaryAndFluid => (of_j[axis], of_i),
+            };
+            pressure[axis] = a.plus(pressure[axis], of_fluid);
+            wall[axis] = a.plus(wall[axis], of_wall);
+        }
     }
 
-    /// The same between fluids, with the geometry of the pairs put into `room`, rows counted from `before` on.
+    /// The same between fluids, and puts the geometry of the pairs into `room`.
+    ///
+    /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor looks ahead two or three fours.
+    /// Taken apart, one gathers and one takes roots, each with short chains of instructions that wait for each other.
     #[inline(always)]
-    pub fn sum_and_keep<A: Arithmetic, const P: bool>(
+    pub fn add_and_keep<A: Arithmetic, const P: bool>(
         &self,
         a: A,
         Room { pairs, rows, .. }: Room<'_>,
-        before: u32,
-        batch: &mut Batch,
         with_kernel: bool,
-    ) -> Sums<D> {
-        let mut sum = Sums::ZERO;
+        forces: &mut Forces<D>,
+    ) {
         let (fours, rest) = self.row.as_chunks();
-        let mut done = 0;
-        // Chained iterators would be called in the loop, off the instruction path.
-        while done < pairs.len() {
-            let end = (done + BATCH).min(pairs.len());
-            for k in done..end {
-                let (four, count) =
-                    if k < fours.len() { (fours[k], 4) } else { (filled_up(rest, self.i), rest.len()) };
-                let (square, pressure) = self.gather::<A, P>(a, four, count, &mut pairs[k]);
-                batch.put(k, square, pressure);
-                rows[k] = counted_from(before, four);
-            }
-            for k in done..end {
-                let (square, pressure) = batch.get(k);
-                let distance = a.sqrt(square);
-                let weight = self.kernel.weights(a, distance);
-                pairs[k].current.length = distance;
-                pairs[k].weight = weight;
-                if self.viscosity > 0.0 {
-                    sum.add_fluid::<A, true>(a, &pairs[k], pressure, self.viscosity);
-                } else {
-                    sum.add_fluid::<A, false>(a, &pairs[k], pressure, self.viscosity);
-                }
-            }
-            done = end;
+        for k in 0..fours.len() {
+            rows[k] = fours[k];
+            self.gather::<A, P>(a, fours[k], &mut pairs[k]);
+        }
+        let full = fours.len();
+        if !rest.is_empty() {
+            rows[full] = filled_up(rest, self.i);
+            self.gather::<A, P>(a, rows[full], &mut pairs[full]);
+        }
+        if self.viscosity > 0.0 {
+            self.weigh::<A, true>(a, pairs, forces);
+        } else {
+            self.weigh::<A, false>(a, pairs, forces);
         }
         if with_kernel {
-            for four in pairs {
-                four.kernel = self.kernel.values(a, four.current.length);
+            for k in 0..pairs.len() {
+                pairs[k].kernel = self.kernel.values(a, pairs[k].current.length);
             }
         }
-        sum
+        if !rest.is_empty() {
+            // What fills up has no part in sums: it is i itself, with a pair vector of zero. Terms may see it all the same.
+            let (last, mask) = (&mut pairs[full], MASKS[rest.len()]);
+            last.volume_j = a.times(last.volume_j, mask);
+            last.weight = a.times(last.weight, mask);
+            last.kernel = a.times(last.kernel, mask);
+        }
     }
 
-    /// Puts four neighbours into `kept`, all but lengths and weights; gives squares of the lengths and p_i + p_j.
+    /// Puts four neighbours into `kept`, all but lengths and weights: in place of the lengths their squares.
     #[inline(always)]
-    fn gather<A: Arithmetic, const P: bool>(
-        &self,
-        a: A,
-        rows: [u32; 4],
-        count: usize,
-        kept: &mut FourPairs,
-    ) -> (Lanes4, Lanes4) {
-        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
+    fn gather<A: Arithmetic, const P: bool>(&self, a: A, rows: [u32; 4], kept: &mut FourPairs) {
+        let Self { cloud: FlowCloud { records, periods, .. }, own, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
-        let (square, volume) = kernel.within(a, dot(a, &four.x, &four.x), FILLS[count], four.volume);
         for axis in 0..D {
             kept.current.vector[axis] = four.x[axis];
             kept.velocity[axis] = four.v[axis];
         }
-        kept.support = Lanes4::splat(kernel.support);
-        kept.volume_j = volume;
-        (square, a.plus(four.pressure, own.pressure))
+        kept.current.length = dot(a, &four.x, &four.x);
+        kept.volume_j = four.volume;
+        kept.kept = a.plus(four.pressure, own.pressure);
     }
-}
 
-#[inline(always)]
-fn counted_from(before: u32, [j, k, l, m]: [u32; 4]) -> [u32; 4] {
-    [j - before, k - before, l - before, m - before]
+    /// Takes roots, and adds up the forces.
+    #[inline(always)]
+    fn weigh<A: Arithmetic, const VISCOUS: bool>(
+        &self,
+        a: A,
+        pairs: &mut [FourPairs],
+        forces: &mut Forces<D>,
+    ) {
+        let least = Lanes4::splat(self.kernel.least_square());
+        for k in 0..pairs.len() {
+            let four = &mut pairs[k];
+            let distance = a.sqrt(a.larger(four.current.length, least));
+            let weight = self.kernel.weights(a, distance);
+            four.current.length = distance;
+            four.weight = weight;
+            forces.add_fluid::<A, VISCOUS>(a, four, self.viscosity);
+        }
+    }
 }

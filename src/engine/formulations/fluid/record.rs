@@ -147,6 +147,15 @@ pub(super) const FILLS: [Lanes4; 5] = [
     Lanes4([0.0, 0.0, 0.0, 0.0]),
 ];
 
+/// One in the lanes that hold a neighbour, zero in those that fill up.
+pub(super) const MASKS: [Lanes4; 5] = [
+    Lanes4([0.0, 0.0, 0.0, 0.0]),
+    Lanes4([1.0, 0.0, 0.0, 0.0]),
+    Lanes4([1.0, 1.0, 0.0, 0.0]),
+    Lanes4([1.0, 1.0, 1.0, 0.0]),
+    Lanes4([1.0, 1.0, 1.0, 1.0]),
+];
+
 /// Where four neighbours of a particle are.
 #[derive(Clone, Copy)]
 pub(super) struct Places {
@@ -220,6 +229,9 @@ pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lan
 #[inline(always)]
 pub(super) fn sums<A: Arithmetic, const D: usize>(a: A, v: &[Lanes4; D]) -> DVec3 {
     let mut axes = [Lanes4::ZERO; 4];
-    axes[..D].copy_from_slice(v);
+    // Written out: copying slices would be a call.
+    for k in 0..D {
+        axes[k] = v[k];
+    }
     a.sums(axes).xyz()
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::cloud::FlowCloud;
 use super::near_rows::{NearRows, NearWriter};
-use super::record::{Four, Own, as_rows, dot, filled_up, sums};
+use super::record::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 
 /// Least sum of V_f W for which there is fluid beside a wall.
@@ -52,15 +52,6 @@ impl PlaneOrSolid for Rows<'_> {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
-
-/// One in the lanes that hold a neighbour, zero in those that fill up.
-const MASKS: [Lanes4; 5] = [
-    Lanes4([0.0, 0.0, 0.0, 0.0]),
-    Lanes4([1.0, 0.0, 0.0, 0.0]),
-    Lanes4([1.0, 1.0, 0.0, 0.0]),
-    Lanes4([1.0, 1.0, 1.0, 0.0]),
-    Lanes4([1.0, 1.0, 1.0, 1.0]),
-];
 
 impl Rows<'_> {
     #[inline(always)]

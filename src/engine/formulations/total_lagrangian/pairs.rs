@@ -1,5 +1,7 @@
 //! The bonds of a total-Lagrangian body as pairs for pair terms.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::bonds::Bonds;
@@ -7,7 +9,7 @@ use super::formulation::{BodyKernel, PackedRows};
 use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{PairReads, PairRow, PairRows, PairSource, Room};
+use crate::pair::{Extras, PairBatch, PairReads, PairRows, PairSource, Room};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
@@ -63,16 +65,16 @@ struct BodyPairs<'a> {
 }
 
 impl PairRows for BodyPairs<'_> {
-    fn row(&self, i: usize, row: &mut PairRow) {
-        run_hot_on(self.plane, Fill { pairs: self, i, row });
+    fn fill(&self, rows: Range<usize>, batch: &mut PairBatch) {
+        run_hot_on(self.plane, Fill { pairs: self, rows, batch });
     }
 }
 
-/// Fills the row of one particle.
+/// Fills the rows of some particles.
 struct Fill<'a> {
     pairs: &'a BodyPairs<'a>,
-    i: usize,
-    row: &'a mut PairRow,
+    rows: Range<usize>,
+    batch: &'a mut PairBatch,
 }
 
 impl HotLoop for Fill<'_> {
@@ -80,24 +82,39 @@ impl HotLoop for Fill<'_> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        let Self { pairs, i, row } = self;
-        let &BodyPairs { bonds, images, sites, .. } = pairs;
+        let Self { pairs, rows, batch } = self;
+        let extras =
+            Extras { reference: true, mirrors: !pairs.images.is_empty(), supports: pairs.uniform.is_none() };
+        batch.begin(extras, pairs.uniform.unwrap_or(0.0));
+        for i in rows {
+            if batch.is_full() {
+                break;
+            }
+            pairs.fill_row(a, i, batch);
+        }
+    }
+}
+
+impl BodyPairs<'_> {
+    /// Adds the row of one particle.
+    #[inline(always)]
+    fn fill_row<A: Arithmetic>(&self, a: A, i: usize, batch: &mut PairBatch) {
+        let Self { bonds, sites, .. } = *self;
         let site = &sites[i];
-        row.volume_i = site.reference.0[3];
         let list =
             if site.is_present() { bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize } else { 0..0 };
         let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
-        let mut room = row.room(neighbors.len(), true, !images.is_empty());
+        let mut room = batch.add_row(site.reference.0[3], neighbors.len());
         let (fours, rest) = neighbors.as_chunks();
         let (weights, rest_weights) = weights.as_chunks();
         for n in 0..fours.len() {
-            pairs.put(a, (i, site), (fours[n], weights[n]), n, &mut room);
+            self.put(a, (i, site), (fours[n], weights[n]), n, &mut room);
         }
         if !rest.is_empty() {
             let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
             four[..rest.len()].copy_from_slice(rest);
             weight[..rest.len()].copy_from_slice(rest_weights);
-            pairs.put(a, (i, site), (four, weight), fours.len(), &mut room);
+            self.put(a, (i, site), (four, weight), fours.len(), &mut room);
         }
         // Roots in a loop of their own: the loop above need not wait for them.
         for n in 0..room.pairs.len() {
@@ -105,8 +122,8 @@ impl HotLoop for Fill<'_> {
             reference.length = length(a, reference.vector);
             pairs.current.length = length(a, pairs.current.vector);
         }
-        if let Some(kernel) = pairs.kernel {
-            put_kernel(kernel, room);
+        if let Some(kernel) = self.kernel {
+            put_kernel(kernel, self.uniform, room);
         }
     }
 }
@@ -159,21 +176,19 @@ impl BodyPairs<'_> {
             let Vector { x, y, z } = of - own;
             pairs.velocity = [x.lanes(), y.lanes(), z.lanes()];
         }
-        pairs.support = match uniform {
-            Some(radius) => Lanes4::splat(radius),
-            None => {
-                let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
-                a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other))
-            }
-        };
+        if uniform.is_none() {
+            let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
+            room.supports[n] = a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other));
+        }
     }
 }
 
 /// Puts kernel values of the reference lengths into a row.
-fn put_kernel(kernel: &Kernel, room: Room<'_>) {
-    for (pairs, reference) in room.pairs.iter_mut().zip(room.reference) {
+fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: Room<'_>) {
+    for (k, (pairs, reference)) in room.pairs.iter_mut().zip(room.reference).enumerate() {
         for lane in 0..4 {
-            let h = kernel.smoothing_length(pairs.support.0[lane]);
+            let support = uniform.unwrap_or_else(|| room.supports[k].0[lane]);
+            let h = kernel.smoothing_length(support);
             let value = kernel.w(reference.length.0[lane], h);
             pairs.kernel.0[lane] = if pairs.volume_j.0[lane] > 0.0 { value } else { 0.0 };
         }
