@@ -46,7 +46,7 @@ impl PairTerm for Dashpots {
     #[inline(always)]
     fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
         let strength = self.factor * pair.volume_j * pair.weight;
-        let e = pair.x_ij / pair.distance;
+        let e = pair.x_ij / pair.distance();
         rates.force += e * (strength * pair.volume_i * pair.v_ij.dot(e));
         rates.damping += strength / self.density;
     }

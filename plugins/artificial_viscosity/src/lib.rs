@@ -82,7 +82,7 @@ impl PairTerm for Friction {
     fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
         let h = pair.smoothing_length();
         let approach = pair.v_ij.dot(pair.x_ij);
-        let square = pair.distance.squared();
+        let square = pair.distance_squared();
         let per_length = h / (square + 0.01 * h * h);
         let mu = approach * per_length;
         let push = mu.min(0.0);

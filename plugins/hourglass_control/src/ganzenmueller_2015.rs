@@ -34,13 +34,13 @@ impl<F: Column<Value = DMat3>> PairTerm for Ganzenmueller2015<F> {
         (f_j, e_j): (Matrix<A>, Number<A>),
         rates: &mut Rates<A>,
     ) {
-        let weight = 0.5 * self.alpha * pair.volume_j * pair.kernel / pair.reference_distance.squared();
+        let weight = 0.5 * self.alpha * pair.volume_j * pair.kernel / pair.reference_distance_squared();
         rates.stiffness += weight * (e_i + e_j) / self.density;
         let (image_i, image_j) = (f_i * pair.reference_x_ij, f_j * pair.reference_x_ij);
         let along_i = (image_i - pair.x_ij).dot(pair.x_ij);
         let along_j = (image_j - pair.x_ij).dot(pair.x_ij);
         // A bond of no length has no direction, and no force; the variational form has no such gap.
-        let error = (e_i * along_i + e_j * along_j) / pair.distance.squared();
+        let error = (e_i * along_i + e_j * along_j) / pair.distance_squared();
         rates.force -= pair.x_ij * (weight * pair.volume_i * error);
     }
 }

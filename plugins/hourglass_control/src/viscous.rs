@@ -39,13 +39,14 @@ impl<F: Column<Value = DMat3>> PairTerm for Viscous<F> {
     ) {
         let error = (f_i + f_j) * pair.reference_x_ij * 0.5 - pair.x_ij;
         let moving = pair.v_ij.dot(pair.x_ij);
-        let slope = pair.weight * pair.reference_distance;
-        let share = error.length_squared().sqrt() / pair.reference_distance;
+        let length = pair.reference_distance();
+        let slope = pair.weight * length;
+        let share = error.length_squared().sqrt() / length;
         let strength = self.zeta * self.sound_speed * pair.smoothing_length() * share * slope * pair.volume_j;
         let growing = moving * error.dot(pair.x_ij);
-        let damping = growing.if_below(0.0, strength / pair.distance);
+        let damping = growing.if_below(0.0, strength / pair.distance());
         rates.force +=
-            pair.x_ij * (self.density * pair.volume_i * damping * moving / pair.distance.squared());
+            pair.x_ij * (self.density * pair.volume_i * damping * moving / pair.distance_squared());
         rates.damping += damping;
     }
 }

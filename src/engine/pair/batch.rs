@@ -11,13 +11,13 @@ const FULL: usize = 40;
 /// Most rows of a batch.
 pub(super) const MAX_ROWS: usize = 16;
 
-/// Four vectors and their lengths.
+/// Four vectors, and their lengths or the squares of these.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct FourVectors {
     /// Components, m.
     pub vector: [Lanes4; 3],
-    /// Lengths, m; above zero.
+    /// Lengths, m, or their squares, m2, where pairs have reference vectors ([`Extras::reference`]); above zero.
     pub length: Lanes4,
 }
 
@@ -43,7 +43,7 @@ pub struct FourPairs {
 /// What the pairs of a body have beside x_ij and what all pairs have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
-    /// Reference vectors.
+    /// Reference vectors. The squares of the lengths are then all that is known of these: a term takes the roots that it needs.
     pub reference: bool,
     /// Neighbours that are mirror images.
     pub mirrors: bool,
@@ -195,15 +195,15 @@ impl Row<'_> {
         let support = support.unwrap_or(Lanes4::splat(self.support));
         Pair {
             x_ij: Vector::new(a, current.vector),
-            distance: Number::new(a, current.length),
             reference_x_ij: Vector::new(a, reference.vector),
-            reference_distance: Number::new(a, reference.length),
             weight: Number::new(a, *weight),
             kernel: Number::new(a, *kernel),
             v_ij: Vector::new(a, *velocity),
             support: Number::new(a, support),
             volume_i: Number::splat(a, self.volume_i),
             volume_j: Number::new(a, *volume_j),
+            length: Number::new(a, current.length),
+            reference_length: Number::new(a, reference.length),
             is_reference: PLAIN,
         }
     }

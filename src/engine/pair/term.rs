@@ -15,12 +15,8 @@ use crate::world::BodySet;
 pub struct Pair<A> {
     /// Current pair vector x_ij = x_j - x_i, m.
     pub x_ij: Vector<A>,
-    /// Its length, m; a tiny number in place of zero, so that one may divide by it.
-    pub distance: Number<A>,
     /// Reference pair vector X_ij, m.
     pub reference_x_ij: Vector<A>,
-    /// Its length, m.
-    pub reference_distance: Number<A>,
     /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, so that grad_i W = w_ij x_ij.
     pub weight: Number<A>,
     /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the phase reads it ([`PairTerm::READS_KERNEL`]).
@@ -33,7 +29,11 @@ pub struct Pair<A> {
     pub volume_i: Number<A>,
     /// Volume of j, m3.
     pub volume_j: Number<A>,
-    /// Whether the current configuration is the reference; the same for all pairs of a row.
+    /// Lengths of x_ij, m; where there is a reference, their squares, m2.
+    pub(super) length: Number<A>,
+    /// The same of X_ij.
+    pub(super) reference_length: Number<A>,
+    /// Whether the current configuration is the reference; the same for all pairs of a batch.
     pub(super) is_reference: bool,
 }
 
@@ -44,10 +44,38 @@ impl<A: Arithmetic> Pair<A> {
         0.5 * self.support
     }
 
+    /// Length of x_ij, m; a tiny number in place of zero, so that one may divide by it.
+    #[inline(always)]
+    pub fn distance(&self) -> Number<A> {
+        if self.is_reference { self.length } else { self.length.sqrt() }
+    }
+
+    /// Square of the length of x_ij, m2; a tiny number in place of zero. Cheaper than the length where there is a reference.
+    #[inline(always)]
+    pub fn distance_squared(&self) -> Number<A> {
+        if self.is_reference { self.length.squared() } else { self.length }
+    }
+
+    /// Length of X_ij, m.
+    #[inline(always)]
+    pub fn reference_distance(&self) -> Number<A> {
+        if self.is_reference { self.length } else { self.reference_length.sqrt() }
+    }
+
+    /// Square of the length of X_ij, m2.
+    #[inline(always)]
+    pub fn reference_distance_squared(&self) -> Number<A> {
+        if self.is_reference { self.length.squared() } else { self.reference_length }
+    }
+
     /// Slope of the kernel over the current length: |W'_ij| / |x_ij|, with the slope at the reference length where there is one.
     #[inline(always)]
     pub fn slope_per_length(&self) -> Number<A> {
-        if self.is_reference { self.weight } else { self.weight * self.reference_distance / self.distance }
+        if self.is_reference {
+            self.weight
+        } else {
+            self.weight * (self.reference_length / self.length).sqrt()
+        }
     }
 }
 

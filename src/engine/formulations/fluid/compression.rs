@@ -7,7 +7,7 @@ use super::batch::{BATCH, Batch};
 use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::near_rows::{NearRow, NearWriter};
-use super::record::{Four, Own, as_rows, dot, filled_up};
+use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
 use super::surface_friction;
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
@@ -79,7 +79,7 @@ impl Rows<'_> {
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = Own::<D>::new(&records[i]);
-            let pairs = Pairs { cloud: self.cloud, kernel, i, own, back: self.back };
+            let pairs = Pairs { cloud: self.cloud, kernel, own, back: self.back };
             let mut near = self.near.row(k);
             let mut sum = Lanes4::ZERO;
             for row in [lists.fluid.row(i), lists.walls.row(i)] {
@@ -95,7 +95,6 @@ impl Rows<'_> {
 struct Pairs<'a, const D: usize> {
     cloud: &'a FlowCloud,
     kernel: FluidKernel,
-    i: usize,
     own: Own<D>,
     back: f64,
 }
@@ -124,7 +123,8 @@ impl<const D: usize> Pairs<'_, D> {
             done = end;
         }
         if !rest.is_empty() {
-            let (square, factor) = self.four::<A, P>(a, filled_up(rest, self.i), rest.len(), near);
+            let (square, factor) = self.four::<A, P>(a, filled_up(rest), rest.len(), near);
+            let factor = a.times(factor, MASKS[rest.len()]);
             sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
         }
         sum

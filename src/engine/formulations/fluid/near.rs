@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::cloud::FlowCloud;
-use super::record::{FILLS, Places, padded};
+use super::record::{FILLS, Places, as_rows, filled_up};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Number, Vector, for_each_block, run_hot_on};
 
 /// Four neighbours of a particle. Lanes without a neighbour, and neighbours beyond the support, have weight, kernel and volume
@@ -55,7 +55,7 @@ impl<A: Arithmetic> Iterator for Fours<'_, A> {
     fn next(&mut self) -> Option<FourNear<A>> {
         let chunk = self.chunks.next()?;
         let (a, cloud) = (self.arithmetic, self.cloud);
-        let rows = padded(chunk, self.i);
+        let rows = as_rows(filled_up(chunk));
         let Places { x, volume } =
             Places::gather(a, &cloud.records, &cloud.records[self.i], rows, &cloud.periods);
         let x_ij = Vector::new(a, x);

@@ -138,7 +138,7 @@ impl Rows<'_> {
                 if row.is_empty() {
                     continue;
                 }
-                let pairs = Pairs { cloud, kernel, i, own: lanes, row, viscosity };
+                let pairs = Pairs { cloud, kernel, own: lanes, row, viscosity };
                 match &mut terms {
                     Some(Terms { terms, batch, .. })
                         if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>

@@ -6,11 +6,10 @@ use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
 use crate::pair::{FourPairs, Room};
 use crate::parallel::{Arithmetic, Lanes4};
 
-/// The pairs of particle `i` with the neighbours in `row`.
+/// The pairs of a particle with the neighbours in `row`.
 pub(super) struct Pairs<'a, const D: usize> {
     pub cloud: &'a FlowCloud,
     pub kernel: FluidKernel,
-    pub i: usize,
     pub own: Own<D>,
     pub row: &'a [u32],
     /// Twice the viscosity between the two, Pa s.
@@ -86,11 +85,11 @@ impl<const D: usize> Pairs<'_, D> {
         let (mut gradient, mut of_j) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
         let (fours, rest) = self.row.as_chunks();
         for k in 0..fours.len() + usize::from(!rest.is_empty()) {
-            let rows = if k < fours.len() { fours[k] } else { filled_up(rest, self.i) };
+            let (rows, count) = if k < fours.len() { (fours[k], 4) } else { (filled_up(rest), rest.len()) };
             let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, .. } = self;
             let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
             let distance = a.sqrt(dot(a, &four.x, &four.x));
-            let weight = a.times(kernel.weights(a, distance), four.volume);
+            let weight = a.times(kernel.weights(a, distance), a.times(four.volume, MASKS[count]));
             let weight_j = a.times(weight, four.pressure);
             let friction = a.scale(self.viscosity, weight);
             for axis in 0..D {
@@ -132,8 +131,9 @@ impl<const D: usize> Pairs<'_, D> {
         }
         let full = fours.len();
         if !rest.is_empty() {
-            rows[full] = filled_up(rest, self.i);
+            rows[full] = filled_up(rest);
             self.gather::<A, P>(a, rows[full], &mut pairs[full]);
+            pairs[full].volume_j = a.times(pairs[full].volume_j, MASKS[rest.len()]);
         }
         if self.viscosity > 0.0 {
             self.weigh::<A, true>(a, pairs, forces);
@@ -146,9 +146,7 @@ impl<const D: usize> Pairs<'_, D> {
             }
         }
         if !rest.is_empty() {
-            // What fills up has no part in sums: it is i itself, with a pair vector of zero. Terms may see it all the same.
             let (last, mask) = (&mut pairs[full], MASKS[rest.len()]);
-            last.volume_j = a.times(last.volume_j, mask);
             last.weight = a.times(last.weight, mask);
             last.kernel = a.times(last.kernel, mask);
         }

@@ -72,7 +72,7 @@ impl Rows<'_> {
                 rest = tail;
                 let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
                 for chunk in row.chunks(4) {
-                    let rows = filled_up(chunk, i);
+                    let rows = filled_up(chunk);
                     let four =
                         Four::<D>::gather::<A, P>(a, &cloud.records, &own, as_rows(rows), &cloud.periods);
                     let square = dot(a, &four.x, &four.x);

@@ -116,12 +116,6 @@ impl BodyPairs<'_> {
             weight[..rest.len()].copy_from_slice(rest_weights);
             self.put(a, (i, site), (four, weight), fours.len(), &mut room);
         }
-        // Roots in a loop of their own: the loop above need not wait for them.
-        for n in 0..room.pairs.len() {
-            let (pairs, reference) = (&mut room.pairs[n], &mut room.reference[n]);
-            reference.length = length(a, reference.vector);
-            pairs.current.length = length(a, pairs.current.vector);
-        }
         if let Some(kernel) = self.kernel {
             put_kernel(kernel, self.uniform, room);
         }
@@ -129,7 +123,7 @@ impl BodyPairs<'_> {
 }
 
 impl BodyPairs<'_> {
-    /// Puts four neighbours into the room, all but lengths and kernel values.
+    /// Puts four neighbours into the room, all but kernel values.
     #[inline(always)]
     fn put<A: Arithmetic>(
         &self,
@@ -158,6 +152,8 @@ impl BodyPairs<'_> {
             room.reference[n].vector[axis] = then;
             pairs.current.vector[axis] = a.plus(then, u);
         }
+        pairs.current.length = squares(a, pairs.current.vector);
+        room.reference[n].length = squares(a, room.reference[n].vector);
         if !images.is_empty() {
             for lane in 0..4 {
                 room.mirrors[n][lane] = images.mirror(rows[lane]).unwrap_or(DVec3::ONE);
@@ -189,15 +185,15 @@ fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: Room<'_>) {
         for lane in 0..4 {
             let support = uniform.unwrap_or_else(|| room.supports[k].0[lane]);
             let h = kernel.smoothing_length(support);
-            let value = kernel.w(reference.length.0[lane], h);
+            let value = kernel.w(reference.length.0[lane].sqrt(), h);
             pairs.kernel.0[lane] = if pairs.volume_j.0[lane] > 0.0 { value } else { 0.0 };
         }
     }
 }
 
-/// Lengths of four vectors, above zero.
+/// Squares of the lengths of four vectors, above zero.
 #[inline(always)]
-fn length<A: Arithmetic>(a: A, vector: [Lanes4; 3]) -> Lanes4 {
+fn squares<A: Arithmetic>(a: A, vector: [Lanes4; 3]) -> Lanes4 {
     let square = Vector::new(a, vector).length_squared().lanes();
-    a.sqrt(a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)))
+    a.larger(square, Lanes4::splat(f64::MIN_POSITIVE))
 }
