@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
+use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{Selection, SimBuilder};
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use crate::world::{Force, Removed, Velocity};
@@ -32,7 +33,10 @@ pub(super) struct DeadLoad {
 impl LoadLaw for DeadLoad {
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
         self.field.values(&part.points, step.clock.end(), self.name, out)?;
-        out.iter_mut().zip(&self.shares[k]).for_each(|(force, share)| *force *= *share);
+        let rows = (&mut out[..], &self.shares[k][..]);
+        sum_over_blocks(rows, &|_, (out, shares): (&mut [DVec3], &[f64])| {
+            out.iter_mut().zip(shares).for_each(|(force, share)| *force *= *share);
+        });
         Ok(())
     }
 
@@ -75,27 +79,36 @@ impl Run for Load {
                 continue;
             }
             let first = last.is_empty();
-            if first || !self.law.is_constant() {
+            let changes = first || !self.law.is_constant();
+            if changes {
                 self.law.forces(k, part, step, &mut self.next)?;
                 if first {
                     last.clone_from(&self.next);
                 }
-            } else {
-                self.next.clone_from(last);
             }
             let (view, _) = step.world.body_view(part.body);
             let velocity = view.read::<Velocity>()?;
             let removed = view.read::<Removed>()?;
             let mut force = view.write::<Force>()?;
-            let mut power = 0.0;
-            let loaded = part.rows.iter().zip(last.iter()).zip(&self.next);
-            for ((&row, last), &next) in loaded.filter(|((row, _), _)| removed[**row as usize] == Removed::NO)
-            {
-                force[row as usize].0 += next;
-                power += 0.5 * (*last + next).dot(velocity[row as usize].0);
-            }
+            let (velocity, removed) = (&velocity[..], &removed[..]);
+            let next: &[DVec3] = if changes { &self.next } else { last };
+            let rows = (Picked::new(&part.rows, &mut force), &last[..], next);
+            type Rows<'a> = (Picked<'a, Force>, &'a [DVec3], &'a [DVec3]);
+            let power = sum_over_blocks(rows, &|_, (mut loaded, last, next): Rows<'_>| {
+                let mut power = 0.0;
+                for (k, (last, next)) in last.iter().zip(next).enumerate() {
+                    let row = loaded.number(k);
+                    if removed[row] == Removed::NO {
+                        loaded.row(k).0 += *next;
+                        power += 0.5 * (*last + *next).dot(velocity[row].0);
+                    }
+                }
+                power
+            });
             step.ledger.add(account, part.body, power * step.clock.dt);
-            std::mem::swap(last, &mut self.next);
+            if changes {
+                std::mem::swap(last, &mut self.next);
+            }
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::split_rigid;
 use crate::integrate::KICK;
+use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody};
 use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
@@ -127,18 +128,26 @@ impl Motion {
                 self.field.values(&part.points, clock.end(), self.name, out)?;
                 let (view, _) = step.world.body_view(part.body);
                 let position = view.read::<Position>()?;
-                for ((value, &row), &point) in out.iter_mut().zip(&part.rows).zip(&part.points) {
-                    // From where the particle is, so that rounding does not add up over the steps.
-                    *value = (point + *value - position[row as usize].0) / clock.dt;
-                }
+                let position = &position[..];
+                let rows = (&mut out[..], &part.rows[..], &part.points[..]);
+                type Rows<'a> = (&'a mut [DVec3], &'a [u32], &'a [DVec3]);
+                sum_over_blocks(rows, &|_, (out, rows, points): Rows<'_>| {
+                    for ((value, &row), &point) in out.iter_mut().zip(rows).zip(points) {
+                        // From where the particle is, so that rounding does not add up over the steps.
+                        *value = (point + *value - position[row as usize].0) / clock.dt;
+                    }
+                });
                 Ok(())
             }
             (Kind::Displacement, true) => {
                 let (before, after) = self.around_end(&clock);
                 self.field.values(&part.points, after, self.name, out)?;
-                for (value, &point) in out.iter_mut().zip(&part.points) {
-                    *value = (*value - self.field.at(point, before)) / (after - before);
-                }
+                let rows = (&mut out[..], &part.points[..]);
+                sum_over_blocks(rows, &|_, (out, points): (&mut [DVec3], &[DVec3])| {
+                    for (value, &point) in out.iter_mut().zip(points) {
+                        *value = (*value - self.field.at(point, before)) / (after - before);
+                    }
+                });
                 Ok(())
             }
         }
@@ -165,16 +174,24 @@ impl Run for SetVelocity {
             let mass = view.read::<Mass>()?;
             let removed = view.read::<Removed>()?;
             let mut velocity = view.write::<Velocity>()?;
-            let mut gain = 0.0;
-            let moved = part.rows.iter().zip(&self.values);
-            for (&row, value) in moved.filter(|(row, _)| removed[**row as usize] == Removed::NO) {
-                let v = &mut velocity[row as usize].0;
-                let before = v.length_squared();
-                for axis in (0..3).filter(|&axis| axes[axis]) {
-                    v[axis] = value[axis];
+            let (mass, removed) = (&mass[..], &removed[..]);
+            let rows = (Picked::new(&part.rows, &mut velocity), &self.values[..]);
+            let gain = sum_over_blocks(rows, &|_, (mut moved, values): (Picked<'_, Velocity>, &[DVec3])| {
+                let mut gain = 0.0;
+                for (k, value) in values.iter().enumerate() {
+                    let row = moved.number(k);
+                    if removed[row] != Removed::NO {
+                        continue;
+                    }
+                    let v = &mut moved.row(k).0;
+                    let before = v.length_squared();
+                    for axis in (0..3).filter(|&axis| axes[axis]) {
+                        v[axis] = value[axis];
+                    }
+                    gain += 0.5 * mass[row].0 * (v.length_squared() - before);
                 }
-                gain += 0.5 * mass[row as usize].0 * (v.length_squared() - before);
-            }
+                gain
+            });
             step.ledger.add(constraints, part.body, gain);
             if self.end_of_step {
                 // The kick has taken the kinetic energy with the velocity at mid-step.

@@ -17,7 +17,7 @@ use super::system::Pace;
 use super::tally::Tally;
 use super::touched::Touched;
 use crate::parallel::BlockSum;
-use crate::rigid::{RigidBodies, RigidBody};
+use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
 
 /// Contact of the nodes of one body with the surface of another.
@@ -140,15 +140,18 @@ impl SurfaceContact {
 
     /// The forces on rigid bodies: exactly opposite to those on the other side, at one place.
     fn push(&self, bodies: &mut [RigidBody]) {
-        for body in bodies.iter_mut() {
+        for body in bodies {
+            let middle = body.state.center;
+            let mut sum = Wrench::default();
             for (_, Push { place, center, shift, force, turning, .. }) in self.meetings.pushes() {
                 if body.id == self.sides.second {
-                    body.push(*place, -*force);
-                    body.push(*center, -*turning);
+                    sum.push(*place - middle, -*force);
+                    sum.push(*center - middle, -*turning);
                 } else if body.id == self.sides.first {
-                    body.push(*place + *shift, *force);
+                    sum.push(*place + *shift - middle, *force);
                 }
             }
+            body.push(&sum);
         }
     }
 }

@@ -7,6 +7,7 @@ mod lanes;
 mod largest;
 mod number;
 mod path;
+mod picked;
 mod plane;
 mod vector;
 
@@ -19,5 +20,6 @@ pub use lanes::Lanes4;
 pub use largest::Largest;
 pub use number::Number;
 pub use path::{HotLoop, instruction_path, run_hot};
+pub use picked::Picked;
 pub use plane::run_hot_on;
 pub use vector::{Matrix, Vector};

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::constraint::Constraint;
 use super::nodes::Nodes;
 use super::rotation::Inertia;
+use super::wrench::Wrench;
 use crate::linalg::Sym3;
+use crate::parallel::BlockSum;
 use crate::shapes::Surface;
 use crate::world::BodyId;
 
@@ -52,14 +54,14 @@ pub struct RigidBody {
     pub(super) constraint: Constraint,
     /// State.
     pub state: RigidState,
-    /// Force and torque about the centre that contacts have added in this step, N and N m.
-    contact: (DVec3, DVec3),
+    /// What contacts have added in this step, about the centre.
+    contact: Wrench,
 }
 
 impl RigidBody {
     pub(super) fn new(parts: RigidParts, state: RigidState) -> Self {
         let RigidParts { id, mass, inertia, points, reach, surface, nodes, constraint } = parts;
-        let contact = (DVec3::ZERO, DVec3::ZERO);
+        let contact = Wrench::default();
         let reference_center = state.center;
         Self {
             id,
@@ -109,14 +111,13 @@ impl RigidBody {
         self.constraint.is_complete()
     }
 
-    /// Adds the force of a contact at `place`, N.
-    pub fn push(&mut self, place: DVec3, force: DVec3) {
-        self.contact.0 += force;
-        self.contact.1 += (place - self.state.center).cross(force);
+    /// Adds what contacts do, with the torque about the centre.
+    pub fn push(&mut self, contact: &Wrench) {
+        self.contact.add(contact);
     }
 
-    /// Takes the force and torque of the contacts of this step, N and N m.
-    pub(super) fn take_contact(&mut self) -> (DVec3, DVec3) {
+    /// Takes what the contacts of this step do.
+    pub(super) fn take_contact(&mut self) -> Wrench {
         std::mem::take(&mut self.contact)
     }
 }

@@ -7,6 +7,7 @@ mod inertia;
 mod nodes;
 mod rotation;
 mod systems;
+mod wrench;
 
 pub use body::{RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation};
@@ -16,3 +17,4 @@ pub(crate) use inertia::sphere_of;
 pub use nodes::Nodes;
 pub use rotation::Inertia;
 pub use systems::{RIGID_DRIFT, RIGID_KICK, RIGID_WEIGHT};
+pub use wrench::Wrench;

@@ -4,6 +4,8 @@ use glam::{DMat3, DVec3};
 
 use super::body::{RigidBodies, RigidBody, RigidState};
 use super::constraint::Turning;
+use super::wrench::Wrench;
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Clock, Run, Stage, Step, StepError, System};
 use crate::world::{BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Velocity};
@@ -164,11 +166,16 @@ fn place_particles(body: &RigidBody, step: &Step<'_>) -> Result<(), StepError> {
     let mut position = view.write::<Position>()?;
     let mut velocity = view.write::<Velocity>()?;
     let rotation = DMat3::from_quat(body.state.rotation);
-    for row in rows {
-        let arm = rotation * (reference[row].0 - body.reference_center);
-        position[row].0 = body.state.center + arm;
-        velocity[row].0 = body.state.velocity + body.state.angular_velocity.cross(arm);
-    }
+    let (state, center) = (&body.state, body.reference_center);
+    let moved = (&mut position[rows.clone()], &mut velocity[rows.clone()], &reference[rows]);
+    type Rows<'a> = (&'a mut [Position], &'a mut [Velocity], &'a [ReferencePosition]);
+    sum_over_blocks(moved, &|_, (position, velocity, reference): Rows<'_>| {
+        for ((x, v), reference) in position.iter_mut().zip(velocity).zip(reference) {
+            let arm = rotation * (reference.0 - center);
+            x.0 = state.center + arm;
+            v.0 = state.velocity + state.angular_velocity.cross(arm);
+        }
+    });
     Ok(())
 }
 
@@ -198,9 +205,11 @@ impl Run for Kick {
             let (view, rows) = step.world.body_view(body.id);
             let position = view.read::<Position>()?;
             let mut velocity = view.write::<Velocity>()?;
-            for row in rows {
-                velocity[row].0 = body.velocity_at(position[row].0);
-            }
+            let turned = &*body;
+            let moved = (&mut velocity[rows.clone()], &position[rows]);
+            sum_over_blocks(moved, &|_, (velocity, position): (&mut [Velocity], &[Position])| {
+                velocity.iter_mut().zip(position).for_each(|(v, x)| v.0 = turned.velocity_at(x.0));
+            });
             if !body.kinetic().is_finite() {
                 return Err(step.unstable("velocity is not a finite number", body.id, 0));
             }
@@ -224,34 +233,42 @@ impl Run for Kick {
 }
 
 /// Sums the forces on the particles and those of contact into the state of the body; returns the share of contact.
-fn sum_of_forces(body: &mut RigidBody, step: &Step<'_>) -> Result<(DVec3, DVec3), StepError> {
+fn sum_of_forces(body: &mut RigidBody, step: &Step<'_>) -> Result<Wrench, StepError> {
     let contact = body.take_contact();
     let (view, rows) = step.world.body_view(body.id);
     let (position, force) = (view.read::<Position>()?, view.read::<Force>()?);
-    let (mut sum, mut torque) = contact;
-    for row in rows {
-        sum += force[row].0;
-        torque += (position[row].0 - body.state.center).cross(force[row].0);
-    }
-    (body.state.force, body.state.torque) = (sum, torque);
+    let center = body.state.center;
+    let rows = (&position[rows.clone()], &force[rows]);
+    let mut sum = sum_over_blocks(rows, &|_, (position, force): (&[Position], &[Force])| {
+        let mut sum = Wrench::default();
+        position.iter().zip(force).for_each(|(x, force)| sum.push(x.0 - center, force.0));
+        sum
+    });
+    sum.add(&contact);
+    (body.state.force, body.state.torque) = (sum.force, sum.torque);
     Ok(contact)
 }
 
 /// Spreads force and torque of contact over the particles as a rigid acceleration, so that sums over the particles are those
 /// of the body.
-fn share_out(body: &RigidBody, (force, torque): (DVec3, DVec3), step: &Step<'_>) -> Result<(), StepError> {
-    if force == DVec3::ZERO && torque == DVec3::ZERO {
+fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), StepError> {
+    if contact == Wrench::default() {
         return Ok(());
     }
+    let Wrench { force, torque } = contact;
     let (view, rows) = step.world.body_view(body.id);
     let (position, mass) = (view.read::<Position>()?, view.read::<Mass>()?);
     let mut forces = view.write::<Force>()?;
     let turn = body.state.rotation;
     let spin = body.points.map_or(DVec3::ZERO, |inverse| turn * (inverse * (turn.inverse() * torque)));
-    for row in rows {
-        let arm = position[row].0 - body.state.center;
-        forces[row].0 += mass[row].0 * (force / body.mass + spin.cross(arm));
-    }
+    let (center, push) = (body.state.center, force / body.mass);
+    let rows = (&mut forces[rows.clone()], &position[rows.clone()], &mass[rows]);
+    type Rows<'a> = (&'a mut [Force], &'a [Position], &'a [Mass]);
+    sum_over_blocks(rows, &|_, (forces, position, mass): Rows<'_>| {
+        for ((f, x), m) in forces.iter_mut().zip(position).zip(mass) {
+            f.0 += m.0 * (push + spin.cross(x.0 - center));
+        }
+    });
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::frame::{Frame, frame_of};
 use super::rows::{PairStress, Site};
-use crate::parallel::Lanes4;
+use crate::parallel::{Lanes4, for_each_block};
 use crate::world::BodySet;
 
 /// A symmetry plane of some bodies; the condition `Symmetry` adds it.
@@ -164,30 +164,38 @@ impl Images {
     /// Fills the sites of the images; `origin` is where reference positions of sites are measured from, m.
     pub(super) fn fill_sites(&self, origin: DVec3, sites: &mut [Site]) {
         let (real, images) = sites.split_at_mut(self.rows);
-        for (image, (&source, &which)) in images.iter_mut().zip(self.sources.iter().zip(&self.which)) {
-            let (site, map) = (&real[source as usize], &self.maps[which as usize]);
-            let reference = map.apply(site.reference.xyz() + origin) - origin;
-            *image = Site::new(reference, map.signs * site.displacement.xyz(), site.reference.0[3]);
-        }
+        let rows = (images, &self.sources[..], &self.which[..]);
+        type Rows<'a> = (&'a mut [Site], &'a [u32], &'a [u32]);
+        for_each_block(rows, &mut Vec::new(), &|_, (images, sources, which): Rows<'_>| {
+            for (image, (&source, &which)) in images.iter_mut().zip(sources.iter().zip(which)) {
+                let (site, map) = (&real[source as usize], &self.maps[which as usize]);
+                let reference = map.apply(site.reference.xyz() + origin) - origin;
+                *image = Site::new(reference, map.signs * site.displacement.xyz(), site.reference.0[3]);
+            }
+        });
     }
 
     /// Fills the pair stresses of the images, which have their sites.
     pub(super) fn fill_pair_stress(&self, frames: &[Frame], sites: &[Site], pair_stress: &mut [PairStress]) {
         let (real, images) = pair_stress.split_at_mut(self.rows);
-        let sources = self.sources.iter().zip(&self.which);
-        for ((image, site), (&source, &which)) in images.iter_mut().zip(&sites[self.rows..]).zip(sources) {
-            let (own, signs) = (&real[source as usize], self.maps[which as usize].signs);
-            // A of the source is in the frame already; that of the image needs its mirror image, and then the frame.
-            let frame = &frames[frame_of(frames, source as usize)];
-            let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
-            for (axis, column) in image.columns.iter_mut().enumerate() {
-                let last = own.columns[axis].0[3];
-                let plain = own.columns[axis].xyz() - own.stiffness() * moved[axis];
-                // The last lane is no component of A: the bond stiffness keeps its sign.
-                *column = Lanes4::new(plain * signs * signs[axis], last);
+        let rows = (images, &sites[self.rows..], &self.sources[..], &self.which[..]);
+        type Rows<'a> = (&'a mut [PairStress], &'a [Site], &'a [u32], &'a [u32]);
+        for_each_block(rows, &mut Vec::new(), &|_, (images, sites, sources, which): Rows<'_>| {
+            let sources = sources.iter().zip(which);
+            for ((image, site), (&source, &which)) in images.iter_mut().zip(sites).zip(sources) {
+                let (own, signs) = (&real[source as usize], self.maps[which as usize].signs);
+                // A of the source is in the frame already; that of the image needs its mirror image, and then the frame.
+                let frame = &frames[frame_of(frames, source as usize)];
+                let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
+                for (axis, column) in image.columns.iter_mut().enumerate() {
+                    let last = own.columns[axis].0[3];
+                    let plain = own.columns[axis].xyz() - own.stiffness() * moved[axis];
+                    // The last lane is no component of A: the bond stiffness keeps its sign.
+                    *column = Lanes4::new(plain * signs * signs[axis], last);
+                }
+                image.complete(frame, site);
             }
-            image.complete(frame, site);
-        }
+        });
     }
 }
 
