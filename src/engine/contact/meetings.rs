@@ -1,87 +1,123 @@
 //! The contacts of a step: which candidates touch, and what each contact does. Both are found in parallel and kept in the order of the
-//! candidates, so that nothing depends on the number of threads.
+//! candidates; sums are taken over blocks of contacts, so that nothing depends on the number of threads or on when the list of candidates was made.
 
 use super::memory::{Memories, Memory, PairKey};
+use super::sieve::{BLOCKS_OF_TEST, Found, keep};
 use super::tally::Tally;
-use crate::parallel::{BLOCK, BlockSum, block_count, for_each_heavy_block};
+use crate::parallel::{BLOCK, BlockSum, block_count, for_each_block_in_tasks, for_each_heavy_block};
+
+/// In the place of a number for candidates that do not touch.
+const NONE: u32 = u32::MAX;
 
 /// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is what else the candidates tell.
 pub(super) struct Meetings<T, P, E> {
-    /// As long as the list of candidates; those that touch come first.
+    /// As long as the list of candidates; in each block those that touch come first.
     slots: Vec<(PairKey, T)>,
-    /// Of every block of candidates.
     found: Vec<Found<E>>,
-    count: usize,
+    met: Vec<(PairKey, T)>,
+    numbers: Numbers,
     pub memories: Memories,
     pushes: Vec<P>,
     sums: Vec<Tally>,
 }
 
-#[derive(Clone, Copy, Default)]
-struct Found<E> {
-    count: usize,
-    extra: E,
+/// Which contact belongs to a candidate.
+#[derive(Default)]
+pub(super) struct Numbers {
+    /// Of every candidate its number among those of its block that touch.
+    within: Vec<u32>,
+    /// Of every block the number of its first contact.
+    first: Vec<u32>,
 }
 
-impl<E: BlockSum> BlockSum for Found<E> {
-    fn add(&mut self, next: &Self) {
-        self.count += next.count;
-        self.extra.add(&next.extra);
+impl Numbers {
+    /// Number of the contact of a candidate, if it touches.
+    #[inline]
+    pub fn of(&self, candidate: u32) -> Option<usize> {
+        let candidate = candidate as usize;
+        let within = self.within[candidate];
+        (within != NONE).then(|| (self.first[candidate / BLOCK] + within) as usize)
     }
 }
 
 impl<T, P, E> Default for Meetings<T, P, E> {
     fn default() -> Self {
-        let (slots, found, pushes, sums) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { slots, found, count: 0, memories: Memories::default(), pushes, sums }
+        Self {
+            slots: Vec::new(),
+            found: Vec::new(),
+            met: Vec::new(),
+            numbers: Numbers::default(),
+            memories: Memories::default(),
+            pushes: Vec::new(),
+            sums: Vec::new(),
+        }
     }
 }
 
-impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send, E: BlockSum> Meetings<T, P, E> {
-    /// Finds out which candidates touch: `test` says under which pair, ascending with the candidates. Returns what it adds up.
-    pub fn find<C: Sync>(
-        &mut self,
-        candidates: &[C],
-        test: impl Fn(&C, &mut E) -> Option<(PairKey, T)> + Sync,
-    ) -> E {
-        if self.slots.len() < candidates.len() {
-            // Room for all that the list may bring, and the next ones: steps allocate nothing.
-            let room = (2 * candidates.len()).max(BLOCK);
-            self.slots.resize(room, Default::default());
-            self.found.reserve(block_count(room));
-            self.sums.reserve(block_count(room));
-            self.pushes.reserve(room);
-            self.memories.reserve(room);
+impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockSum + Sync> Meetings<T, P, E> {
+    /// Makes room for that many candidates. What is not used is not touched: it takes addresses, and no memory.
+    pub fn reserve(&mut self, count: usize) {
+        fn room<V>(list: &mut Vec<V>, count: usize) {
+            list.reserve(count.saturating_sub(list.len()));
         }
-        let rows = (candidates, &mut self.slots[..candidates.len()]);
-        let total =
-            for_each_heavy_block(rows, &mut self.found, &|_, (candidates, slots): (&[C], &mut [_])| {
-                let mut found = Found { count: 0, extra: E::default() };
-                for candidate in candidates {
-                    if let Some(met) = test(candidate, &mut found.extra) {
-                        slots[found.count] = met;
-                        found.count += 1;
-                    }
+        let blocks = block_count(count);
+        room(&mut self.slots, count);
+        room(&mut self.met, count);
+        room(&mut self.pushes, count);
+        room(&mut self.numbers.within, count);
+        room(&mut self.numbers.first, blocks);
+        room(&mut self.found, blocks);
+        room(&mut self.sums, blocks);
+        self.memories.reserve(count);
+    }
+
+    /// Finds out which candidates, ascending, touch. Returns what `test` adds up.
+    pub fn find(&mut self, candidates: &[PairKey], test: impl Fn(PairKey, &mut E) -> Option<T> + Sync) -> E {
+        if self.slots.capacity() < candidates.len() {
+            self.reserve(2 * candidates.len());
+        }
+        let Self { slots, found, numbers, .. } = self;
+        slots.resize(slots.len().max(candidates.len()), Default::default());
+        numbers.within.resize(candidates.len(), NONE);
+        let slots = &mut slots[..candidates.len()];
+        let rows = (candidates, &mut slots[..], &mut numbers.within[..]);
+        type Rows<'a, T> = (&'a [PairKey], &'a mut [(PairKey, T)], &'a mut [u32]);
+        let all = for_each_block_in_tasks(BLOCKS_OF_TEST, rows, found, &|_, rows: Rows<'_, T>| {
+            let mut found = Found { count: 0, extra: E::default() };
+            let (candidates, slots, within) = rows;
+            for (&key, number) in candidates.iter().zip(within) {
+                *number = NONE;
+                if let Some(met) = test(key, &mut found.extra) {
+                    slots[found.count] = (key, met);
+                    *number = found.count as u32;
+                    found.count += 1;
                 }
-                found
-            });
-        self.count = 0;
-        for (block, found) in self.found.iter().enumerate() {
-            let first = block * BLOCK;
-            self.slots.copy_within(first..first + found.count, self.count);
-            self.count += found.count;
+            }
+            found
+        });
+        numbers.first.clear();
+        let mut first = 0;
+        for found in &*found {
+            numbers.first.push(first);
+            first += found.count as u32;
         }
-        total.extra
+        keep(slots, found, all.count, &mut self.met);
+        all.extra
     }
 
     /// The contacts of the step.
     pub fn met(&self) -> &[(PairKey, T)] {
-        &self.slots[..self.count]
+        &self.met
+    }
+
+    /// Which of them belongs to a candidate.
+    pub fn numbers(&self) -> &Numbers {
+        &self.numbers
     }
 
     /// What they do.
-    pub fn pushes(&self) -> impl Iterator<Item = (PairKey, &P)> {
-        self.met().iter().map(|met| met.0).zip(&self.pushes)
+    pub fn pushes(&self) -> &[P] {
+        &self.pushes
     }
 
     /// Works out what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
@@ -89,29 +125,92 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send, E: BlockSum> Mee
     pub fn respond(
         &mut self,
         each: impl Fn(PairKey, &T, &Memory, &mut Tally) -> (Memory, P) + Sync,
-        end: impl Fn(PairKey, &Memory, &mut Tally),
+        end: impl Fn(PairKey, &Memory, &mut Tally) + Sync,
     ) -> Tally {
-        let met = &self.slots[..self.count];
-        self.pushes.clear();
-        self.pushes.resize(met.len(), P::default());
-        let remembered = self.memories.begin(met.iter().map(|met| met.0));
-        let old = remembered.old;
-        let rows = (met, remembered.before, remembered.new, &mut self.pushes[..]);
-        type Rows<'a, T, P> =
-            (&'a [(PairKey, T)], &'a [Option<u32>], &'a mut [(PairKey, Memory)], &'a mut [P]);
-        let mut tally = for_each_heavy_block(rows, &mut self.sums, &|_, rows: Rows<'_, T, P>| {
+        let Self { met, pushes, memories, sums, .. } = self;
+        pushes.resize(met.len(), P::default());
+        let (old, new) = memories.generations(met.len());
+        let rows = (&met[..], new, &mut pushes[..]);
+        type Rows<'a, T, P> = (&'a [(PairKey, T)], &'a mut [(PairKey, Memory)], &'a mut [P]);
+        let mut tally = for_each_heavy_block(rows, sums, &|_, (met, new, pushes): Rows<'_, T, P>| {
             let mut tally = Tally::default();
-            let (met, before, new, pushes) = rows;
-            for (((met, before), new), push) in met.iter().zip(before).zip(new).zip(pushes) {
-                let before = before.map_or(Memory::default(), |k| old[k as usize].1);
-                (new.1, *push) = each(met.0, &met.1, &before, &mut tally);
+            let mut old = Passing::new(old, met[0].0);
+            for (((key, met), new), push) in met.iter().zip(new).zip(pushes) {
+                let before = old.at(*key).map_or(Memory::default(), |entry| entry.1);
+                let (memory, pushed) = each(*key, met, &before, &mut tally);
+                (*new, *push) = ((*key, memory), pushed);
             }
             tally
         });
-        for (key, memory) in self.memories.ended() {
-            end(*key, memory, &mut tally);
-        }
+        let ended = for_each_heavy_block(old, sums, &|_, old: &[(PairKey, Memory)]| {
+            let mut tally = Tally::default();
+            let mut met = Passing::new(met, old[0].0);
+            for (key, memory) in old {
+                if met.at(*key).is_none() {
+                    end(*key, memory, &mut tally);
+                }
+            }
+            tally
+        });
+        tally.add(&ended);
         self.memories.turn();
         tally
+    }
+}
+
+/// A list, ascending by pair, that is passed through in its order.
+struct Passing<'a, V>(&'a [(PairKey, V)]);
+
+impl<'a, V> Passing<'a, V> {
+    /// From that pair on.
+    fn new(list: &'a [(PairKey, V)], from: PairKey) -> Self {
+        Self(&list[list.partition_point(|entry| entry.0 < from)..])
+    }
+
+    /// The entry of a pair, if there is one. Pairs that are asked for ascend.
+    fn at(&mut self, key: PairKey) -> Option<&'a (PairKey, V)> {
+        while self.0.first().is_some_and(|entry| entry.0 < key) {
+            self.0 = &self.0[1..];
+        }
+        self.0.first().filter(|entry| entry.0 == key)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step in which these pairs touch; returns which were remembered, and which have ended.
+    fn step(meetings: &mut Meetings<u32, u32, ()>, touching: &[PairKey]) -> (Vec<PairKey>, usize) {
+        let candidates: Vec<PairKey> = (0..200).flat_map(|i| [(i, 0), (i, 2)]).collect();
+        meetings.find(&candidates, |key, ()| touching.contains(&key).then_some(key.0 + key.1));
+        assert!(meetings.met().iter().map(|met| met.0).eq(touching.iter().copied()));
+        for (candidate, key) in (0..).zip(&candidates) {
+            let number = meetings.numbers().of(candidate);
+            assert_eq!(number, touching.iter().position(|touching| touching == key));
+        }
+        let tally = meetings.respond(
+            |key, found, before, _| {
+                assert_eq!(*found, key.0 + key.1);
+                let overlap = if before.is_none() { 1.0 } else { before.overlap + 1.0 };
+                (Memory { overlap, ..Memory::default() }, *found)
+            },
+            |_, _, tally| tally.stored += 1.0,
+        );
+        assert!(meetings.pushes().iter().copied().eq(touching.iter().map(|key| key.0 + key.1)));
+        let entries = meetings.memories.entries().iter();
+        let again = entries.filter(|entry| entry.1.overlap > 1.0).map(|entry| entry.0);
+        (again.collect(), tally.stored as usize)
+    }
+
+    #[test]
+    fn contacts_that_end_are_met_once_and_others_are_remembered() {
+        let mut meetings = Meetings::default();
+        assert_eq!(step(&mut meetings, &[(1, 0), (3, 2), (7, 0)]), (vec![], 0));
+        assert_eq!(step(&mut meetings, &[(2, 2), (3, 2), (70, 0), (199, 2)]), (vec![(3, 2)], 2));
+        assert_eq!(step(&mut meetings, &[]), (vec![], 4));
+        let all: Vec<PairKey> = (0..200).map(|i| (i, 2)).collect();
+        assert_eq!(step(&mut meetings, &all), (vec![], 0));
+        assert_eq!(step(&mut meetings, &all[50..]), (all[50..].to_vec(), 50));
     }
 }

@@ -5,7 +5,7 @@ use std::cell::Ref;
 use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
-use super::shape::{Shape, largest_stretch};
+use super::shape::Shape;
 use crate::formulations::total_lagrangian::{PackedRows, Surroundings, TotalLagrangian, packed_rows};
 use crate::plugin::{BodyPlan, Formulation};
 use crate::scene::Dimension;
@@ -47,15 +47,6 @@ impl Particles {
     /// The least radius, m.
     pub fn least(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// A bound of how far any of them is stretched: in tenths, so that lists are seldom made for another one.
-    pub fn stretch(&self, world: &World) -> Result<f64, MissingColumn> {
-        if !self.deform {
-            return Ok(1.0);
-        }
-        let (view, rows) = world.body_view(self.body);
-        Ok(0.1 + 0.1 * (10.0 * largest_stretch(&view.read::<DeformationGradient>()?[rows])).floor())
     }
 }
 

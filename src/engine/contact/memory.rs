@@ -19,6 +19,8 @@ pub(super) struct Memory {
     pub overlap: f64,
     /// From the particles of both sides to where the forces act, in the reference configuration, m.
     pub arms: [DVec3; 2],
+    /// Force along the normal, N.
+    pub pressure: f64,
 }
 
 impl Memory {
@@ -44,52 +46,20 @@ impl Memory {
 pub(super) struct Memories {
     now: Vec<(PairKey, Memory)>,
     next: Vec<(PairKey, Memory)>,
-    /// Where in `now` the contacts of `next` were in the last step.
-    before: Vec<Option<u32>>,
-    /// Entries of `now` that have ended.
-    ended: Vec<u32>,
-}
-
-/// The memories of the contacts of a step: for each where its old one is, the old ones, and room for the new ones.
-pub(super) struct Remembered<'a> {
-    pub before: &'a [Option<u32>],
-    pub old: &'a [(PairKey, Memory)],
-    pub new: &'a mut [(PairKey, Memory)],
 }
 
 impl Memories {
     /// Makes room for that many contacts.
     pub fn reserve(&mut self, count: usize) {
-        let room = |entries: &mut Vec<_>| entries.reserve(count.saturating_sub(entries.len()));
-        room(&mut self.now);
-        room(&mut self.next);
-        self.before.reserve(count.saturating_sub(self.before.len()));
-        self.ended.reserve(count.saturating_sub(self.ended.len()));
-    }
-
-    /// Begins a step with contacts of these pairs, ascending.
-    pub fn begin(&mut self, keys: impl Iterator<Item = PairKey>) -> Remembered<'_> {
-        self.before.clear();
-        self.ended.clear();
-        self.next.clear();
-        let mut passed = 0;
-        for key in keys {
-            while self.now.get(passed).is_some_and(|entry| entry.0 < key) {
-                self.ended.push(passed as u32);
-                passed += 1;
-            }
-            let known = self.now.get(passed).is_some_and(|entry| entry.0 == key);
-            self.before.push(known.then_some(passed as u32));
-            passed += usize::from(known);
-            self.next.push((key, Memory::default()));
+        for entries in [&mut self.now, &mut self.next] {
+            entries.reserve(count.saturating_sub(entries.len()));
         }
-        self.ended.extend(passed as u32..self.now.len() as u32);
-        Remembered { before: &self.before, old: &self.now, new: &mut self.next }
     }
 
-    /// Contacts of the last step that have ended.
-    pub fn ended(&self) -> impl Iterator<Item = &(PairKey, Memory)> {
-        self.ended.iter().map(|&k| &self.now[k as usize])
+    /// The contacts of the last step, and room for those of this one.
+    pub fn generations(&mut self, count: usize) -> (&[(PairKey, Memory)], &mut [(PairKey, Memory)]) {
+        self.next.resize(count, Default::default());
+        (&self.now, &mut self.next)
     }
 
     /// Ends the step.
@@ -105,25 +75,5 @@ impl Memories {
     /// Takes up the contacts of a checkpoint.
     pub fn set(&mut self, entries: Vec<(PairKey, Memory)>) {
         self.now = entries;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contacts_that_end_are_met_once_and_others_are_found() {
-        let mut memories = Memories::default();
-        for entry in memories.begin([(1, 0), (3, 2), (7, 0)].into_iter()).new {
-            entry.1.stiffness = f64::from(entry.0.0);
-        }
-        memories.turn();
-        let found = memories.begin([(2, 9), (3, 2), (5, 0)].into_iter());
-        assert_eq!(found.before, [None, Some(1), None]);
-        assert_eq!(found.old[1].1.stiffness, 3.0);
-        assert!(memories.ended().map(|entry| entry.0).eq([(1, 0), (7, 0)]));
-        memories.turn();
-        assert_eq!(memories.entries().len(), 3);
     }
 }

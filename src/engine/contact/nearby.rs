@@ -2,8 +2,11 @@
 
 use glam::DVec3;
 
+use super::memory::PairKey;
 use super::node_view::NodeView;
 use super::sides::Sides;
+use super::sieve::Sieve;
+use crate::parallel::BlockSum;
 use crate::rigid::RigidBody;
 
 /// Skin over the size of a node.
@@ -14,8 +17,10 @@ pub(super) const NEAR: f64 = 0.5;
 
 /// The nodes of a body that are near a surface.
 pub(super) struct Nearby {
-    /// Nodes that may touch, ascending.
-    candidates: Vec<u32>,
+    /// Nodes that may touch, ascending, with zero for the surface.
+    candidates: Vec<PairKey>,
+    sieve: Sieve<PairKey, Budget>,
+    /// How far both bodies may move together until there are others, m, and how far they have.
     budget: f64,
     travelled: f64,
     /// Largest radius of a node, m, and how far nodes were stretched at most when the candidates were found.
@@ -26,16 +31,17 @@ pub(super) struct Nearby {
 impl Nearby {
     /// None yet, of nodes with this largest radius, m.
     pub fn new(largest: f64) -> Self {
-        Self { candidates: Vec::new(), budget: -1.0, travelled: 0.0, largest, stretch: 1.0 }
+        let (candidates, sieve) = (Vec::new(), Sieve::default());
+        Self { candidates, sieve, budget: -1.0, travelled: 0.0, largest, stretch: 1.0 }
     }
 
-    /// Nodes that may touch, ascending.
-    pub fn candidates(&self) -> &[u32] {
+    /// Nodes that may touch, ascending, with zero for the surface.
+    pub fn candidates(&self) -> &[PairKey] {
         &self.candidates
     }
 
     /// Takes in how far the two bodies may have moved together, m, and how far the nodes are stretched at most; finds the candidates anew if
-    /// they may be others.
+    /// they may be others, and says whether it has.
     pub fn update(
         &mut self,
         sides: &Sides,
@@ -43,36 +49,51 @@ impl Nearby {
         tool: &RigidBody,
         distance: f64,
         stretch: f64,
-    ) {
+    ) -> bool {
         self.travelled += distance;
         let used = self.travelled + self.largest * (stretch - self.stretch).max(0.0);
         // A distance that is not a number must not keep old candidates.
-        if used.is_nan() || used > self.budget {
+        let is_old = used.is_nan() || used > self.budget;
+        if is_old {
             (self.travelled, self.stretch) = (0.0, stretch);
             self.budget = self.find(sides, nodes, tool);
         }
+        is_old
     }
 
     /// Finds the nodes near the surface; returns how far both bodies may move together until others are, m.
     fn find(&mut self, sides: &Sides, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
-        self.candidates.clear();
-        self.candidates.reserve(nodes.len());
         let bounds = tool.surface.bounds();
-        let mut budget = f64::INFINITY;
-        for i in 0..nodes.len() {
+        let largest_stretch = self.stretch;
+        let budget = self.sieve.sift(nodes.len(), &mut self.candidates, &|i, budget: &mut Budget| {
             let x = tool.reference(sides.near(nodes.position(i), tool));
             let size = nodes.size(i);
-            let (reach, skin, near) = (self.stretch * nodes.radius(i), SKIN * size, NEAR * size);
+            let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
             let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
             if gap < skin {
-                budget = budget.min(skin - near);
-                if tool.surface.closest(x).signed_distance - reach < skin {
-                    self.candidates.push(i as u32);
-                }
+                budget.add(&Budget(skin - near));
+                (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
             } else {
-                budget = budget.min(gap - near);
+                budget.add(&Budget(gap - near));
+                None
             }
-        }
-        budget
+        });
+        budget.0
+    }
+}
+
+/// The least way that is left, m.
+#[derive(Clone, Copy)]
+struct Budget(f64);
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self(f64::INFINITY)
+    }
+}
+
+impl BlockSum for Budget {
+    fn add(&mut self, next: &Self) {
+        self.0 = self.0.min(next.0);
     }
 }

@@ -7,15 +7,15 @@ use super::law::Touch;
 use super::meetings::Meetings;
 use super::members::{MemberColumns, Particles};
 use super::memory::{Memory, PairKey};
+use super::pace::Pace;
 use super::response::{Interaction, Meeting};
 use super::search::{Crowd, Search};
 use super::shape::{Nearness, of_pair};
-use super::system::Pace;
 use super::tally::Tally;
-use super::touched::Touched;
+use super::touched::{End, Pull, Touched};
 use crate::formulations::total_lagrangian::Surroundings;
 use crate::neighbors::{NeighborError, Periodic};
-use crate::parallel::BlockSum;
+use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::world::{Position, ReferencePosition};
 
@@ -119,6 +119,13 @@ impl ParticleContact {
         let stretch = paces[0].stretch.max(paces[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
             self.find(step)?;
+            let pairs = self.search.pairs();
+            let of_itself = self.first.body == self.second.body;
+            let ends = if of_itself { &[End::First, End::Second][..] } else { &[End::First] };
+            self.touched[0].renew(pairs, ends);
+            if !of_itself {
+                self.touched[1].renew(pairs, &[End::Second]);
+            }
         }
         let (tally, least) = self.evaluate(step, stretch)?;
         self.propose(step, speed, least);
@@ -132,7 +139,7 @@ impl ParticleContact {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;
         let second = MemberColumns::new(&self.second, step.world, step.resources)?;
         let (first, second) = (first.members(), second.members());
-        let least = meetings.find(search.pairs(), |&key, least: &mut Least| {
+        let least = meetings.find(search.pairs(), |key, least: &mut Least| {
             let (i, j) = (key.0 as usize, key.1 as usize);
             let x_ij = periodic.minimal_image(mirror.place(second.position(j)) - first.position(i));
             let reach = first.radius(i) + second.radius(j);
@@ -144,19 +151,13 @@ impl ParticleContact {
             let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.map(f))));
             least.add(&Least(reach / near.scale));
             // What is not a number does not touch.
-            (near.overlap > 0.0 && first.is_there(i) && second.is_there(j)).then_some((key, near))
+            (near.overlap > 0.0 && first.is_there(i) && second.is_there(j)).then_some(near)
         });
         let of_itself = self.first.body == self.second.body;
         let other = usize::from(!of_itself);
-        touched.iter_mut().for_each(Touched::clear);
-        touched.iter_mut().for_each(|touched| touched.reserve(search.pairs().len()));
-        for ((i, j), _) in meetings.met() {
-            touched[0].take_in(*i);
-            touched[other].take_in(*j);
-        }
         let moving = !interaction.is_elastic();
-        touched[0].look(&first, moving);
-        touched[1].look(&second, moving);
+        touched[0].look(&first, meetings.numbers(), moving);
+        touched[1].look(&second, meetings.numbers(), moving);
         let velocity = |of: [&Surroundings; 2], arms: [DVec3; 2]| {
             of[0].velocity(arms[0]) - mirror.turn(of[1].velocity(mirror.turn(arms[1])))
         };
@@ -204,21 +205,26 @@ impl ParticleContact {
             tally.losses.keep(share(key), memory, &Memory::default());
         };
         let tally = meetings.respond(respond, end);
-        for ((i, j), Push { arms, force, stiffness }) in meetings.pushes() {
-            touched[0].add(i, *force, arms[0], stiffness[0]);
-            touched[other].add(j, -mirror.turn(*force), mirror.turn(arms[1]), stiffness[1]);
-        }
+        let pushes = meetings.pushes();
+        let pull = |number: usize, end: End| {
+            let Push { arms, force, stiffness } = pushes[number];
+            let (force, arm, stiffness) = match end {
+                End::First => (force, arms[0], stiffness[0]),
+                End::Second => (-mirror.turn(force), mirror.turn(arms[1]), stiffness[1]),
+            };
+            Pull { force, arm, stiffness, beside: DVec3::ZERO }
+        };
+        touched.iter_mut().for_each(|touched| touched.add_up(meetings.numbers(), &pull));
         Ok((tally, least.0.min(self.first.least() + self.second.least())))
     }
 
     fn propose(&self, step: &mut Step<'_>, speed: f64, least: f64) {
-        let other = usize::from(self.first.body != self.second.body);
-        let stiffest = self
-            .meetings
-            .met()
-            .iter()
-            .map(|((i, j), _)| self.touched[0].stiffness(*i) + self.touched[other].stiffness(*j));
+        let [one, other] = &self.touched;
+        let other = if self.first.body == self.second.body { one } else { other };
+        let stiffest = sum_over_blocks(self.meetings.met(), &|_, met: &[(PairKey, Nearness)]| {
+            Largest::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
+        });
         let bodies = (self.first.body, self.second.body);
-        super::stiffness::propose(step, bodies, stiffest.fold(0.0, f64::max), speed, least);
+        super::stiffness::propose(step, bodies, stiffest.0, speed, least);
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Velocities are those of mid-step. The dashpots act on the velocity that the contact itself leaves at the end of the
 //! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w: they are damping at any time step, and the
-//! restitution does not depend on it to first order.
+//! restitution does not depend on it to first order. A particle of a body is held by its bonds: they take up the force f of the
+//! last step, and only its change moves the particle. Without that, a dashpot would pull at what is pressed and at rest, and its heat were negative.
 
 use glam::DVec3;
 
@@ -68,16 +69,18 @@ impl Interaction {
         let approach = -velocity.dot(*normal);
         spring.force *= share_of_step(touch, scale * approach * dt, before);
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
-        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force, dt);
+        let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
+        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force - taken_up, dt);
         let pressure = (spring.force + pull).max(0.0);
         let (tangential, drag) =
             self.tangential(meeting, spring.stiffness, pressure, &inverse_mass, dt, before);
         let stiffness = self.tangential * spring.stiffness;
         let dashpot = (pressure - spring.force) * *normal + drag;
+        let (overlap, arms) = (touch.overlap, *arms);
         Response {
             force: pressure * *normal + tangential + drag,
             spring,
-            memory: Memory { spring: tangential, stiffness, dashpot, overlap: touch.overlap, arms: *arms },
+            memory: Memory { spring: tangential, stiffness, dashpot, overlap, arms, pressure },
         }
     }
 
@@ -94,7 +97,7 @@ impl Interaction {
         }
     }
 
-    /// Force of a dashpot beside a spring of that stiffness and force that slows a motion at `speed`, N.
+    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is what the spring does to it.
     fn dashpot(&self, stiffness: f64, inverse_mass: f64, speed: f64, force: f64, dt: f64) -> f64 {
         if self.damping_ratio == 0.0 || inverse_mass <= 0.0 {
             return 0.0;
@@ -132,11 +135,17 @@ impl Interaction {
             return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
         }
         let along = slip.normalize_or(spring.normalize_or_zero());
-        let drag =
-            -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), -spring.dot(along), dt) * along;
+        let taken_up = if is_held(&meeting.touch) { before.spring } else { DVec3::ZERO };
+        let pull = (taken_up - spring).dot(along);
+        let drag = -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), pull, dt) * along;
         let room = limit - held;
         (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
     }
+}
+
+/// Whether what touches has bonds: rigid bodies have none.
+fn is_held(touch: &Touch) -> bool {
+    touch.depth.is_finite()
 }
 
 /// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a contact has acted since the sides met, with
@@ -145,7 +154,7 @@ impl Interaction {
 fn share_of_step(touch: &Touch, approach: f64, before: &Memory) -> f64 {
     let overlap = touch.overlap;
     let way = if before.is_none() { approach } else { before.overlap - overlap };
-    if way > overlap && touch.depth.is_finite() { 0.5 + 0.5 * overlap / way } else { 1.0 }
+    if way > overlap && is_held(touch) { 0.5 + 0.5 * overlap / way } else { 1.0 }
 }
 
 impl Losses {

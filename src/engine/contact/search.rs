@@ -7,8 +7,9 @@ use glam::DVec3;
 
 use super::images::Mirror;
 use super::memory::PairKey;
+use super::sieve::Sieve;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::shapes::Aabb;
 use crate::world::Position;
 
@@ -45,6 +46,7 @@ pub(super) struct Search {
 /// The particles of a body that are near the other one.
 #[derive(Default)]
 struct Region {
+    sieve: Sieve<u32, ()>,
     numbers: Vec<u32>,
     position: Vec<DVec3>,
     reach: Vec<f64>,
@@ -52,17 +54,23 @@ struct Region {
 
 impl Region {
     fn collect(&mut self, crowd: Crowd<'_>, stretch: f64, within: Option<&Aabb>) {
-        self.numbers.clear();
-        self.position.clear();
-        self.reach.clear();
-        for (k, (x, radius)) in crowd.position.iter().zip(crowd.radius).enumerate() {
-            let x = crowd.mirror.place(x.0);
-            if within.is_none_or(|within| x.cmpge(within.min).all() && x.cmple(within.max).all()) {
-                self.numbers.push(k as u32);
-                self.position.push(x);
-                self.reach.push(2.0 * stretch * radius);
+        let Self { sieve, numbers, position, reach } = self;
+        let place = |k: usize| crowd.mirror.place(crowd.position[k].0);
+        sieve.sift(crowd.position.len(), numbers, &|k, ()| {
+            let x = place(k);
+            let is_near = within.is_none_or(|within| x.cmpge(within.min).all() && x.cmple(within.max).all());
+            is_near.then_some(k as u32)
+        });
+        position.resize(numbers.len(), DVec3::ZERO);
+        reach.resize(numbers.len(), 0.0);
+        let rows = (&numbers[..], &mut position[..], &mut reach[..]);
+        type Rows<'a> = (&'a [u32], &'a mut [DVec3], &'a mut [f64]);
+        for_each_block(rows, &mut Vec::new(), &|_, (numbers, position, reach): Rows<'_>| {
+            for ((&k, position), reach) in numbers.iter().zip(position).zip(reach) {
+                *position = place(k as usize);
+                *reach = 2.0 * stretch * crowd.radius[k as usize];
             }
-        }
+        });
     }
 
     fn cloud(&self) -> Cloud<'_> {

@@ -7,7 +7,6 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::parallel::{Largest, sum_over_blocks};
 use crate::world::DeformationGradient;
 
 /// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a sphere.
@@ -52,17 +51,12 @@ pub(super) fn on_surface(distance: f64, normal: DVec3, (radius, f): Shape) -> Ne
     Nearness { overlap: radius - distance / stretch, normal, scale: 1.0 / stretch, arms: [arm, DVec3::ZERO] }
 }
 
-/// A bound of the stretches of particles: the root of the largest sum over a row of F F^T, exact without shear.
-pub(super) fn largest_stretch(gradient: &[DeformationGradient]) -> f64 {
-    let squared = sum_over_blocks(gradient, &|_, rows: &[DeformationGradient]| {
-        Largest::of(rows.iter().map(|row| {
-            let f = row.0.transpose();
-            let (xy, xz, yz) = (f.x_axis.dot(f.y_axis), f.x_axis.dot(f.z_axis), f.y_axis.dot(f.z_axis));
-            let diagonal =
-                DVec3::new(f.x_axis.length_squared(), f.y_axis.length_squared(), f.z_axis.length_squared());
-            let (xy, xz, yz) = (xy.abs(), xz.abs(), yz.abs());
-            (diagonal + DVec3::new(xy + xz, xy + yz, xz + yz)).max_element()
-        }))
-    });
-    squared.0.sqrt()
+/// A bound of the squared stretches of a particle: the largest sum over a row of F F^T, exact without shear.
+pub(super) fn squared_stretch(gradient: &DeformationGradient) -> f64 {
+    let f = gradient.0.transpose();
+    let (xy, xz, yz) = (f.x_axis.dot(f.y_axis), f.x_axis.dot(f.z_axis), f.y_axis.dot(f.z_axis));
+    let diagonal =
+        DVec3::new(f.x_axis.length_squared(), f.y_axis.length_squared(), f.z_axis.length_squared());
+    let (xy, xz, yz) = (xy.abs(), xz.abs(), yz.abs());
+    (diagonal + DVec3::new(xy + xz, xy + yz, xz + yz)).max_element()
 }

@@ -9,14 +9,14 @@ use super::members::Particles;
 use super::memory::{Memory, PairKey};
 use super::nearby::{NEAR, Nearby};
 use super::node_view::{NodeMotion, NodeView};
+use super::pace::Pace;
 use super::response::{Interaction, Meeting};
 use super::shape::Nearness;
 use super::sides::Sides;
 use super::stiffness;
-use super::system::Pace;
 use super::tally::Tally;
-use super::touched::Touched;
-use crate::parallel::BlockSum;
+use super::touched::{End, Pull, Touched};
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
 
@@ -104,31 +104,25 @@ impl SurfaceContact {
         let mut bodies = shared.lock();
         let speed = paces[0].speed + paces[1].speed;
         let dt = step.clock.dt;
-        let Self { interaction, sides, nearby, meetings, gravity, .. } = self;
+        let Self { interaction, sides, nearby, meetings, gravity, touched } = self;
+        let of_particles = sides.nodes.particles();
         let (tally, near, expected) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
-            nearby.update(sides, nodes, tool, speed * dt, paces[0].stretch);
+            let is_new = nearby.update(sides, nodes, tool, speed * dt, paces[0].stretch);
+            if is_new && of_particles.is_some() {
+                touched.renew(nearby.candidates(), &[End::First]);
+            }
             let near = find(sides, nodes, tool, nearby.candidates(), meetings);
             let tally = evaluate(interaction, sides, nodes, tool, dt, meetings);
             (tally, near, expected(interaction, nodes, tool, near.held, speed, *gravity))
         })?;
-        let (mut rigid, mut particle) = (0.0, 0.0_f64);
-        let of_particles = self.sides.nodes.particles();
-        self.touched.clear();
-        self.touched.reserve(self.nearby.candidates().len());
-        for ((node, _), push) in self.meetings.pushes() {
-            rigid += push.stiffness[1];
-            if of_particles.is_some() {
-                self.touched.take_in(node);
-                self.touched.add(node, push.force, push.arm, push.stiffness[0]);
-                self.touched.add(node, push.turning, DVec3::ZERO, 0.0);
-                particle = particle.max(self.touched.stiffness(node));
-            } else {
-                rigid += push.stiffness[0];
-            }
-        }
-        self.push(&mut bodies);
-        let pair = (self.sides.first, self.sides.second);
-        let squared = rigid + particle;
+        let pushes = meetings.pushes();
+        touched.add_up(meetings.numbers(), &|number, _| {
+            let Push { force, arm, turning, stiffness, .. } = pushes[number];
+            Pull { force, arm, beside: turning, stiffness: stiffness[0] }
+        });
+        let [particle, rigid] = push(sides, pushes, &mut bodies);
+        let squared = rigid + if of_particles.is_some() { touched.stiffest() } else { particle };
+        let pair = (sides.first, sides.second);
         match of_particles {
             Some(particles) if expected == 0.0 => {
                 stiffness::propose(step, pair, squared, speed, 2.0 * near.least.min(particles.least()));
@@ -137,23 +131,46 @@ impl SurfaceContact {
         }
         Ok(tally)
     }
+}
 
-    /// The forces on rigid bodies: exactly opposite to those on the other side, at one place.
-    fn push(&self, bodies: &mut [RigidBody]) {
-        for body in bodies {
-            let middle = body.state.center;
-            let mut sum = Wrench::default();
-            for (_, Push { place, center, shift, force, turning, .. }) in self.meetings.pushes() {
-                if body.id == self.sides.second {
-                    sum.push(*place - middle, -*force);
-                    sum.push(*center - middle, -*turning);
-                } else if body.id == self.sides.first {
-                    sum.push(*place + *shift - middle, *force);
-                }
-            }
-            body.push(&sum);
+/// What contacts do to the bodies of both sides, about their centres, and the sums of their stiffness over mass, 1/s2.
+#[derive(Clone, Copy, Default)]
+struct Pushes {
+    on: [Wrench; 2],
+    stiffness: [f64; 2],
+}
+
+impl BlockSum for Pushes {
+    fn add(&mut self, next: &Self) {
+        for side in 0..2 {
+            self.on[side].add(&next.on[side]);
+            self.stiffness[side] += next.stiffness[side];
         }
     }
+}
+
+/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place. Returns the sums of stiffness over mass of both sides, 1/s2.
+fn push(sides: &Sides, pushes: &[Push], bodies: &mut [RigidBody]) -> [f64; 2] {
+    let of = |id| bodies.iter().position(|body: &RigidBody| body.id == id);
+    let both = [of(sides.first), of(sides.second)];
+    let middle = both.map(|k| k.map_or(DVec3::ZERO, |k| bodies[k].state.center));
+    let Pushes { on, stiffness } = sum_over_blocks(pushes, &|_, pushes: &[Push]| {
+        let mut sum = Pushes::default();
+        for Push { place, center, shift, force, turning, stiffness, .. } in pushes {
+            sum.on[0].push(*place + *shift - middle[0], *force);
+            sum.on[1].push(*place - middle[1], -*force);
+            sum.on[1].push(*center - middle[1], -*turning);
+            sum.stiffness[0] += stiffness[0];
+            sum.stiffness[1] += stiffness[1];
+        }
+        sum
+    });
+    for (k, on) in both.into_iter().zip(on) {
+        if let Some(k) = k {
+            bodies[k].push(&on);
+        }
+    }
+    stiffness
 }
 
 /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, 1/s2: a
@@ -188,10 +205,10 @@ fn find(
     sides: &Sides,
     nodes: &NodeView<'_>,
     tool: &RigidBody,
-    candidates: &[u32],
+    candidates: &[PairKey],
     meetings: &mut Meetings<Meet, Push, Frequencies>,
 ) -> Frequencies {
-    meetings.find(candidates, |&node, frequencies: &mut Frequencies| {
+    meetings.find(candidates, |(node, _), frequencies: &mut Frequencies| {
         let i = node as usize;
         let own_place = nodes.position(i);
         let x = sides.near(own_place, tool);
@@ -205,7 +222,7 @@ fn find(
         frequencies.add(&Frequencies { least: nodes.radius(i) / near.scale, held });
         let touches = near.overlap > 0.0;
         // Where the body of the node has it, a period away from the image that touches.
-        touches.then(|| ((node, 0), Meet { x, shift: own_place - x, point: nearest.point, near }))
+        touches.then(|| Meet { x, shift: own_place - x, point: nearest.point, near })
     })
 }
 

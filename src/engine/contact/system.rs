@@ -4,15 +4,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::members::Particles;
 use super::memory::{Memories, Memory, PairKey};
+use super::pace::Pace;
 use super::particles::ParticleContact;
 use super::start;
 use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
 use super::touched::Touched;
 use crate::formulations::total_lagrangian::PackedRows;
-use crate::parallel::{Largest, sum_over_blocks};
 use crate::plugin::SimBuilder;
-use crate::rigid::RigidBodies;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{
     BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed, Velocity,
@@ -82,19 +81,12 @@ impl Touching {
     }
 }
 
-/// How fast a body is at most, m/s, and a bound of how far it is stretched.
-#[derive(Clone, Copy)]
-pub(super) struct Pace {
-    pub speed: f64,
-    pub stretch: f64,
-}
-
 /// Adds the system of the pairs; `numbers` are those of their contacts in the scene.
 pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Vec<usize>, bodies: &BodySet) {
     start::refuse_bodies_within_others(sim, &touching, numbers);
     let phases = sim.phases_of(bodies);
     let contacts = Contacts {
-        bodies: bodies.iter().map(|body| (body, Pace { speed: 0.0, stretch: 1.0 })).collect(),
+        bodies: bodies.iter().map(|body| (body, Pace::NONE)).collect(),
         tallies: Vec::with_capacity(touching.len()),
         touching,
     };
@@ -131,32 +123,16 @@ struct Contacts {
     tallies: Vec<((BodyId, BodyId), Tally)>,
 }
 
-fn largest_speed(step: &Step<'_>, body: BodyId) -> Result<f64, StepError> {
-    if let Some(bodies) = step.resources.try_get::<RigidBodies>()
-        && let Some(rigid) = bodies.lock().iter().find(|rigid| rigid.id == body)
-    {
-        // The points that touch are farther out than the particles.
-        return Ok(rigid.largest_speed());
-    }
-    let (view, rows) = step.world.body_view(body);
-    let velocity = view.read::<Velocity>()?;
-    let squared = sum_over_blocks(&velocity[rows], &|_, rows: &[Velocity]| {
-        Largest(rows.iter().map(|v| v.0.length_squared()).fold(0.0, f64::max))
-    });
-    Ok(squared.0.sqrt())
-}
-
 impl Contacts {
     fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for (body, pace) in &mut self.bodies {
-            pace.speed = largest_speed(step, *body)?;
-            let of_body = |particles: &&Particles| particles.deform && particles.body == *body;
-            let particles = self.touching.iter().flat_map(Touching::particles).find(of_body);
-            pace.stretch = particles.map_or(Ok(1.0), |particles| particles.stretch(step.world))?;
+            let mut particles = self.touching.iter().flat_map(Touching::particles);
+            let deform = particles.any(|particles| particles.deform && particles.body == *body);
+            *pace = Pace::of(*body, deform, step)?;
         }
         let pace_of = |body: BodyId| {
             let known = self.bodies.iter().find(|(id, _)| *id == body);
-            known.map_or(Pace { speed: 0.0, stretch: 1.0 }, |entry| entry.1)
+            known.map_or(Pace::NONE, |entry| entry.1)
         };
         self.tallies.clear();
         for pair in &mut self.touching {

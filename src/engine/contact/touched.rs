@@ -1,20 +1,48 @@
-//! The particles of a body that touch in a step. What their neighbourhoods do is worked out once for each, and so is what acts on them.
+//! The particles of a body that touch in a step. What their neighbourhoods do is worked out once for each, and so is what acts on them: every
+//! particle adds up what its contacts do, in their order.
 
 use glam::{DMat3, DVec3};
 
+use super::meetings::Numbers;
 use super::members::Members;
+use super::memory::PairKey;
+use super::sieve::BLOCKS_OF_TEST;
 use crate::formulations::total_lagrangian::{PackedRows, Surroundings};
-use crate::parallel::for_each_heavy_block;
+use crate::parallel::{Largest, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
 use crate::world::Force;
 
-/// In the place of a number in the list for particles that do not touch.
+/// In the place of a number in the list for particles that no candidate names.
 const NONE: u32 = u32::MAX;
 
-/// The particles that touch.
+/// Which particle of a pair.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    First,
+    Second,
+}
+
+/// What a contact does to one of its particles.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Pull {
+    /// Force on the particle, N, and on which point beside it, in the reference configuration, m.
+    pub force: DVec3,
+    pub arm: DVec3,
+    /// A force at the particle itself, N.
+    pub beside: DVec3,
+    /// Stiffness over mass, 1/s2.
+    pub stiffness: f64,
+}
+
+/// The particles of a body that may touch: those that candidates name.
 pub(super) struct Touched {
     /// Number in the lists of every particle of the body.
     numbers: Vec<u32>,
+    /// Ascending.
     nodes: Vec<u32>,
+    /// Where the ends of each begin.
+    starts: Vec<u32>,
+    /// Of every particle its candidates, ascending: twice their number, and one more where it is the second one.
+    ends: Vec<u32>,
     surroundings: Vec<Surroundings>,
     /// Sum of the forces on each, N.
     forces: Vec<DVec3>,
@@ -27,88 +55,176 @@ pub(super) struct Touched {
 impl Touched {
     /// None of that many particles.
     pub fn new(particles: usize) -> Self {
-        let (nodes, surroundings, forces) = (Vec::new(), Vec::new(), Vec::new());
-        let (couples, stiffness) = (Vec::new(), Vec::new());
-        Self { numbers: vec![NONE; particles], nodes, surroundings, forces, couples, stiffness }
-    }
-
-    /// Forgets the particles of the last step.
-    pub fn clear(&mut self) {
-        for node in self.nodes.drain(..) {
-            self.numbers[node as usize] = NONE;
-        }
-        self.forces.clear();
-        self.couples.clear();
-        self.stiffness.clear();
-    }
-
-    /// Makes room for that many particles.
-    pub fn reserve(&mut self, count: usize) {
-        let particles = self.numbers.len();
-        if self.nodes.capacity() < count.min(particles) {
-            let count = (2 * count).min(particles);
-            let more = count - self.nodes.len();
-            self.nodes.reserve(more);
-            self.surroundings.reserve(count - self.surroundings.len());
-            self.forces.reserve(more);
-            self.couples.reserve(more);
-            self.stiffness.reserve(more);
+        Self {
+            numbers: vec![NONE; particles],
+            nodes: Vec::new(),
+            starts: Vec::new(),
+            ends: Vec::new(),
+            surroundings: Vec::new(),
+            forces: Vec::new(),
+            couples: Vec::new(),
+            stiffness: Vec::new(),
         }
     }
 
-    /// Takes in a particle.
-    pub fn take_in(&mut self, node: u32) {
-        let number = &mut self.numbers[node as usize];
-        if *number == NONE {
-            *number = self.nodes.len() as u32;
-            self.nodes.push(node);
-            self.forces.push(DVec3::ZERO);
-            self.couples.push(DMat3::ZERO);
-            self.stiffness.push(0.0);
+    /// Makes room for that many candidates.
+    pub fn reserve(&mut self, candidates: usize) {
+        fn room<V>(list: &mut Vec<V>, count: usize) {
+            list.reserve(count.saturating_sub(list.len()));
         }
+        room(&mut self.ends, 2 * candidates);
+        let count = (2 * candidates).min(self.numbers.len());
+        room(&mut self.nodes, count);
+        room(&mut self.starts, count + 1);
+        room(&mut self.surroundings, count);
+        room(&mut self.forces, count);
+        room(&mut self.couples, count);
+        room(&mut self.stiffness, count);
     }
 
-    /// Looks at the surroundings of all that were taken in, and at how they move, if that is asked for.
-    pub fn look(&mut self, members: &Members<'_>, moving: bool) {
-        self.surroundings.clear();
-        self.surroundings.resize(self.nodes.len(), Surroundings::default());
-        let rows = (&self.nodes[..], &mut self.surroundings[..]);
-        for_each_heavy_block(rows, &mut Vec::new(), &|_, (nodes, found): (&[u32], &mut [Surroundings])| {
-            for (node, found) in nodes.iter().zip(found) {
-                *found = members.surroundings(*node as usize, moving);
+    /// Takes in the particles of a new list of candidates, which stand at these ends.
+    pub fn renew(&mut self, candidates: &[PairKey], ends: &[End]) {
+        if self.ends.capacity() < ends.len() * candidates.len() {
+            self.reserve(2 * candidates.len());
+        }
+        let Self { numbers, nodes, starts, ends: sorted, .. } = self;
+        nodes.drain(..).for_each(|node| numbers[node as usize] = NONE);
+        let at = |key: &PairKey, end: End| if end == End::First { key.0 } else { key.1 };
+        for node in candidates.iter().flat_map(|key| ends.iter().map(move |&end| at(key, end))) {
+            let count = &mut numbers[node as usize];
+            if *count == NONE {
+                *count = 0;
+                nodes.push(node);
             }
-        });
+            *count += 1;
+        }
+        nodes.sort_unstable();
+        starts.clear();
+        let mut start = 0;
+        for (number, &node) in (0..).zip(&*nodes) {
+            starts.push(start);
+            start += std::mem::replace(&mut numbers[node as usize], number);
+        }
+        sorted.resize(start as usize, 0);
+        for (candidate, key) in (0..).zip(candidates) {
+            for &end in ends {
+                // The start of each particle moves to its end, where the next one starts.
+                let place = &mut starts[numbers[at(key, end) as usize] as usize];
+                sorted[*place as usize] = 2 * candidate + u32::from(end == End::Second);
+                *place += 1;
+            }
+        }
+        starts.insert(0, 0);
+        self.surroundings.resize(self.nodes.len(), Surroundings::default());
     }
 
-    /// The surroundings of a particle that was taken in.
+    /// The ends of a particle, by its number in the lists.
+    fn ends(&self, number: usize) -> &[u32] {
+        &self.ends[self.starts[number] as usize..self.starts[number + 1] as usize]
+    }
+
+    /// Looks at the surroundings of those that touch, and at how they move, if that is asked for.
+    pub fn look(&mut self, members: &Members<'_>, contacts: &Numbers, moving: bool) {
+        let mut surroundings = std::mem::take(&mut self.surroundings);
+        let all = &*self;
+        for_each_block_in_tasks(
+            BLOCKS_OF_TEST,
+            &mut surroundings[..],
+            &mut Vec::new(),
+            &|first, found: &mut [Surroundings]| {
+                for (number, found) in (first..).zip(found) {
+                    if all.ends(number).iter().any(|end| contacts.of(end / 2).is_some()) {
+                        *found = members.surroundings(all.nodes[number] as usize, moving);
+                    }
+                }
+            },
+        );
+        self.surroundings = surroundings;
+    }
+
+    /// The surroundings of a particle that touches.
     pub fn surroundings(&self, node: u32) -> &Surroundings {
         &self.surroundings[self.numbers[node as usize] as usize]
     }
 
-    /// Adds a force, N, on the point `arm` beside a particle that was taken in, with its stiffness over mass, 1/s2.
-    pub fn add(&mut self, node: u32, force: DVec3, arm: DVec3, stiffness: f64) {
-        let number = self.numbers[node as usize] as usize;
-        self.forces[number] += force;
-        self.couples[number] += DMat3::from_cols(force * arm.x, force * arm.y, force * arm.z);
-        self.stiffness[number] += stiffness;
+    /// Adds up what the contacts do to every particle; `pull` says what one does to the particle at that end.
+    pub fn add_up(&mut self, contacts: &Numbers, pull: &(impl Fn(usize, End) -> Pull + Sync)) {
+        let count = self.nodes.len();
+        let (mut forces, mut couples) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.couples));
+        let mut stiffness = std::mem::take(&mut self.stiffness);
+        forces.resize(count, DVec3::ZERO);
+        couples.resize(count, DMat3::ZERO);
+        stiffness.resize(count, 0.0);
+        let all = &*self;
+        let rows = (&mut forces[..], &mut couples[..], &mut stiffness[..]);
+        type Rows<'a> = (&'a mut [DVec3], &'a mut [DMat3], &'a mut [f64]);
+        for_each_block(rows, &mut Vec::new(), &|first, (forces, couples, stiffness): Rows<'_>| {
+            for k in 0..forces.len() {
+                let (mut force, mut couple, mut stiff) = (DVec3::ZERO, DMat3::ZERO, 0.0);
+                for end in all.ends(first + k) {
+                    let Some(number) = contacts.of(end / 2) else { continue };
+                    let pull = pull(number, if end % 2 == 0 { End::First } else { End::Second });
+                    let Pull { force: push, arm, .. } = pull;
+                    force += push + pull.beside;
+                    couple += DMat3::from_cols(push * arm.x, push * arm.y, push * arm.z);
+                    stiff += pull.stiffness;
+                }
+                (forces[k], couples[k], stiffness[k]) = (force, couple, stiff);
+            }
+        });
+        (self.forces, self.couples, self.stiffness) = (forces, couples, stiffness);
     }
 
-    /// Stiffness over mass of the contacts of a particle that was taken in, 1/s2.
+    /// Stiffness over mass of the contacts of a particle that touches, 1/s2.
     pub fn stiffness(&self, node: u32) -> f64 {
         self.stiffness[self.numbers[node as usize] as usize]
     }
 
+    /// The largest stiffness over mass of the contacts of a particle, 1/s2.
+    pub fn stiffest(&self) -> f64 {
+        sum_over_blocks(&self.stiffness[..], &|_, stiffness: &[f64]| Largest::of(stiffness.iter().copied())).0
+    }
+
     /// Adds what acts on the neighbourhoods; `first` is the first row of the body.
     pub fn add_couples(&self, packed: &mut PackedRows, first: usize) {
-        if !self.nodes.is_empty() {
-            packed.add_couples(first, &self.numbers, &self.couples);
-        }
+        packed.add_couples(first, &self.nodes, &self.couples);
     }
 
     /// Adds what acts on the particles of a body.
     pub fn add_forces(&self, force: &mut [Force]) {
-        for (node, push) in self.nodes.iter().zip(&self.forces) {
-            force[*node as usize].0 += *push;
+        let rows = (Picked::new(&self.nodes, force), &self.forces[..]);
+        sum_over_blocks(rows, &|_, (mut rows, pushes): (Picked<'_, Force>, &[DVec3])| {
+            // Nothing is added to those that do not touch, not even zero, which might change a sign.
+            for (k, push) in pushes.iter().enumerate().filter(|(_, push)| **push != DVec3::ZERO) {
+                rows.row(k).0 += *push;
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_knows_its_candidates_at_either_end() {
+        let candidates = [(1, 4), (1, 9), (3, 4), (4, 4), (9, 1)];
+        let mut touched = Touched::new(10);
+        touched.renew(&[(0, 8), (8, 2)], &[End::First]);
+        for (ends, expected) in [
+            (&[End::First][..], vec![(1, vec![0, 2]), (3, vec![4]), (4, vec![6]), (9, vec![8])]),
+            (&[End::Second], vec![(1, vec![9]), (4, vec![1, 5, 7]), (9, vec![3])]),
+            (
+                &[End::First, End::Second],
+                vec![(1, vec![0, 2, 9]), (3, vec![4]), (4, vec![1, 5, 6, 7]), (9, vec![3, 8])],
+            ),
+        ] {
+            touched.renew(&candidates, ends);
+            let found: Vec<_> =
+                touched.nodes.iter().zip(0..).map(|(&node, k)| (node, touched.ends(k).to_vec())).collect();
+            assert_eq!(found, expected);
+            assert!(expected.iter().zip(0..).all(|((node, _), k)| touched.numbers[*node as usize] == k));
+            assert_eq!(touched.numbers.iter().filter(|&&number| number != NONE).count(), expected.len());
         }
     }
 }

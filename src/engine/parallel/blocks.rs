@@ -85,7 +85,8 @@ pub fn for_each_heavy_block<S: Split, R: BlockSum>(
     for_each_block_in_tasks(1, rows, sums, body)
 }
 
-fn for_each_block_in_tasks<S: Split, R: BlockSum>(
+/// [`for_each_block`] with that many blocks in a task: some twenty microseconds are worth handing over to another thread.
+pub fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     per_task: usize,
     rows: S,
     sums: &mut Vec<R>,

@@ -13,7 +13,8 @@ mod vector;
 
 pub use arithmetic::Arithmetic;
 pub use blocks::{
-    BLOCK, BlockSum, Split, block_count, for_each_block, for_each_heavy_block, sum_over_blocks,
+    BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
+    sum_over_blocks,
 };
 pub use dimension::{PlaneOrSolid, run_hot_in};
 pub use lanes::Lanes4;

@@ -14,7 +14,8 @@
 use glam::{DMat3, DVec3};
 
 use super::formulation::PackedRows;
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot};
+use super::rows::PairStress;
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Picked, for_each_block, run_hot};
 use crate::schedule::Resources;
 use crate::world::{Mobility, Velocity};
 
@@ -70,20 +71,20 @@ impl PackedRows {
         }
     }
 
-    /// Adds the sums of f (x) A, N m, of forces f on points A beside particles, as pair stress. Row `first + k` has entry `numbers[k]`, if there
-    /// is one.
-    pub(crate) fn add_couples(&mut self, first: usize, numbers: &[u32], couples: &[DMat3]) {
+    /// Adds the sums of f (x) A, N m, of forces f on points A beside particles, as pair stress. The particles are `nodes`, ascending, of the
+    /// body whose first row is `first`.
+    pub(crate) fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
         let Self { bonds, sites, pair_stress, own_pull, .. } = self;
-        let rows = first..first + numbers.len();
-        let written = (numbers, &mut pair_stress[rows.clone()], &mut own_pull[rows]);
-        for_each_block(written, &mut Vec::new(), &|begin, (numbers, pair_stress, own_pull)| {
-            for (k, number) in numbers.iter().enumerate() {
-                let Some(couple) = couples.get(*number as usize) else { continue };
-                let row = first + begin + k;
+        let stresses = Picked::new(nodes, &mut pair_stress[first..]);
+        let rows = (stresses, Picked::new(nodes, &mut own_pull[first..]), couples);
+        type Rows<'a> = (Picked<'a, PairStress>, Picked<'a, DVec3>, &'a [DMat3]);
+        for_each_block(rows, &mut Vec::new(), &|_, (mut pair_stress, mut own_pull, couples): Rows<'_>| {
+            for (k, couple) in couples.iter().enumerate().filter(|(_, couple)| **couple != DMat3::ZERO) {
+                let row = first + own_pull.number(k);
                 let site = &sites[row].reference;
                 let stress = *couple * bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
-                pair_stress[k].add(&stress, site.xyz());
-                own_pull[k] += stress * bonds.reach[row];
+                pair_stress.row(k).add(&stress, site.xyz());
+                *own_pull.row(k) += stress * bonds.reach[row];
             }
         });
     }
