@@ -7,6 +7,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use common::touching::landing;
 use common::{all_plugins, flow, simulation};
 use meshless::scene::Source;
 
@@ -67,6 +68,12 @@ fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
     // The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies.
     let counts = counts(&all_plugins(3), 2, 100);
     assert!(counts.iter().sum::<u64>() < 20, "two threads: {counts:?}");
+}
+
+#[test]
+fn a_contact_that_begins_and_spreads_allocates_nothing() {
+    let counts = counts(&landing(), 1, 200);
+    assert!(counts.iter().all(|&count| count == 0), "{counts:?}");
 }
 
 #[test]

@@ -59,3 +59,21 @@ pub fn tool_of_triangles() -> Source {
     );
     Source::new("tool_of_triangles.ron", text)
 }
+
+/// In the plane: a strip that comes down on a table, one end first. Nothing touches in the first fifty steps.
+pub fn landing() -> Source {
+    let text = r#"(dimension: Two,
+        materials: {"rubber": DecoupledNeoHookean(density: 1, young: 1, poisson: 0.3)},
+        bodies: [
+            (name: "strip", material: "rubber", shape: Box(min: (0, 0.06), max: (1, 0.21)), spacing: 0.0125, formulation: TotalLagrangian,
+             plugins: [hourglass_control()]),
+            (name: "table", material: "rubber", shape: Box(min: (-0.5, -0.2), max: (1.5, 0)), spacing: 0.05, formulation: Rigid()),
+        ],
+        contacts: [Contact(between: ("strip", "table"), law: Penalty(), friction: 0.2, restitution: 0.5)],
+        conditions: [
+            Fix(on: Select(body: "table")),
+            InitialVelocity(on: Select(body: "strip"), value: ("0.1*y", "-0.05 - 0.1*x")),
+        ],
+        time: (end: 10.0))"#;
+    Source::new("landing.ron", text.to_owned())
+}

@@ -24,19 +24,22 @@ pub(super) struct Particles {
     /// Whether their shapes follow their deformation. In a body that may fail they stay spheres: the deformation gradient
     /// of what has failed is that of a crack.
     pub deform: bool,
+    /// Number of particles on the largest side of the box around the body: what may touch at once, of most bodies.
+    pub on_a_side: usize,
 }
 
 impl Particles {
     /// Those of a body.
     pub fn of(body: &BodyPlan, dimension: Dimension) -> Self {
         let root = |volume: f64| if dimension == Dimension::Two { volume.sqrt() } else { volume.cbrt() };
-        let radius = body.sites.iter().map(|site| 0.5 * root(site.volume)).collect();
+        let radius: Vec<f64> = body.sites.iter().map(|site| 0.5 * root(site.volume)).collect();
         let mut state = ColumnSet::default();
         if let Ok(law) = body.solid_law() {
             law.state(&mut state);
         }
         let deform = body.formulation == TotalLagrangian::NAME && state.get(Damage::NAME).is_none();
-        Self { body: body.id, radius, deform }
+        let on_a_side = on_a_side(body.sites.iter().map(|site| site.position), &radius, dimension);
+        Self { body: body.id, radius, deform, on_a_side }
     }
 
     /// The largest radius, m.
@@ -48,6 +51,18 @@ impl Particles {
     pub fn least(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }
+}
+
+fn on_a_side(places: impl Iterator<Item = DVec3>, radius: &[f64], dimension: Dimension) -> usize {
+    let bounds = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = places.fold(bounds, |(low, high), x| (low.min(x), high.max(x)));
+    let size = 2.0 * radius.iter().sum::<f64>() / radius.len().max(1) as f64;
+    let along = (high - low) / size + DVec3::ONE;
+    let largest = match dimension {
+        Dimension::Two => along.x.max(along.y),
+        Dimension::Three => (along.x * along.y).max(along.y * along.z).max(along.z * along.x),
+    };
+    radius.len().min(largest.ceil() as usize)
 }
 
 /// The columns of the particles of a body in this step.

@@ -12,6 +12,7 @@ mod pace;
 mod particles;
 mod penalty;
 mod plan;
+mod reaction;
 mod response;
 mod restitution;
 mod search;

@@ -29,9 +29,9 @@ pub(super) struct Nearby {
 }
 
 impl Nearby {
-    /// None yet, of nodes with this largest radius, m.
-    pub fn new(largest: f64) -> Self {
-        let (candidates, sieve) = (Vec::new(), Sieve::default());
+    /// None yet, of so many nodes with this largest radius, m.
+    pub fn new(nodes: usize, largest: f64) -> Self {
+        let (candidates, sieve) = (Vec::with_capacity(nodes), Sieve::new(nodes));
         Self { candidates, sieve, budget: -1.0, travelled: 0.0, largest, stretch: 1.0 }
     }
 

@@ -23,6 +23,9 @@ use crate::world::{Position, ReferencePosition};
 /// would: bonds hold them apart.
 const APART: f64 = 2.5;
 
+/// Candidates of every particle of a side for which there is room from the start.
+const CANDIDATES: usize = 12;
+
 /// Contact between the particles of two bodies.
 pub(super) struct ParticleContact {
     interaction: Interaction,
@@ -70,17 +73,13 @@ impl ParticleContact {
         mirror: Mirror,
         periodic: Periodic,
     ) -> Self {
-        let touched = [&first, &second].map(|particles| Touched::new(particles.radius.len()));
-        Self {
-            interaction,
-            search: Search::new(&first.radius, &second.radius, periodic),
-            first,
-            second,
-            mirror,
-            periodic,
-            meetings: Meetings::default(),
-            touched,
-        }
+        let room = CANDIDATES * first.on_a_side.min(second.on_a_side);
+        let mut touched = [&first, &second].map(|particles| Touched::new(particles.radius.len()));
+        touched.iter_mut().for_each(|touched| touched.reserve(room));
+        let mut meetings = Meetings::default();
+        meetings.reserve(room);
+        let search = Search::new(&first.radius, &second.radius, periodic, room);
+        Self { interaction, search, first, second, mirror, periodic, meetings, touched }
     }
 
     /// Least period of the domain with which the contact works, m.

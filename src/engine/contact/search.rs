@@ -44,7 +44,6 @@ pub(super) struct Search {
 }
 
 /// The particles of a body that are near the other one.
-#[derive(Default)]
 struct Region {
     sieve: Sieve<u32, ()>,
     numbers: Vec<u32>,
@@ -53,6 +52,12 @@ struct Region {
 }
 
 impl Region {
+    /// With room for that many particles.
+    fn of(particles: usize) -> Self {
+        let (numbers, position) = (Vec::with_capacity(particles), Vec::with_capacity(particles));
+        Self { sieve: Sieve::new(particles), numbers, position, reach: Vec::with_capacity(particles) }
+    }
+
     fn collect(&mut self, crowd: Crowd<'_>, stretch: f64, within: Option<&Aabb>) {
         let Self { sieve, numbers, position, reach } = self;
         let place = |k: usize| crowd.mirror.place(crowd.position[k].0);
@@ -79,8 +84,8 @@ impl Region {
 }
 
 impl Search {
-    /// A search between particles of these radii.
-    pub fn new(first: &[f64], second: &[f64], periodic: Periodic) -> Self {
+    /// A search between particles of these radii, with room for so many pairs.
+    pub fn new(first: &[f64], second: &[f64], periodic: Periodic, room: usize) -> Self {
         let largest = [first, second].map(|radius| radius.iter().copied().fold(0.0, f64::max));
         Self {
             skin: SKIN * (largest[0] + largest[1]),
@@ -89,10 +94,10 @@ impl Search {
             budget: -1.0,
             travelled: 0.0,
             stretch: 1.0,
-            regions: Default::default(),
+            regions: [first, second].map(|radius| Region::of(radius.len())),
             search: NeighborSearch::default(),
             list: NeighborList::default(),
-            pairs: Vec::new(),
+            pairs: Vec::with_capacity(room),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Members of a long list that pass a test: found in parallel, kept in their order.
 
-use crate::parallel::{BLOCK, BlockSum, Split, for_each_block, for_each_block_in_tasks};
+use crate::parallel::{BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks};
 
 /// Blocks of a test that a thread takes at a time: a test takes some ten nanoseconds beside a box, and microseconds beside a mesh.
 pub(super) const BLOCKS_OF_TEST: usize = 4;
@@ -27,13 +27,12 @@ pub(super) struct Sieve<T, E> {
     found: Vec<Found<E>>,
 }
 
-impl<T, E> Default for Sieve<T, E> {
-    fn default() -> Self {
-        Self { slots: Vec::new(), found: Vec::new() }
-    }
-}
-
 impl<T: Copy + Default + Send + Sync, E: BlockSum + Sync> Sieve<T, E> {
+    /// With room for tests of that many.
+    pub fn new(count: usize) -> Self {
+        Self { slots: Vec::with_capacity(count), found: Vec::with_capacity(block_count(count)) }
+    }
+
     /// Puts into `kept` what `test` makes of the numbers below `count`, in their order; returns what it adds up.
     pub fn sift(
         &mut self,
@@ -100,7 +99,7 @@ mod tests {
     #[test]
     fn what_passes_keeps_its_order() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool");
-        let (mut sieve, mut kept) = (Sieve::<u32, f64>::default(), Vec::new());
+        let (mut sieve, mut kept) = (Sieve::<u32, f64>::new(0), Vec::new());
         for (count, by) in [(10_000, 7), (0, 1), (63, 2), (64, 1), (3_000, 10_000)] {
             let sum = pool.install(|| {
                 sieve.sift(count, &mut kept, &|k, sum: &mut f64| {

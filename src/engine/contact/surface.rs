@@ -10,15 +10,19 @@ use super::memory::{Memory, PairKey};
 use super::nearby::{NEAR, Nearby};
 use super::node_view::{NodeMotion, NodeView};
 use super::pace::Pace;
+use super::reaction::{Push, push};
 use super::response::{Interaction, Meeting};
 use super::shape::Nearness;
 use super::sides::Sides;
 use super::stiffness;
 use super::tally::Tally;
 use super::touched::{End, Pull, Touched};
-use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::rigid::{RigidBodies, RigidBody, Wrench};
+use crate::parallel::BlockSum;
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
+
+/// Layers of particles of a side for which there is room from the start.
+const LAYERS: usize = 3;
 
 /// Contact of the nodes of one body with the surface of another.
 pub(super) struct SurfaceContact {
@@ -41,24 +45,6 @@ pub(super) struct Meet {
     /// Nearest point of the surface, m.
     point: DVec3,
     near: Nearness,
-}
-
-/// What a contact does to both sides.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Push {
-    /// From the node to where it is pushed, in the reference configuration, m.
-    arm: DVec3,
-    /// Where the surface is pushed, m.
-    place: DVec3,
-    /// From there to where the node is pushed: zero, or a period.
-    shift: DVec3,
-    /// Force on the node, N.
-    force: DVec3,
-    /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the normal turns as it moves, N.
-    center: DVec3,
-    turning: DVec3,
-    /// Stiffness over the mass of the node and of the body with the surface, 1/s2.
-    stiffness: [f64; 2],
 }
 
 /// What the nodes near the surface say of the time step.
@@ -88,14 +74,12 @@ impl SurfaceContact {
     pub fn new(interaction: Interaction, sides: Sides, gravity: f64) -> Self {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
-        Self {
-            interaction,
-            gravity,
-            nearby: Nearby::new(particles.map_or(0.0, Particles::largest)),
-            sides,
-            meetings: Meetings::default(),
-            touched: Touched::new(count),
-        }
+        let nearby = Nearby::new(count, particles.map_or(0.0, Particles::largest));
+        let room = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
+        let (mut meetings, mut touched) = (Meetings::default(), Touched::new(count));
+        meetings.reserve(room);
+        touched.reserve(room);
+        Self { interaction, gravity, nearby, sides, meetings, touched }
     }
 
     /// Works out the forces of all nodes that touch, and pushes the rigid bodies.
@@ -110,6 +94,9 @@ impl SurfaceContact {
             let is_new = nearby.update(sides, nodes, tool, speed * dt, paces[0].stretch);
             if is_new && of_particles.is_some() {
                 touched.renew(nearby.candidates(), &[End::First]);
+            }
+            if of_particles.is_none() {
+                meetings.reserve(nodes.len());
             }
             let near = find(sides, nodes, tool, nearby.candidates(), meetings);
             let tally = evaluate(interaction, sides, nodes, tool, dt, meetings);
@@ -131,46 +118,6 @@ impl SurfaceContact {
         }
         Ok(tally)
     }
-}
-
-/// What contacts do to the bodies of both sides, about their centres, and the sums of their stiffness over mass, 1/s2.
-#[derive(Clone, Copy, Default)]
-struct Pushes {
-    on: [Wrench; 2],
-    stiffness: [f64; 2],
-}
-
-impl BlockSum for Pushes {
-    fn add(&mut self, next: &Self) {
-        for side in 0..2 {
-            self.on[side].add(&next.on[side]);
-            self.stiffness[side] += next.stiffness[side];
-        }
-    }
-}
-
-/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place. Returns the sums of stiffness over mass of both sides, 1/s2.
-fn push(sides: &Sides, pushes: &[Push], bodies: &mut [RigidBody]) -> [f64; 2] {
-    let of = |id| bodies.iter().position(|body: &RigidBody| body.id == id);
-    let both = [of(sides.first), of(sides.second)];
-    let middle = both.map(|k| k.map_or(DVec3::ZERO, |k| bodies[k].state.center));
-    let Pushes { on, stiffness } = sum_over_blocks(pushes, &|_, pushes: &[Push]| {
-        let mut sum = Pushes::default();
-        for Push { place, center, shift, force, turning, stiffness, .. } in pushes {
-            sum.on[0].push(*place + *shift - middle[0], *force);
-            sum.on[1].push(*place - middle[1], -*force);
-            sum.on[1].push(*center - middle[1], -*turning);
-            sum.stiffness[0] += stiffness[0];
-            sum.stiffness[1] += stiffness[1];
-        }
-        sum
-    });
-    for (k, on) in both.into_iter().zip(on) {
-        if let Some(k) = k {
-            bodies[k].push(&on);
-        }
-    }
-    stiffness
 }
 
 /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, 1/s2: a

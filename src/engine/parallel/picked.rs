@@ -51,22 +51,20 @@ mod tests {
 
     #[test]
     fn every_row_that_is_named_is_met_once_and_no_other() {
-        let numbers: Vec<u32> = (0..5_000).filter(|k| k % 3 == 1 || k % 7 == 0).collect();
+        let is_named = |k: &u32| k % 3 == 1 || k.is_multiple_of(7);
+        let numbers: Vec<u32> = (0..5_000).filter(is_named).collect();
         let mut column = vec![0_u32; 5_000];
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool");
         pool.install(|| {
-            for_each_block(Picked::new(&numbers, &mut column), &mut Vec::new(), &|_,
-                                                                                  mut rows: Picked<
-                '_,
-                u32,
-            >| {
+            let rows = Picked::new(&numbers, &mut column);
+            for_each_block(rows, &mut Vec::new(), &|_, mut rows: Picked<'_, u32>| {
                 for k in 0..rows.rows() {
                     let number = rows.number(k) as u32;
                     *rows.row(k) += number + 1;
                 }
             });
         });
-        let expected = |k: u32| if k % 3 == 1 || k % 7 == 0 { k + 1 } else { 0 };
+        let expected = |k: u32| if is_named(&k) { k + 1 } else { 0 };
         assert!(column.iter().zip(0..).all(|(&value, k)| value == expected(k)));
     }
 }

@@ -13,9 +13,14 @@ pub struct Limit {
     pub by: String,
 }
 
+/// Bytes of a text for which there is room from the start.
+const TEXT: usize = 128;
+
 impl Clone for Limit {
     fn clone(&self) -> Self {
-        Self { dt: self.dt, by: self.by.clone() }
+        let mut by = String::with_capacity(TEXT);
+        by.push_str(&self.by);
+        Self { dt: self.dt, by }
     }
 
     /// Keeps the memory of the text: every step takes one.
@@ -28,7 +33,7 @@ impl Clone for Limit {
 impl Default for Limit {
     /// No limit.
     fn default() -> Self {
-        Self { dt: f64::INFINITY, by: String::new() }
+        Self { dt: f64::INFINITY, by: String::with_capacity(TEXT) }
     }
 }
 

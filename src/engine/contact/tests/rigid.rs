@@ -197,6 +197,40 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
 }
 
 #[test]
+fn dashpots_take_energy_from_a_block_that_is_pressed_and_give_none_back() {
+    let mut sim = simulation(
+        r#"(dimension: Two,
+            materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+            bodies: [
+                (name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
+                 formulation: TotalLagrangian),
+                (name: "table", material: "soft", shape: Box(min: (-0.05, -0.1), max: (0.15, 0)), spacing: 0.05,
+                 formulation: Rigid()),
+                (name: "tool", material: "soft", shape: Box(min: (-0.05, 0.1), max: (0.15, 0.2)), spacing: 0.05,
+                 formulation: Rigid()),
+            ],
+            conditions: [
+                Fix(on: Select(body: "table")),
+                Displacement(on: Select(body: "tool"), value: (0.0, "-0.008*(smoothstep(t/0.01) - smoothstep(t/0.01 - 1.5))")),
+            ],
+            contacts: [
+                Contact(between: ("block", "tool"), law: Penalty(), friction: 0.3, restitution: 0.4),
+                Contact(between: ("block", "table"), law: Penalty(), friction: 0.3, restitution: 0.4),
+            ],
+            time: (end: 0.025))"#,
+    );
+    let (mut largest, mut fallen) = (0.0f64, 0.0f64);
+    while !sim.is_finished() {
+        sim.step().unwrap();
+        let lost = sim.ledger().total_named("contact_damping");
+        largest = largest.max(lost);
+        fallen = fallen.max(largest - lost);
+    }
+    assert!(largest > 0.0 && fallen < 0.01 * largest, "{fallen} of {largest} was given back");
+    assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+}
+
+#[test]
 fn a_hard_body_that_falls_into_an_empty_corner_of_a_tank_bounces_with_the_speed_that_it_had() {
     // The step of the water is three hundred times that of the impact, and the wall has none of its own.
     let mut sim = simulation(
