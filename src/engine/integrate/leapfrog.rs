@@ -3,9 +3,12 @@
 //! A force acts through the mobility, the inverse mass per axis: where it is zero the motion is prescribed and the
 //! force goes into the constraint, whose work is booked here as -f.v of the two half-steps.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use crate::parallel::{BlockSum, for_each_block};
+use super::fours::FourVectors;
+use crate::parallel::{Arithmetic, BlockSum, HotLoop, Lanes4, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, Position, Velocity};
@@ -61,8 +64,8 @@ pub(crate) fn constrained(mobility: DVec3) -> DVec3 {
 /// What a pass learns of a block.
 #[derive(Clone, Copy, Debug, Default)]
 struct MotionSum {
-    /// Momentum, kg m/s.
-    momentum: DVec3,
+    /// Power of gravity, W.
+    gravity_power: f64,
     /// Power of the forces on constrained axes, W.
     constraint_power: f64,
     /// Twice the kinetic energy, J.
@@ -73,10 +76,49 @@ struct MotionSum {
 
 impl BlockSum for MotionSum {
     fn add(&mut self, next: &Self) {
-        self.momentum += next.momentum;
+        self.gravity_power += next.gravity_power;
         self.constraint_power += next.constraint_power;
         self.twice_kinetic += next.twice_kinetic;
         self.acceleration_squared = self.acceleration_squared.max(next.acceleration_squared);
+    }
+}
+
+/// What both kicks need of a block.
+type Rows<'a> = (&'a mut [Velocity], &'a [Force], &'a [Mobility], &'a [Mass]);
+
+/// The same component by component, and the masses.
+struct Components<'a> {
+    velocity: &'a mut [f64],
+    force: &'a [f64],
+    mobility: &'a [f64],
+    mass: &'a [f64],
+}
+
+impl<'a> Components<'a> {
+    #[inline(always)]
+    fn new((velocity, force, mobility, mass): Rows<'a>) -> Self {
+        Self {
+            velocity: bytemuck::cast_slice_mut(velocity),
+            force: bytemuck::cast_slice(force),
+            mobility: bytemuck::cast_slice(mobility),
+            mass: bytemuck::cast_slice(mass),
+        }
+    }
+
+    /// Number of fours, the last of which may not be whole.
+    #[inline(always)]
+    fn fours(&self) -> usize {
+        self.mass.len().div_ceil(4)
+    }
+
+    /// Force, mobility and mass of the k-th four, and where their components lie.
+    #[inline(always)]
+    fn four(&self, k: usize) -> (FourVectors, FourVectors, FourVectors, Range<usize>) {
+        let (first, last) = (4 * k, (4 * k + 4).min(self.mass.len()));
+        let at = 3 * first..3 * last;
+        let (force, mobility) = (&self.force[at.clone()], &self.mobility[at.clone()]);
+        let mass = FourVectors::of_numbers(&self.mass[first..last]);
+        (FourVectors::load(force), FourVectors::load(mobility), mass, at)
     }
 }
 
@@ -101,27 +143,51 @@ impl Run for KickDrift {
             let mut velocity = view.write::<Velocity>()?;
             let mut position = view.write::<Position>()?;
             let slices = (
-                &mut velocity[rows.clone()],
                 &mut position[rows.clone()],
-                &force[rows.clone()],
-                &mobility[rows.clone()],
-                &mass[rows],
+                (&mut velocity[rows.clone()], &force[rows.clone()], &mobility[rows.clone()], &mass[rows]),
             );
-            type Rows<'a> = (&'a mut [Velocity], &'a mut [Position], &'a [Force], &'a [Mobility], &'a [Mass]);
-            let sum = for_each_block(slices, &mut self.sums, &|_, (v, x, f, mobility, mass): Rows<'_>| {
-                let mut sum = MotionSum::default();
-                for k in 0..v.len() {
-                    v[k].0 += 0.5 * dt * (f[k].0 * mobility[k].0);
-                    x[k].0 += dt * v[k].0;
-                    sum.momentum += mass[k].0 * v[k].0;
-                    sum.constraint_power += (f[k].0 * constrained(mobility[k].0)).dot(v[k].0);
-                }
-                sum
+            let gravity = self.gravity;
+            let sum = for_each_block(slices, &mut self.sums, &|_, (positions, rows): (_, Rows<'_>)| {
+                run_hot(FirstKick { dt, gravity, positions, rows })
             });
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
-            step.ledger.add(gravity_work, id, dt * sum.momentum.dot(self.gravity));
+            step.ledger.add(gravity_work, id, dt * sum.gravity_power);
         }
         Ok(())
+    }
+}
+
+struct FirstKick<'a> {
+    dt: f64,
+    gravity: DVec3,
+    positions: &'a mut [Position],
+    rows: Rows<'a>,
+}
+
+impl HotLoop for FirstKick<'_> {
+    type Output = MotionSum;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> MotionSum {
+        let gravity = FourVectors::splat(self.gravity);
+        let (mut gravity_power, mut constraint_power) = (Lanes4::ZERO, Lanes4::ZERO);
+        let positions: &mut [f64] = bytemuck::cast_slice_mut(self.positions);
+        let of = Components::new(self.rows);
+        for k in 0..of.fours() {
+            let (f, mobility, mass, at) = of.four(k);
+            let (x, velocity) = (&mut positions[at.clone()], &mut of.velocity[at]);
+            let v = FourVectors::load(velocity).plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
+            v.store(velocity);
+            FourVectors::load(x).plus_scaled(a, self.dt, v).store(x);
+            let weight = mass.times(a, gravity);
+            gravity_power = weight.dot_onto(a, v, gravity_power);
+            constraint_power = f.where_held(a, mobility).dot_onto(a, v, constraint_power);
+        }
+        MotionSum {
+            gravity_power: gravity_power.sum(),
+            constraint_power: constraint_power.sum(),
+            ..MotionSum::default()
+        }
     }
 }
 
@@ -152,18 +218,8 @@ impl Run for Kick {
                 &mobility[rows.clone()],
                 &mass[rows.clone()],
             );
-            type Rows<'a> = (&'a mut [Velocity], &'a [Force], &'a [Mobility], &'a [Mass]);
-            let sum = for_each_block(slices, &mut self.sums, &|_, (v, f, mobility, mass): Rows<'_>| {
-                let mut sum = MotionSum::default();
-                for k in 0..v.len() {
-                    let acceleration = f[k].0 * mobility[k].0;
-                    sum.constraint_power += (f[k].0 * constrained(mobility[k].0)).dot(v[k].0);
-                    v[k].0 += 0.5 * dt * acceleration;
-                    sum.twice_kinetic += mass[k].0 * v[k].0.length_squared();
-                    sum.acceleration_squared = sum.acceleration_squared.max(acceleration.length_squared());
-                }
-                sum
-            });
+            let sum =
+                for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| run_hot(SecondKick { dt, rows }));
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
             step.ledger.set(kinetic, id, 0.5 * sum.twice_kinetic);
             if !sum.twice_kinetic.is_finite() {
@@ -176,5 +232,39 @@ impl Run for Kick {
             }
         }
         Ok(())
+    }
+}
+
+struct SecondKick<'a> {
+    dt: f64,
+    rows: Rows<'a>,
+}
+
+impl HotLoop for SecondKick<'_> {
+    type Output = MotionSum;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> MotionSum {
+        let (mut constraint_power, mut twice_kinetic) = (Lanes4::ZERO, Lanes4::ZERO);
+        let mut acceleration_squared = Lanes4::ZERO;
+        let of = Components::new(self.rows);
+        for k in 0..of.fours() {
+            let (f, mobility, mass, at) = of.four(k);
+            let velocity = &mut of.velocity[at];
+            let before = FourVectors::load(velocity);
+            constraint_power = f.where_held(a, mobility).dot_onto(a, before, constraint_power);
+            let acceleration = f.times(a, mobility);
+            let v = before.plus_scaled(a, 0.5 * self.dt, acceleration);
+            v.store(velocity);
+            twice_kinetic = mass.times(a, v).dot_onto(a, v, twice_kinetic);
+            acceleration_squared = a.larger(acceleration.squares(a), acceleration_squared);
+        }
+        let [p, q, r, s] = acceleration_squared.0;
+        MotionSum {
+            constraint_power: constraint_power.sum(),
+            twice_kinetic: twice_kinetic.sum(),
+            acceleration_squared: p.max(q).max(r.max(s)),
+            ..MotionSum::default()
+        }
     }
 }

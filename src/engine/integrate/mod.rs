@@ -1,5 +1,6 @@
 //! Time integration: kick, drift, kick for every phase, with the work of constraints and gravity booked.
 
+mod fours;
 mod leapfrog;
 
 pub(crate) use leapfrog::constrained;

@@ -109,19 +109,28 @@ impl EquationOfState {
     pub fn energy_change(&self, from: f64, to: f64, rho_0: f64, c_0: f64) -> f64 {
         match *self {
             Self::Linear => {
-                let z = (to - from) / (to + from);
+                // One division for both.
+                let (change, sum, product) = (to - from, to + from, to * from);
+                let inverse = 1.0 / (sum * product);
+                let z = change * product * inverse;
                 let square = z * z;
                 // ln(to / from) = 2 artanh z; the series is exact to 1e-18 here.
                 let log = if square < 1e-4 {
                     2.0 * z * (1.0 + square * (1.0 / 3.0 + square * (1.0 / 5.0 + square * (1.0 / 7.0))))
                 } else {
-                    (to / from).ln()
+                    logarithm(to / from)
                 };
-                c_0 * c_0 * (log - rho_0 * (to - from) / (to * from))
+                c_0 * c_0 * (log - rho_0 * change * sum * inverse)
             }
             Self::Tait { .. } => self.energy(to, rho_0, c_0) - self.energy(from, rho_0, c_0),
         }
     }
+}
+
+/// Out of line, where it leaves the registers of a loop alone.
+#[cold]
+fn logarithm(x: f64) -> f64 {
+    x.ln()
 }
 
 #[cfg(test)]

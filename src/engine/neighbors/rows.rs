@@ -147,15 +147,17 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool> HotLoop
             let found = found.as_mut_slice();
             for range in &ranges.found {
                 let before = used;
-                let mut left = (range.end - range.first) as usize;
-                let (candidates, four_rows) = test.candidates(sorted, range.first as usize, left.div_ceil(4));
+                let count = (range.end - range.first) as usize;
+                let fours = count.div_ceil(4);
+                let last = MASKS[(count + 4 - 4 * fours).min(4)];
+                let (candidates, four_rows) = test.candidates(sorted, range.first as usize, fours);
                 for (k, four_rows) in four_rows.iter().enumerate() {
-                    let near = test.near(a, &candidates, k, (x_i, support_i)) & MASKS[left.min(4)];
+                    let mask = if k + 1 < fours { MASKS[4] } else { last };
+                    let near = test.near(a, &candidates, k, (x_i, support_i)) & mask;
                     if let Some(out) = found[used..].first_chunk_mut() {
                         *out = a.pack(*four_rows, near);
                     }
                     used += near.count_ones() as usize;
-                    left = left.saturating_sub(4);
                 }
                 if same_set && range.holds_own {
                     used = without(&mut found[..used], before, i as u32);

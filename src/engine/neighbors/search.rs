@@ -1,5 +1,7 @@
 //! The search: checks of the input, the grid, then the rows.
 
+use glam::DVec3;
+
 use super::grid::Grid;
 use super::periodic::AXIS_NAMES;
 use super::rows::{Buffers, Order, Query};
@@ -10,6 +12,25 @@ use super::{Cloud, NeighborError, NeighborList, Periodic, Support};
 pub struct NeighborSearch {
     grid: Grid,
     buffers: Buffers,
+    sources: Sources,
+}
+
+/// What is known of the particles in the grid.
+#[derive(Debug, Default)]
+struct Sources {
+    count: usize,
+    largest_support: f64,
+    bounds: (DVec3, DVec3),
+}
+
+/// What is looked for, beside the targets.
+#[derive(Clone, Copy)]
+struct Wanted<'a> {
+    same_set: bool,
+    skin: f64,
+    /// Where the groups of sources end that order a row; none for ascending rows.
+    groups: Option<&'a [u32]>,
+    periodic: &'a Periodic,
 }
 
 impl NeighborSearch {
@@ -25,7 +46,8 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(cloud, cloud, true, (skin, None), periodic, list)
+        let wanted = Wanted { same_set: true, skin, groups: None, periodic };
+        self.build(cloud, cloud, wanted, list)
     }
 
     /// Lists the neighbours of the first `targets` particles of `cloud` in `cloud`. A row is ordered by the groups of particles
@@ -41,7 +63,8 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(cloud.first(targets), cloud, true, (skin, Some(groups)), periodic, list)
+        let wanted = Wanted { same_set: true, skin, groups: Some(groups), periodic };
+        self.build(cloud.first(targets), cloud, wanted, list)
     }
 
     /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are not
@@ -57,37 +80,53 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        self.build(targets, sources, false, (skin, None), periodic, list)
+        let wanted = Wanted { same_set: false, skin, groups: None, periodic };
+        self.build(targets, sources, wanted, list)
+    }
+
+    /// Lists the neighbours of other particles among the sources of the search before, without sorting these again. Those have one support
+    /// radius, and so do the others; rows are ordered as by [`NeighborSearch::of_first`]. A skin much larger than that of the search
+    /// before is slow.
+    ///
+    /// # Errors
+    /// See [`NeighborError`]; `list` is then unchanged.
+    pub(crate) fn of_others(
+        &mut self,
+        (positions, groups): (&[DVec3], &[u32]),
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        let targets = Cloud::uniform(positions, self.sources.largest_support);
+        targets.check("target")?;
+        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic };
+        let radius = self.radius(targets, wanted)?;
+        self.fill(targets, radius, wanted, list);
+        Ok(())
     }
 
     fn build(
         &mut self,
         targets: Cloud<'_>,
         sources: Cloud<'_>,
-        same_set: bool,
-        (skin, groups): (f64, Option<&[u32]>),
-        periodic: &Periodic,
+        wanted: Wanted<'_>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        if !(skin >= 0.0 && skin.is_finite()) {
-            return Err(NeighborError::Skin(skin));
-        }
+        let Wanted { same_set, periodic, .. } = wanted;
         sources.check(if same_set { "target" } else { "source" })?;
         if !same_set {
             targets.check("target")?;
         }
-        let radius = 0.5 * (targets.largest_support() + sources.largest_support()) + skin;
-        for a in (0..3).filter(|&a| periodic.axes()[a]) {
-            let (length, needed) = (periodic.lengths()[a], 2.0 * radius);
-            if length < needed {
-                return Err(NeighborError::PeriodicTooShort { axis: AXIS_NAMES[a], length, needed });
-            }
-        }
-        let mut bounds = if sources.positions.is_empty() { Default::default() } else { sources.bounds() };
-        let mut solid = bounds.0.z < bounds.1.z;
-        if !same_set {
+        let count = sources.positions.len();
+        self.sources = Sources {
+            count,
+            largest_support: sources.largest_support(),
+            bounds: if count == 0 { Default::default() } else { sources.bounds() },
+        };
+        let radius = self.radius(targets, wanted)?;
+        let mut bounds = self.sources.bounds;
+        if !same_set && periodic.any() {
             let more = targets.bounds();
-            solid |= bounds.0.z.min(more.0.z) < bounds.1.z.max(more.1.z);
             for a in (0..3).filter(|&a| periodic.axes()[a]) {
                 bounds.0[a] = bounds.0[a].min(more.0[a]);
                 bounds.1[a] = bounds.1[a].max(more.1[a]);
@@ -95,24 +134,50 @@ impl NeighborSearch {
         }
         let uniform =
             matches!((targets.support, sources.support), (Support::Uniform(_), Support::Uniform(_)));
-        let particles = targets.positions.len().max(sources.positions.len());
+        let particles = targets.positions.len().max(count);
         self.grid.build((sources, !uniform), bounds, radius, periodic, particles);
+        self.fill(targets, radius, wanted, list);
+        Ok(())
+    }
 
+    /// The largest pair radius, m.
+    fn radius(
+        &self,
+        targets: Cloud<'_>,
+        Wanted { skin, periodic, .. }: Wanted<'_>,
+    ) -> Result<f64, NeighborError> {
+        if !(skin >= 0.0 && skin.is_finite()) {
+            return Err(NeighborError::Skin(skin));
+        }
+        let radius = 0.5 * (targets.largest_support() + self.sources.largest_support) + skin;
+        for a in (0..3).filter(|&a| periodic.axes()[a]) {
+            let (length, needed) = (periodic.lengths()[a], 2.0 * radius);
+            if length < needed {
+                return Err(NeighborError::PeriodicTooShort { axis: AXIS_NAMES[a], length, needed });
+            }
+        }
+        Ok(radius)
+    }
+
+    /// Lists the neighbours of the targets in the grid.
+    fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: Wanted<'_>, list: &mut NeighborList) {
+        let Wanted { same_set, skin, groups, periodic } = wanted;
+        let Sources { count, bounds: (low, high), .. } = self.sources;
+        let more = if same_set { (low, high) } else { targets.bounds() };
+        let solid = low.z.min(more.0.z) < high.z.max(more.1.z);
         let order = match groups {
             None => Order::Rows,
-            Some(ends) if ends.iter().all(|&end| end as usize >= sources.positions.len()) => Order::Cells,
+            Some(ends) if ends.iter().all(|&end| end as usize >= count) => Order::Cells,
             Some(ends) => Order::Groups(ends),
         };
         let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order };
         query.fill(&mut self.buffers, list);
-        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     #[test]
     fn rows_of_the_first_particles_are_those_of_all_in_the_order_of_groups() {
@@ -135,6 +200,19 @@ mod tests {
             );
             row.sort_unstable();
             assert_eq!(row, all.row(i));
+        }
+
+        // The others, some of them outside of the box of the first, with a radius of their own.
+        let others: Vec<DVec3> = (300..400).map(|k| 1.3 * place(k)).collect();
+        let (mut between, mut again) = (NeighborList::default(), NeighborList::default());
+        let targets = Cloud::uniform(&others, 0.5);
+        search.of_first((250, &groups), cloud, 0.05, &Periodic::NONE, &mut first).expect("a list");
+        search.of_others((&others, &groups), 0.15, &Periodic::NONE, &mut again).expect("a list");
+        search.between(targets, cloud, 0.15, &Periodic::NONE, &mut between).expect("a list");
+        for i in 0..others.len() {
+            let mut row = again.row(i).to_vec();
+            row.sort_unstable();
+            assert_eq!(row, between.row(i));
         }
     }
 }

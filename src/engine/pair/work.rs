@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::of_phase::{BodyTerms, MAX_TERMS};
 use crate::integrate::{DRIFT, KICK};
-use crate::parallel::{BlockSum, Split, for_each_block};
+use crate::parallel::{Arithmetic, BlockSum, HotLoop, Lanes4, Split, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Column, Force, Mobility, PhaseId, Velocity};
@@ -121,15 +121,45 @@ impl Split for WorkRows<'_> {
     }
 }
 
+impl HotLoop for WorkRows<'_> {
+    type Output = Power;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> Power {
+        match self.terms {
+            1 => self.power::<A, 1>(a),
+            2 => self.power::<A, 2>(a),
+            3 => self.power::<A, 3>(a),
+            4 => self.power::<A, 4>(a),
+            5 => self.power::<A, 5>(a),
+            6 => self.power::<A, 6>(a),
+            7 => self.power::<A, 7>(a),
+            _ => self.power::<A, MAX_TERMS>(a),
+        }
+    }
+}
+
 impl WorkRows<'_> {
-    fn power(&self) -> Power {
-        let mut power = Power::default();
-        for (k, forces) in self.by_term.chunks(self.terms).enumerate() {
-            let acceleration = self.force[k].0 * self.mobility[k].0;
-            for (slot, force) in forces.iter().enumerate() {
-                power.of_velocity[slot] += force.dot(self.velocity[k].0);
-                power.of_acceleration[slot] += force.dot(acceleration);
+    /// The powers of T terms.
+    #[inline(always)]
+    fn power<A: Arithmetic, const T: usize>(self, a: A) -> Power {
+        let count = self.velocity.len();
+        let (force, mobility) = (&self.force[..count], &self.mobility[..count]);
+        let by_term = &self.by_term.as_chunks::<T>().0[..count];
+        let (mut of_velocity, mut of_acceleration) = ([Lanes4::ZERO; T], [Lanes4::ZERO; T]);
+        for (k, v) in self.velocity.iter().enumerate() {
+            let v = Lanes4::new(v.0, 0.0);
+            let acceleration = a.times(Lanes4::new(force[k].0, 0.0), Lanes4::new(mobility[k].0, 0.0));
+            for slot in 0..T {
+                let force = Lanes4::new(by_term[k][slot], 0.0);
+                of_velocity[slot] = a.times_add(force, v, of_velocity[slot]);
+                of_acceleration[slot] = a.times_add(force, acceleration, of_acceleration[slot]);
             }
+        }
+        let mut power = Power::default();
+        for slot in 0..T {
+            power.of_velocity[slot] = of_velocity[slot].sum();
+            power.of_acceleration[slot] = of_acceleration[slot].sum();
         }
         power
     }
@@ -153,7 +183,7 @@ impl Run for SecondKick {
             };
             entry.0 = *id;
             entry.1.clone_from(terms);
-            entry.2 = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| block.power());
+            entry.2 = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| run_hot(block));
             book(step, &self.accounts, entry, -1.0);
         }
         Ok(())

@@ -61,7 +61,11 @@ impl RemovalRule for RemoveOutside {
         let position = &position[rows.clone()];
         let outside = |x: &Position| !domain.contains(x.0);
         let any = for_each_block(position, counts, &|_, block: &[Position]| {
-            block.iter().map(|x| f64::from(u8::from(outside(x)))).sum::<f64>()
+            let mut count = 0;
+            for x in block {
+                count += u32::from(outside(x));
+            }
+            f64::from(count)
         });
         if any == 0.0 {
             return Ok(());

@@ -1,7 +1,7 @@
 //! The density of fluids at the end of the step, by continuity.
 
 use super::cloud::{FlowCloud, FluidState};
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
@@ -70,7 +70,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                advance(state, dt, (by_terms, shift), first, rows)
+                run_hot(Advance { state, dt, by_terms, shift, first, rows })
             });
             if change.broken > 0 {
                 return Err(step.unstable("density is not above zero", group.body, change.broken - 1));
@@ -94,40 +94,67 @@ impl Run for Continuity {
 
 type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'a [Removed]);
 
-fn advance(
-    state: &FluidState,
+/// The densities of a block.
+struct Advance<'a> {
+    state: &'a FluidState,
     dt: f64,
-    (by_terms, shift): (bool, Option<&[DensityShift]>),
+    by_terms: bool,
+    shift: Option<&'a [DensityShift]>,
     first: usize,
-    (density, compression, rate, mass, removed): Rows<'_>,
-) -> Change {
-    let mut change = Change::default();
-    let FluidState { eos, density: rho_0, sound_speed, .. } = *state;
-    let released = |from, to| -eos.energy_change(from, to, rho_0, sound_speed);
-    for (k, rho) in density.iter_mut().enumerate() {
-        if removed[k] != Removed::NO {
-            change.removed += mass[k].0 * eos.energy(rho.0, rho_0, sound_speed);
-            rho.0 = state.density;
-            continue;
+    rows: Rows<'a>,
+}
+
+impl HotLoop for Advance<'_> {
+    type Output = Change;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> Change {
+        let Self { state, dt, by_terms, shift, first, rows } = self;
+        let (density, compression, rate, mass, removed) = rows;
+        let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
+        let count = density.len();
+        // Rows of all columns are as many: said once, it need not be looked at again and again.
+        let (compression, rate) = (&compression[..count], &rate[..count]);
+        let (mass, removed) = (&mass[..count], &removed[..count]);
+        for (k, rho) in density.iter_mut().enumerate() {
+            if removed[k] != Removed::NO {
+                change.removed += mass[k].0 * state.eos.energy(rho.0, state.density, state.sound_speed);
+                rho.0 = state.density;
+                continue;
+            }
+            // Half of what pair terms and displacements do comes before the flow and half after it: the flow then compresses at the mean of
+            // the pressures of the two kicks, and the books close to second order in the step.
+            let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
+            let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
+            let half = -0.5 * dt * compression[k];
+            let before = rho.0 + by_terms + shift;
+            let after = a.mul_add(before, half, before) / (1.0 - half);
+            if shift != 0.0 {
+                change.shifted += mass[k].0
+                    * (state.released(before - shift, before) + state.released(after, after + shift));
+            }
+            if by_terms != 0.0 {
+                let middle = after + shift;
+                change.dissipated += mass[k].0
+                    * (state.released(rho.0, before - shift) + state.released(middle, middle + by_terms));
+            }
+            rho.0 = after + shift + by_terms;
+            least = if rho.0 < least { rho.0 } else { least };
+            sum += rho.0;
         }
-        // Half of what pair terms and displacements do comes before the flow and half after it: the flow then compresses at the mean of the
-        // pressures of the two kicks, and the books close to second order in the step.
-        let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
-        let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
-        let half = -0.5 * dt * compression[k];
-        let before = rho.0 + by_terms + shift;
-        let after = before * (1.0 + half) / (1.0 - half);
-        if shift != 0.0 {
-            change.shifted += mass[k].0 * (released(before - shift, before) + released(after, after + shift));
+        // What is no number does not show in the least.
+        if !(least > 0.0 && sum.is_finite()) {
+            let is_good = |rho: &Density| rho.0 > 0.0 && rho.0.is_finite();
+            change.broken = density.iter().position(|rho| !is_good(rho)).map_or(0, |k| first + k + 1);
         }
-        if by_terms != 0.0 {
-            change.dissipated += mass[k].0
-                * (released(rho.0, before - shift) + released(after + shift, after + shift + by_terms));
-        }
-        rho.0 = after + shift + by_terms;
-        if change.broken == 0 && !(rho.0 > 0.0 && rho.0.is_finite()) {
-            change.broken = first + k + 1;
-        }
+        change
     }
-    change
+}
+
+impl FluidState {
+    /// Energy of compression that is released from one density to another, J/kg.
+    #[inline(always)]
+    fn released(&self, from: f64, to: f64) -> f64 {
+        -self.eos.energy_change(from, to, self.density, self.sound_speed)
+    }
 }

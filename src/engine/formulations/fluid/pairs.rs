@@ -73,18 +73,18 @@ impl FlowPairs {
     /// Builds the lists; the first `fluid` positions are those of the fluid.
     pub fn build(&mut self, positions: &[DVec3], fluid: usize) -> Result<(), NeighborError> {
         let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
-        let cloud = |positions| Cloud::uniform(positions, support);
-        let (wet, dry) = (cloud(&positions[..fluid]), cloud(&positions[fluid..]));
+        let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
         self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
-        self.search.between(wet, dry, wall_skin, &self.periodic, &mut self.walls)?;
+        self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
+        self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
         if !self.thin.is_empty() {
             let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
             let walls = self.walls.clone();
             self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
+            self.walls.turn(fluid..positions.len(), &mut self.boundary);
         }
-        self.walls.turn(fluid..positions.len(), &mut self.boundary);
         self.drift.sort(positions, CELL * support, &self.periodic);
         // The particles may have moved already: those of an interrupted run have.
         self.room = f64::NEG_INFINITY;

@@ -1,10 +1,8 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
-use glam::DVec3;
-
 use super::cloud::{FlowCloud, FluidState};
 use super::record::Record;
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
 
@@ -62,7 +60,8 @@ impl Run for EquationOfState {
                 &mass[rows.clone()],
                 &removed[rows],
             );
-            let sum = for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| apply(state, rows));
+            let sum =
+                for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| run_hot(Apply { state, rows }));
             step.ledger.set(account, group.body, sum.energy);
             let (speed, sound) = (sum.speed_squared.sqrt(), state.sound_speed);
             let name = &step.world.body(group.body).name;
@@ -92,19 +91,36 @@ impl Run for EquationOfState {
     }
 }
 
-fn apply(state: &FluidState, (pressure, records, density, mass, removed): Rows<'_>) -> StateSum {
-    let FluidState { density: rho_0, sound_speed, eos, .. } = *state;
-    let mut sum = StateSum::default();
-    for (k, record) in records.iter_mut().enumerate() {
-        let rho = density[k].0;
-        let p = eos.pressure(rho, rho_0, sound_speed);
-        pressure[k] = Pressure(p);
-        // A removed particle has no volume: no sum over neighbours sees it.
-        record.place.0[3] = if removed[k] == Removed::NO { mass[k].0 / rho } else { 0.0 };
-        record.motion.0[3] = p;
-        sum.energy += mass[k].0 * eos.energy(rho, rho_0, sound_speed);
-        let v: DVec3 = record.velocity();
-        sum.speed_squared = sum.speed_squared.max(v.length_squared());
+/// The states of a block.
+struct Apply<'a> {
+    state: &'a FluidState,
+    rows: Rows<'a>,
+}
+
+impl HotLoop for Apply<'_> {
+    type Output = StateSum;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> StateSum {
+        let FluidState { density: rho_0, sound_speed, eos, .. } = *self.state;
+        let (pressure, records, density, mass, removed) = self.rows;
+        let mut sum = StateSum::default();
+        let count = records.len();
+        let (pressure, density) = (&mut pressure[..count], &density[..count]);
+        let (mass, removed) = (&mass[..count], &removed[..count]);
+        for (k, record) in records.iter_mut().enumerate() {
+            let rho = density[k].0;
+            let p = eos.pressure(rho, rho_0, sound_speed);
+            pressure[k] = Pressure(p);
+            // A removed particle has no volume: no sum over neighbours sees it.
+            let volume = mass[k].0 / rho;
+            record.place.0[3] = if removed[k] == Removed::NO { volume } else { 0.0 };
+            let [x, y, z, _] = record.motion.0;
+            record.motion.0[3] = p;
+            sum.energy = a.mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
+            let square = a.mul_add(x, x, a.mul_add(y, y, z * z));
+            sum.speed_squared = if square > sum.speed_squared { square } else { sum.speed_squared };
+        }
+        sum
     }
-    sum
 }
