@@ -54,8 +54,11 @@ impl Run for FlowForce {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
                 for_each_block(rows, &mut Vec::new(), &|_, (f, m, removed): Rows<'_>| {
-                    for (k, f) in f.iter_mut().enumerate().filter(|(k, _)| removed[*k] == Removed::NO) {
-                        f.0 += gravity * m[k].0;
+                    let (m, removed) = (&m[..f.len()], &removed[..f.len()]);
+                    for (k, f) in f.iter_mut().enumerate() {
+                        // Without a branch.
+                        let mass = if removed[k] == Removed::NO { m[k].0 } else { 0.0 };
+                        f.0 += gravity * mass;
                     }
                 });
             }
