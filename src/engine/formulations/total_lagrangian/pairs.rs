@@ -9,7 +9,7 @@ use super::formulation::{BodyKernel, PackedRows};
 use super::images::Images;
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{Extras, PairBatch, PairReads, PairRows, PairSource, Room};
+use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
@@ -90,17 +90,35 @@ impl HotLoop for Fill<'_> {
             if batch.is_full() {
                 break;
             }
-            pairs.fill_row(a, i, batch);
+            if extras.mirrors {
+                pairs.fill_row::<A, true>(a, i, batch);
+            } else {
+                pairs.fill_row::<A, false>(a, i, batch);
+            }
         }
     }
 }
 
+/// The particle of a row in every lane.
+struct Own<A> {
+    reference: Vector<A>,
+    displacement: Vector<A>,
+    velocity: Vector<A>,
+    support: f64,
+}
+
 impl BodyPairs<'_> {
-    /// Adds the row of one particle.
+    /// Adds the row of one particle; `IMAGES` where there are images.
     #[inline(always)]
-    fn fill_row<A: Arithmetic>(&self, a: A, i: usize, batch: &mut PairBatch) {
-        let Self { bonds, sites, .. } = *self;
+    fn fill_row<A: Arithmetic, const IMAGES: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
+        let Self { bonds, sites, velocity, support, .. } = *self;
         let site = &sites[i];
+        let own = Own {
+            reference: Vector::splat(a, site.reference.xyz()),
+            displacement: Vector::splat(a, site.displacement.xyz()),
+            velocity: Vector::splat(a, velocity.map_or(DVec3::ZERO, |v| v[i].0)),
+            support: support[i].0,
+        };
         let list =
             if site.is_present() { bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize } else { 0..0 };
         let (neighbors, weights) = (&bonds.neighbors[list.clone()], &bonds.weights[list]);
@@ -108,27 +126,25 @@ impl BodyPairs<'_> {
         let (fours, rest) = neighbors.as_chunks();
         let (weights, rest_weights) = weights.as_chunks();
         for n in 0..fours.len() {
-            self.put(a, (i, site), (fours[n], weights[n]), n, &mut room);
+            self.put::<A, IMAGES>(a, &own, (fours[n], weights[n]), n, &mut room);
         }
         if !rest.is_empty() {
             let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
             four[..rest.len()].copy_from_slice(rest);
             weight[..rest.len()].copy_from_slice(rest_weights);
-            self.put(a, (i, site), (four, weight), fours.len(), &mut room);
+            self.put::<A, IMAGES>(a, &own, (four, weight), fours.len(), &mut room);
         }
         if let Some(kernel) = self.kernel {
             put_kernel(kernel, self.uniform, room);
         }
     }
-}
 
-impl BodyPairs<'_> {
     /// Puts four neighbours into the room, all but kernel values.
     #[inline(always)]
-    fn put<A: Arithmetic>(
+    fn put<A: Arithmetic, const IMAGES: bool>(
         &self,
         a: A,
-        (i, site): (usize, &Site),
+        own: &Own<A>,
         (four, weight): ([u32; 4], [f32; 4]),
         n: usize,
         room: &mut Room<'_>,
@@ -137,24 +153,17 @@ impl BodyPairs<'_> {
         let mut rows = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let [j, k, l, m] = rows;
         let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
-        let place = a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
-        let moved =
+        let [x, y, z, volume] =
+            a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
+        let then = Vector::new(a, [x, y, z]) - own.reference;
+        let [x, y, z, _] =
             a.transpose([of[0].displacement, of[1].displacement, of[2].displacement, of[3].displacement]);
+        let now = then + (Vector::new(a, [x, y, z]) - own.displacement);
         let weight =
             Lanes4([f64::from(weight[0]), f64::from(weight[1]), f64::from(weight[2]), f64::from(weight[3])]);
-        let pairs = &mut room.pairs[n];
         // Removed particles, and lanes without a neighbour, have neither weight nor volume.
-        pairs.volume_j = a.where_below(Lanes4::ZERO, weight, place[3]);
-        pairs.weight = a.where_below(Lanes4::ZERO, pairs.volume_j, weight);
-        for axis in 0..A::AXES {
-            let then = a.minus(place[axis], Lanes4::splat(site.reference.0[axis]));
-            let u = a.minus(moved[axis], Lanes4::splat(site.displacement.0[axis]));
-            room.reference[n].vector[axis] = then;
-            pairs.current.vector[axis] = a.plus(then, u);
-        }
-        pairs.current.length = squares(a, pairs.current.vector);
-        room.reference[n].length = squares(a, room.reference[n].vector);
-        if !images.is_empty() {
+        let volume_j = a.where_below(Lanes4::ZERO, weight, volume);
+        if IMAGES {
             for lane in 0..4 {
                 room.mirrors[n][lane] = images.mirror(rows[lane]).unwrap_or(DVec3::ONE);
                 rows[lane] = images.source(rows[lane]);
@@ -162,19 +171,22 @@ impl BodyPairs<'_> {
         }
         let [j, k, l, m] = rows;
         room.rows[n] = [j as u32, k as u32, l as u32, m as u32];
+        room.reference[n] = four_vectors(a, then);
+        let pairs = &mut room.pairs[n];
+        pairs.current = four_vectors(a, now);
+        pairs.volume_j = volume_j;
+        pairs.weight = a.where_below(Lanes4::ZERO, volume_j, weight);
         if let Some(v) = velocity {
             let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
-            if !images.is_empty() {
+            if IMAGES {
                 let signs = &room.mirrors[n];
                 of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
             }
-            let (of, own) = (Vector::from_rows(a, of), Vector::splat(a, v[i].0));
-            let Vector { x, y, z } = of - own;
-            pairs.velocity = [x.lanes(), y.lanes(), z.lanes()];
+            pairs.velocity = lanes(Vector::from_rows(a, of) - own.velocity);
         }
         if uniform.is_none() {
             let other = Lanes4([support[j].0, support[k].0, support[l].0, support[m].0]);
-            room.supports[n] = a.scale(0.5, a.plus(Lanes4::splat(support[i].0), other));
+            room.supports[n] = a.scale(0.5, a.plus(Lanes4::splat(own.support), other));
         }
     }
 }
@@ -191,9 +203,14 @@ fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: Room<'_>) {
     }
 }
 
-/// Squares of the lengths of four vectors, above zero.
+/// Four vectors, with the squares of their lengths, above zero.
 #[inline(always)]
-fn squares<A: Arithmetic>(a: A, vector: [Lanes4; 3]) -> Lanes4 {
-    let square = Vector::new(a, vector).length_squared().lanes();
-    a.larger(square, Lanes4::splat(f64::MIN_POSITIVE))
+fn four_vectors<A: Arithmetic>(a: A, vector: Vector<A>) -> FourVectors {
+    let square = vector.length_squared().lanes();
+    FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
+}
+
+#[inline(always)]
+fn lanes<A: Arithmetic>(vector: Vector<A>) -> [Lanes4; 3] {
+    [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }
