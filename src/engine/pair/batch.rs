@@ -137,19 +137,18 @@ impl PairBatch {
         self.supports.resize(fours, Lanes4::ZERO);
     }
 
-    /// Whether x_ij is all there is.
+    /// What the pairs have beside x_ij.
     #[inline(always)]
-    pub(super) fn is_plain(&self) -> bool {
-        let Extras { reference, mirrors, supports } = self.extras;
-        !(reference || mirrors || supports)
+    pub(super) fn extras(&self) -> Extras {
+        self.extras
     }
 
-    /// Row `r`; `PLAIN` where x_ij is all there is.
+    /// Row `r`.
     #[inline(always)]
-    pub(super) fn row<const PLAIN: bool>(&self, r: usize) -> Row<'_> {
+    pub(super) fn row(&self, r: usize) -> Row<'_> {
         let part = self.starts[r]..self.starts[r + 1];
         let Extras { reference, mirrors, supports } = self.extras;
-        let extra = |wanted: bool| if !PLAIN && wanted { part.clone() } else { 0..0 };
+        let extra = |wanted: bool| if wanted { part.clone() } else { 0..0 };
         Row {
             volume_i: self.volumes[r],
             support: self.support,
@@ -180,18 +179,18 @@ impl Row<'_> {
         self.pairs.len()
     }
 
-    /// Rows of the neighbours of a four in the phase, and the signs of the axes of mirror images.
+    /// Rows of the neighbours of a four in the phase, and the signs of the axes of mirror images; `ALIKE` where there are none.
     #[inline(always)]
-    pub fn rows<const PLAIN: bool>(&self, k: usize) -> ([u32; 4], Option<&[DVec3; 4]>) {
-        (self.rows[k], if PLAIN { None } else { self.mirrors.get(k) })
+    pub fn rows<const ALIKE: bool>(&self, k: usize) -> ([u32; 4], Option<&[DVec3; 4]>) {
+        (self.rows[k], if ALIKE { None } else { self.mirrors.get(k) })
     }
 
-    /// The pairs of a four.
+    /// The pairs of a four; `PLAIN` without reference vectors, `ALIKE` with one support radius.
     #[inline(always)]
-    pub fn pair<A: Arithmetic, const PLAIN: bool>(&self, a: A, k: usize) -> Pair<A> {
+    pub fn pair<A: Arithmetic, const PLAIN: bool, const ALIKE: bool>(&self, a: A, k: usize) -> Pair<A> {
         let FourPairs { current, velocity, weight, kernel, volume_j, .. } = &self.pairs[k];
         let reference = if PLAIN { current } else { self.reference.get(k).unwrap_or(current) };
-        let support = if PLAIN { None } else { self.supports.get(k).copied() };
+        let support = if ALIKE { None } else { self.supports.get(k).copied() };
         let support = support.unwrap_or(Lanes4::splat(self.support));
         Pair {
             x_ij: Vector::new(a, current.vector),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::batch::{MAX_ROWS, PairBatch};
+use super::batch::{Extras, MAX_ROWS, PairBatch};
 use super::of_phase::Fastest;
 use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
@@ -57,24 +57,30 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        if self.batch.is_plain() { self.add::<A, true>(a) } else { self.add::<A, false>(a) }
+        let Extras { reference, mirrors, supports } = self.batch.extras();
+        match (reference, mirrors || supports) {
+            (false, false) => self.add::<A, true, true>(a),
+            (true, false) => self.add::<A, false, true>(a),
+            (false, true) => self.add::<A, true, false>(a),
+            (true, true) => self.add::<A, false, false>(a),
+        }
     }
 }
 
 impl<T: PairTerm> Rows<'_, '_, T> {
-    /// Adds up the neighbours; `PLAIN` where none is an image and x_ij is all there is.
+    /// Adds up the neighbours; `PLAIN` without reference vectors, `ALIKE` where none is an image and all have one support radius.
     #[inline(always)]
-    fn add<A: Arithmetic, const PLAIN: bool>(self, a: A) {
+    fn add<A: Arithmetic, const PLAIN: bool, const ALIKE: bool>(self, a: A) {
         let Bound { term, of_i, of_j } = *self.bound;
         let RowsOut { by_term, term: own, terms, total, density, fastest } = self.out;
         for r in 0..self.batch.rows() {
-            let row = self.batch.row::<PLAIN>(r);
+            let row = self.batch.row(r);
             let i = T::ReadI::four(a, of_i, [(self.first + r) as u32; 4], None);
             let mut rates = Rates::zero(a);
             for k in 0..row.fours() {
-                let (rows, signs) = row.rows::<PLAIN>(k);
+                let (rows, signs) = row.rows::<ALIKE>(k);
                 let j = T::ReadJ::four(a, of_j, rows, signs);
-                term.pair(&row.pair::<A, PLAIN>(a, k), i, j, &mut rates);
+                term.pair(&row.pair::<A, PLAIN, ALIKE>(a, k), i, j, &mut rates);
             }
             let rates = rates.sum();
             by_term[terms * r + own] = rates.force;

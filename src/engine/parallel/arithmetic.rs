@@ -256,7 +256,7 @@ mod v3 {
         #[inline(always)]
         fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             let mask = self.cmp_lt_f64x4(cast(a), cast(b));
-            cast::<f64x4, Lanes4>(self.select_f64x4(mask, cast(c), cast(Lanes4::ZERO)))
+            cast(self.avx._mm256_and_pd(cast(mask), cast(c)))
         }
 
         #[inline(always)]
