@@ -79,12 +79,14 @@ impl PlaneOrSolid for ForceRows<'_> {
             let (mut even, mut odd) = (Pull::<D>::ZERO, Pull::<D>::ZERO);
             let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
             let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
-            for (j, weight) in pairs.iter().zip(weights) {
+            // By number: zipped iterators would be called, off the instruction path.
+            for n in 0..pairs.len() {
+                let (j, weight) = (pairs[n], weights[n]);
                 even.add(a, &pair_stress[j[0] as usize], weight[0]);
                 odd.add(a, &pair_stress[j[1] as usize], weight[1]);
             }
-            for (&j, &weight) in last.iter().zip(last_weight) {
-                even.add(a, &pair_stress[j as usize], weight);
+            if let ([j], [weight]) = (last, last_weight) {
+                even.add(a, &pair_stress[*j as usize], *weight);
             }
             let sum = even.plus(a, &odd);
             if frames[frame].end <= i {
