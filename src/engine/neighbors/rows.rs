@@ -98,7 +98,9 @@ impl Query<'_> {
             }
             if list.indices.len() < total {
                 if list.indices.capacity() < total {
-                    let expected = (total as f64 / last as f64 * rows as f64 * 1.02) as usize;
+                    // A list that has outgrown its room once gets more to spare: growing on, it then seldom asks for memory.
+                    let spare = if list.indices.capacity() == 0 { 1.02 } else { 1.25 };
+                    let expected = (total as f64 / last as f64 * rows as f64 * spare) as usize;
                     list.indices.reserve_exact(expected.max(total) - list.indices.len());
                 }
                 list.indices.resize(total, 0);
