@@ -154,12 +154,11 @@ fn a_body_may_not_start_inside_a_tool() {
     assert!(error.to_string().contains("a particle of `block` starts inside rigid body `tool`"), "{error}");
 }
 
-/// A block pressed by a tool against a fixed one.
-#[test]
-fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
-    let mut sim = simulation(
+/// A block between a fixed table and a tool that presses it with that motion; contacts of that kind, up to that time, s.
+fn pressed_block(motion: &str, contact: &str, end: f64) -> Simulation {
+    simulation(&format!(
         r#"(dimension: Two,
-            materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
             bodies: [
                 (name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
                  formulation: TotalLagrangian),
@@ -168,16 +167,19 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
                 (name: "tool", material: "soft", shape: Box(min: (-0.05, 0.1), max: (0.15, 0.2)), spacing: 0.05,
                  formulation: Rigid()),
             ],
-            conditions: [
-                Fix(on: Select(body: "table")),
-                Velocity(on: Select(body: "tool"), value: (0.0, "-0.5*smoothstep(t/0.01)")),
-            ],
+            conditions: [Fix(on: Select(body: "table")), {motion}],
             contacts: [
-                Contact(between: ("block", "tool"), law: Penalty()),
-                Contact(between: ("block", "table"), law: Penalty()),
+                Contact(between: ("block", "tool"), {contact}),
+                Contact(between: ("block", "table"), {contact}),
             ],
-            time: (end: 0.02))"#,
-    );
+            time: (end: {end}))"#,
+    ))
+}
+
+#[test]
+fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
+    let motion = r#"Velocity(on: Select(body: "tool"), value: (0.0, "-0.5*smoothstep(t/0.01)"))"#;
+    let mut sim = pressed_block(motion, "law: Penalty()", 0.02);
     sim.run(|_| true).unwrap();
     let bodies = sim.resources().get::<RigidBodies>().clone();
     let states: Vec<_> = bodies.lock().iter().map(|body| body.state).collect();
@@ -198,27 +200,8 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
 
 #[test]
 fn dashpots_take_energy_from_a_block_that_is_pressed_and_give_none_back() {
-    let mut sim = simulation(
-        r#"(dimension: Two,
-            materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
-            bodies: [
-                (name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01,
-                 formulation: TotalLagrangian),
-                (name: "table", material: "soft", shape: Box(min: (-0.05, -0.1), max: (0.15, 0)), spacing: 0.05,
-                 formulation: Rigid()),
-                (name: "tool", material: "soft", shape: Box(min: (-0.05, 0.1), max: (0.15, 0.2)), spacing: 0.05,
-                 formulation: Rigid()),
-            ],
-            conditions: [
-                Fix(on: Select(body: "table")),
-                Displacement(on: Select(body: "tool"), value: (0.0, "-0.008*(smoothstep(t/0.01) - smoothstep(t/0.01 - 1.5))")),
-            ],
-            contacts: [
-                Contact(between: ("block", "tool"), law: Penalty(), friction: 0.3, restitution: 0.4),
-                Contact(between: ("block", "table"), law: Penalty(), friction: 0.3, restitution: 0.4),
-            ],
-            time: (end: 0.025))"#,
-    );
+    let motion = r#"Displacement(on: Select(body: "tool"), value: (0.0, "-0.008*(smoothstep(t/0.01) - smoothstep(t/0.01 - 1.5))"))"#;
+    let mut sim = pressed_block(motion, "law: Penalty(), friction: 0.3, restitution: 0.4", 0.025);
     let (mut largest, mut fallen) = (0.0f64, 0.0f64);
     while !sim.is_finished() {
         sim.step().unwrap();
