@@ -1,12 +1,15 @@
-//! Takes the files of rerun's web viewer out of the crate that holds them, for `src/web_viewer.rs` to build in.
+//! Takes the files of rerun's web viewer out of the crate that holds them, for `src/recording/web_viewer.rs` to build in.
 
-use std::error::Error;
-use std::path::PathBuf;
-use std::{env, fs};
+#[cfg(not(feature = "rerun"))]
+fn main() {}
 
-use re_web_viewer_server::WebViewerData;
+#[cfg(feature = "rerun")]
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    use std::path::PathBuf;
+    use std::{env, fs};
 
-fn main() -> Result<(), Box<dyn Error>> {
+    use re_web_viewer_server::WebViewerData;
+
     println!("cargo::rerun-if-changed=build.rs");
     let folder = PathBuf::from(env::var_os("OUT_DIR").ok_or("cargo gives no folder")?);
     let viewer = WebViewerData::load(None)?;

@@ -138,9 +138,10 @@ impl Execution {
         let mut text = format!("files in {folder}: {}", names.join(", "));
         text += &match names.iter().any(|name| name.ends_with(".rrd")) {
             true => format!("\nto look at the recording: meshless view {folder}"),
-            false => {
+            false if cfg!(feature = "rerun") => {
                 "\nthere is no recording: `plugins: [rerun_recorder()]` of the scene makes one".to_owned()
             }
+            false => String::new(),
         };
         if names.iter().any(|name| name == folder::CHECKPOINT) {
             text += &match self.sim.clock().time >= self.sim.end() {

@@ -22,5 +22,7 @@ mod template;
 mod text;
 pub mod validate;
 mod view;
+#[cfg(feature = "rerun")]
+mod web_viewer;
 
 pub use commands::run;

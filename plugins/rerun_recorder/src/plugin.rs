@@ -7,8 +7,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::colormap::Colormap;
-use crate::output::address;
-use crate::recorder::RerunFile;
+use crate::recording::{add, check_address};
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -49,13 +48,12 @@ impl Plugin for RerunRecorder {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         self.check()?;
         let grey = self.grey_bodies(sim.scene())?;
-        let fields = sim.scene().record.fields.clone();
         let gravity = sim.gravity().to_array();
         let up = match sim.dimension() {
             Dimension::Two => [0.0, 1.0, 0.0],
             Dimension::Three => against(gravity),
         };
-        sim.add_recorder(RerunFile::new(self, fields, grey, up));
+        add(self, grey, up, sim);
         Ok(())
     }
 }
@@ -95,7 +93,7 @@ impl RerunRecorder {
             ));
         }
         if let Some(text) = &self.connect
-            && let Err(error) = address(text)
+            && let Err(error) = check_address(text)
         {
             return Err(SetupError::parameter(
                 "connect",
@@ -135,6 +133,7 @@ mod tests {
             ("range", RerunRecorder { range: Some((1.0, 1.0)), ..RerunRecorder::default() }),
             ("range", RerunRecorder { range: Some((0.0, f64::NAN)), ..RerunRecorder::default() }),
             ("radius_scale", RerunRecorder { radius_scale: 0.0, ..RerunRecorder::default() }),
+            #[cfg(feature = "rerun")]
             ("connect", RerunRecorder { connect: Some("my viewer".into()), ..RerunRecorder::default() }),
         ];
         for (name, plugin) in faulty {

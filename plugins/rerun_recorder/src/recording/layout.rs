@@ -12,11 +12,11 @@ use rerun::external::re_sdk_types::components::{Color, Position3D, Vector3D};
 use rerun::external::re_sdk_types::datatypes::{Bool, Range2D};
 use rerun::log::LogMsg;
 
-use crate::blueprint::{Blueprint, Tile, View, only, with_children, without};
-use crate::camera::{Bounds, Eye};
-use crate::legend;
-use crate::paths;
-use crate::series::{Plot, SeriesTable};
+use super::blueprint::{Blueprint, Tile, View, only, with_children, without};
+use super::camera::{Bounds, Eye};
+use super::legend;
+use super::paths;
+use super::series::{Plot, SeriesTable};
 
 /// What the layout depends on.
 pub struct Layout {

@@ -7,17 +7,17 @@ use rerun::{
     Color, EntityPath, Points3D, Radius, Scalars, TextDocument, Transform3D, archetypes::ViewCoordinates,
 };
 
-use crate::camera::Bounds;
-use crate::color_scale::{ColorScale, RunningScale};
+use super::camera::Bounds;
+use super::color_scale::{ColorScale, RunningScale};
+use super::error::RerunError;
+use super::layout::Layout;
+use super::legend::{Legend, short};
+use super::notes::Notes;
+use super::output::Output;
+use super::paths;
+use super::series::SeriesTable;
 use crate::colormap::Colormap;
-use crate::error::RerunError;
-use crate::layout::Layout;
-use crate::legend::{Legend, short};
-use crate::notes::Notes;
-use crate::output::Output;
-use crate::paths;
 use crate::plugin::RerunRecorder;
-use crate::series::SeriesTable;
 
 /// Writes the recording of a run.
 pub struct RerunFile {

@@ -2,11 +2,11 @@
 
 use rerun::{Color, EntityPath, Image, Points2D};
 
-use crate::color_scale::ColorScale;
+use super::color_scale::ColorScale;
+use super::error::RerunError;
+use super::output::Output;
+use super::paths::legend;
 use crate::colormap::Colormap;
-use crate::error::RerunError;
-use crate::output::Output;
-use crate::paths::legend;
 
 /// Width of the bar in the units of its view.
 pub const WIDTH: u32 = 512;
@@ -66,7 +66,7 @@ impl Legend {
 }
 
 fn part(name: &str) -> EntityPath {
-    legend().join(&crate::paths::entity([name]))
+    legend().join(&super::paths::entity([name]))
 }
 
 fn strip(map: Colormap) -> Image {

@@ -17,7 +17,7 @@ use rerun::log::LogMsg;
 use rerun::sink::MemorySinkStorage;
 use rerun::{AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
-use crate::output::{APPLICATION, TIMELINE};
+use super::output::{APPLICATION, TIMELINE};
 
 /// A layout that is being written.
 pub struct Blueprint {

@@ -12,7 +12,7 @@ use rerun::{
     TimeCell, TimeColumn,
 };
 
-use crate::error::RerunError;
+use super::error::RerunError;
 
 /// Name under which the viewer groups recordings.
 pub const APPLICATION: &str = "meshless";

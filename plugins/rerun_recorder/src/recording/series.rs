@@ -8,9 +8,9 @@ use rerun::{EntityPath, SeriesLines};
 use meshless_engine::record::Sample;
 use meshless_engine::scene::Dimension;
 
-use crate::error::RerunError;
-use crate::output::{Output, TimedValue};
-use crate::paths;
+use super::error::RerunError;
+use super::output::{Output, TimedValue};
+use super::paths;
 
 /// A plot of time series.
 #[derive(Clone, Debug, PartialEq, Eq)]
