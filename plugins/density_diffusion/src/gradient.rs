@@ -18,10 +18,9 @@ meshless_engine::column! {
 /// Adds the column and the system that fills it, once density and volume are those of the end of the step.
 pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
     sim.add_column_to::<DensityGradient>(&bodies);
-    let phases = sim.phases_of(&bodies);
     sim.add_system(
-        System::new(Stage::Boundary, "density_gradient", Gradient { bodies })
-            .on_phases(phases)
+        System::new(Stage::Boundary, "density_gradient", Gradient { bodies: bodies.clone() })
+            .on_bodies(bodies)
             .reads::<Density>()
             .writes::<DensityGradient>(),
     );

@@ -10,7 +10,7 @@ mod stiffness;
 mod tests;
 
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{Mode as Access, Stage, System};
+use meshless_engine::schedule::{Stage, System};
 use meshless_engine::world::{Column, Force, Mass, Mobility, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -78,24 +78,21 @@ impl Plugin for LocalDamping {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let window = self.window()?;
         let bodies = sim.scope().clone();
-        let phases = sim.phases_of(&bodies);
         let system = match self.mode {
             Mode::Constant => {
                 let rate = self.constant_rate()?;
-                System::new(Stage::PostStep, Self::NAME, Decay { bodies, window, rate })
+                System::new(Stage::PostStep, Self::NAME, Decay { bodies: bodies.clone(), window, rate })
             }
             Mode::Relaxation { tolerance, after, stop } => {
                 self.check_relaxation(tolerance, after)?;
                 sim.add_column::<PreviousForce>();
-                let relaxation = Relaxation::new(bodies, window, tolerance, after, stop);
+                let relaxation = Relaxation::new(bodies.clone(), window, tolerance, after, stop);
                 System::new(Stage::PostStep, Self::NAME, relaxation)
                     .reads::<Force>()
-                    .touches(PreviousForce::NAME, Access::Adds)
+                    .writes::<PreviousForce>()
             }
         };
-        // Dampings of different bodies do not touch each other's rows: `Adds` says that their order does not matter.
-        let system = system.reads::<Mass>().reads::<Mobility>().touches(Velocity::NAME, Access::Adds);
-        sim.add_system(system.on_phases(phases));
+        sim.add_system(system.reads::<Mass>().reads::<Mobility>().writes::<Velocity>().on_bodies(bodies));
         Ok(())
     }
 }

@@ -55,11 +55,10 @@ impl Plugin for ParticleShifting {
             return Ok(());
         }
         sim.add_column_to::<DensityShift>(&bodies);
-        let phases = sim.phases_of(&bodies);
         let work = Shifting {
             strength: self.strength,
             gravity: sim.gravity(),
-            bodies,
+            bodies: bodies.clone(),
             lambda: Vec::new(),
             places: Vec::new(),
             moves: Vec::new(),
@@ -67,7 +66,7 @@ impl Plugin for ParticleShifting {
         };
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
-                .on_phases(phases)
+                .on_bodies(bodies)
                 .after_any("local_damping")
                 .reads::<Velocity>()
                 .reads::<Mass>()

@@ -33,10 +33,9 @@ impl Plugin for TensileControl {
         if bodies.is_empty() {
             return Ok(());
         }
-        let phases = sim.phases_of(&bodies);
         sim.add_system(
-            System::new(Stage::Rates, Self::NAME, Control { bodies, changes: Vec::new() })
-                .on_phases(phases)
+            System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
+                .on_bodies(bodies)
                 .after(FLUID_FORCE)
                 .reads::<Pressure>()
                 .reads::<Velocity>()

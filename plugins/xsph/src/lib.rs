@@ -47,12 +47,11 @@ impl Plugin for Xsph {
         if self.epsilon == 0.0 || bodies.is_empty() {
             return Ok(());
         }
-        let phases = sim.phases_of(&bodies);
         let gravity = sim.gravity();
-        let work = Smoothing { epsilon: self.epsilon, gravity, bodies, moves: Vec::new() };
+        let work = Smoothing { epsilon: self.epsilon, gravity, bodies: bodies.clone(), moves: Vec::new() };
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
-                .on_phases(phases)
+                .on_bodies(bodies)
                 .after_any("local_damping")
                 .reads::<Velocity>()
                 .reads::<Mass>()

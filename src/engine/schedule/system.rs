@@ -176,6 +176,13 @@ impl System {
         self
     }
 
+    /// Declares that only rows of these bodies are touched, in every column: systems of different bodies never conflict. A plugin that several bodies have, each
+    /// for itself, adds a system for each of them.
+    pub fn on_bodies(mut self, bodies: BodySet) -> Self {
+        self.bodies = Some(bodies);
+        self
+    }
+
     /// Declares that the system acts on the bodies that are due alone ([`Turn::due`](super::Turn::due)): where some of its
     /// phases are sub-cycled and others are not, it runs in the long step and in the short ones.
     pub fn by_body(mut self) -> Self {
@@ -222,7 +229,7 @@ impl System {
         &self.access
     }
 
-    /// The bodies that the system was made for, if it does not say which phases it touches.
+    /// The bodies whose rows alone are touched, if the system does not say which phases it touches.
     pub(crate) fn bodies_without_phases(&self) -> Option<&BodySet> {
         self.bodies.as_ref().filter(|_| self.phases.is_none())
     }
@@ -248,6 +255,11 @@ impl System {
         {
             return None;
         }
+        if let (Some(a), Some(b)) = (&self.bodies, &other.bodies)
+            && !a.iter().any(|body| b.contains(body))
+        {
+            return None;
+        }
         let pairs = self.access.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));
         pairs.filter(|(a, b)| a.conflicts(b)).map(|(a, _)| a.column).next()
     }
@@ -257,14 +269,28 @@ impl System {
 mod tests {
     use super::*;
     use crate::schedule::Adds;
-    use crate::world::{Force, Mass};
+    use crate::world::{BodyId, Force, Mass};
 
     #[test]
     fn systems_that_only_add_to_a_column_need_no_order() {
-        let bodies = BodySet::default;
+        let bodies = || BodySet::new([BodyId(0)]);
         let adds = |label| System::each::<(Adds<Force>, &Mass)>(Stage::External, label, bodies(), |_, _| ());
         let writes = System::each::<(&mut Force,)>(Stage::External, "writes", bodies(), |_, _| ());
         assert_eq!(adds("one").conflict_with(&adds("other")), None);
         assert_eq!(adds("one").conflict_with(&writes), Some(Force::NAME));
+    }
+
+    #[test]
+    fn systems_of_different_bodies_need_no_order() {
+        let of = |bodies: &[usize]| {
+            let bodies = BodySet::new(bodies.iter().map(|&k| BodyId(k)));
+            System::new(Stage::External, "of bodies", |_: &mut Step<'_>| Ok(()))
+                .on_bodies(bodies)
+                .writes::<Force>()
+        };
+        assert_eq!(of(&[0, 2]).conflict_with(&of(&[1])), None);
+        assert_eq!(of(&[0, 2]).conflict_with(&of(&[1, 2])), Some(Force::NAME));
+        let of_all = System::new(Stage::External, "of all", |_: &mut Step<'_>| Ok(())).writes::<Force>();
+        assert_eq!(of(&[0]).conflict_with(&of_all), Some(Force::NAME));
     }
 }
