@@ -11,7 +11,7 @@ mod tests;
 
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Stage, System};
-use meshless_engine::world::{Column, Force, Mass, Mobility, Velocity};
+use meshless_engine::world::{Force, Mass, Mobility, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
