@@ -1,28 +1,31 @@
-//! Particle shifting (delta-plus-SPH): moves fluid particles a little from where they are dense to where they are sparse.
+//! Particle shifting: moves fluid particles a little from where they are crowded to where there is room.
 //!
-//! `dx_i = -2 s h c_i dt sum_j V_j (1 + 0.2 (W_ij / W(dp))^4) w_ij x_ij` over fluid and walls (Sun et al. 2017, eq. 20, with the step of this
-//! engine in place of their Courant number), where c_i is twice h times the shear rate of the flow at the particle, at most the largest speed. Near
-//! a free surface only the part along the surface is kept, at the surface nothing.
-//!
-//! A shift undoes what the flow has crowded, and continuity has counted as compression. So the density follows it, on scales
-//! above that of the particles.
+//! Three passes over neighbours: [`local`] measures how the particles of a neighbourhood lie and move, [`displacement`] makes the displacement of each particle,
+//! and [`response`] computes how velocity and density respond. The README has the equations and the variants that were tried.
 
-mod follow;
-mod moves;
-mod surface;
+mod displacement;
+mod local;
+mod response;
 
-use meshless_engine::formulations::fluid::{
-    DensityShift, FlowCloud, SHIFTING_ENERGY, SmallestEigenvalue, displace,
-};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, SHIFTING_ENERGY, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
-use meshless_engine::world::{BodySet, Density, Mass, Position, Velocity};
+use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use surface::Place;
+use displacement::{Displacements, Shift};
+use local::{Local, Locals};
+use response::{Response, Responses};
+
+meshless_engine::column! {
+    /// Change of volume by shifting, over the volume, that the density has not followed yet.
+    pub struct PendingDilation(f64) = "pending_dilation", "B", "1";
+}
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -33,8 +36,7 @@ pub fn register(registry: &mut Registry) {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticleShifting {
-    /// Strength over that of the source. At 6 vortices keep particles even whatever their lattice at the start; at 1 square
-    /// lattices break up.
+    /// Strength of the shift.
     pub strength: f64,
 }
 
@@ -44,9 +46,12 @@ impl Default for ParticleShifting {
     }
 }
 
+/// A shifted body with its strength.
+type Shifted = Vec<(BodyId, f64)>;
+
 impl Plugin for ParticleShifting {
     const NAME: &'static str = "particle_shifting";
-    const REFERENCE: &'static str = "particle shifting: P. N. Sun, A. Colagrossi, S. Marrone, A. M. Zhang, Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49";
+    const REFERENCE: &'static str = "particle shifting: P. N. Sun, A. Colagrossi, S. Marrone, M. Antuono, A. M. Zhang, Comput. Methods Appl. Mech. Engrg. 348 (2019) 912-934";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         ParameterError::require_not_negative("strength", self.strength)?;
@@ -55,23 +60,30 @@ impl Plugin for ParticleShifting {
             return Ok(());
         }
         sim.add_column_to::<DensityShift>(&bodies);
-        let work = Shifting {
-            strength: self.strength,
-            gravity: sim.gravity(),
-            bodies: bodies.clone(),
-            lambda: Vec::new(),
-            places: Vec::new(),
-            moves: Vec::new(),
-            dilation: Vec::new(),
-        };
+        sim.add_column_to::<PendingDilation>(&bodies);
+        let own = bodies.iter().map(|id| (id, self.strength));
+        // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies, however many have the plugin.
+        if let Some(shared) = sim.take_extensions::<Arc<Mutex<Shifted>>>().pop() {
+            shared.lock().unwrap_or_else(PoisonError::into_inner).extend(own);
+            sim.extend(shared);
+            return Ok(());
+        }
+        let shared = Arc::new(Mutex::new(own.collect::<Shifted>()));
+        let phases = sim.phases_of(&bodies);
+        let work =
+            Shifting { gravity: sim.gravity(), bodies: Arc::clone(&shared), fields: Fields::default() };
+        sim.extend(shared);
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
-                .on_bodies(bodies)
+                .on_phases(phases)
                 .after_any("local_damping")
-                .reads::<Velocity>()
+                .after_any("xsph")
                 .reads::<Mass>()
                 .reads::<Density>()
+                .reads::<Removed>()
+                .writes::<Velocity>()
                 .writes::<DensityShift>()
+                .writes::<PendingDilation>()
                 .adds::<Position>(),
         );
         Ok(())
@@ -79,17 +91,29 @@ impl Plugin for ParticleShifting {
 }
 
 struct Shifting {
-    strength: f64,
     gravity: DVec3,
-    bodies: BodySet,
-    /// Smallest eigenvalues of the moment matrices, row by row of the fluid.
-    lambda: Vec<f64>,
-    /// Where the particles are to the free surface.
-    places: Vec<Place>,
-    /// Displacements, m.
+    bodies: Arc<Mutex<Shifted>>,
+    fields: Fields,
+}
+
+/// What the passes compute, row by row of the fluids: scratch memory.
+#[derive(Default)]
+struct Fields {
+    locals: Vec<Local>,
+    shifts: Vec<Shift>,
     moves: Vec<DVec3>,
-    /// What they do to the volume over the volume.
-    dilation: Vec<f64>,
+    pending: Vec<f64>,
+    responses: Vec<Response>,
+}
+
+impl Fields {
+    fn resize(&mut self, fluid: usize) {
+        self.locals.resize(fluid, Local::default());
+        self.shifts.resize(fluid, Shift::default());
+        self.moves.resize(fluid, DVec3::ZERO);
+        self.pending.resize(fluid, 0.0);
+        self.responses.resize(fluid, Response::default());
+    }
 }
 
 impl Run for Shifting {
@@ -97,21 +121,34 @@ impl Run for Shifting {
         let resources = step.resources;
         let cloud = resources.get::<FlowCloud>();
         let cloud: &FlowCloud = &cloud;
-        let Self { strength, gravity, bodies, lambda, places, moves, dilation } = self;
-        lambda.resize(cloud.fluid, 0.0);
-        places.resize(cloud.fluid, Place::Inside);
-        moves.resize(cloud.fluid, DVec3::ZERO);
-        dilation.resize(cloud.fluid, 0.0);
-        cloud.for_each_row(0, lambda, &SmallestEigenvalue(cloud));
-        cloud.for_each_row(0, places, &surface::Places { cloud, lambda });
-        for id in bodies.iter() {
-            moves::make(step, cloud, id, (*strength, lambda, places), moves)?;
+        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        self.fields.resize(cloud.fluid);
+        let Fields { locals, shifts, moves, pending, responses } = &mut self.fields;
+        let dt = step.clock.dt;
+        let spacing = bodies.iter().map(|(id, _)| step.world.body(*id).spacing).fold(0.0, f64::max);
+        cloud.for_each_row(0, locals, &Locals::new(cloud, spacing));
+        for &(id, strength) in bodies.iter() {
+            let (view, rows) = step.world.body_view(id);
+            let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
+            let pass = Displacements::new(cloud, locals, (strength, sound_speed, dt));
+            cloud.for_each_row(rows.start, &mut shifts[rows.clone()], &pass);
+            let old = view.read::<PendingDilation>()?;
+            for row in rows {
+                (moves[row], pending[row]) = (shifts[row].displacement, old[row].0);
+            }
         }
-        cloud.for_each_row(0, dilation, &follow::Dilation { cloud, moves, places });
-        for id in bodies.iter() {
+        let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
+        for &(id, _) in bodies.iter() {
             let (_, rows) = step.world.body_view(id);
-            displace(step, id, &moves[rows], *gravity, SHIFTING_ENERGY)?;
-            follow::follow(step, cloud, id, dilation)?;
+            let own = step.ledger.accounts().iter().find(|account| account.name == SHIFTING_ENERGY);
+            let owed = -own.map_or(0.0, |account| account.of(id));
+            let rubbing = if owed > 0.0 { rows.clone() } else { 0..0 };
+            let pass = Responses { cloud, locals, shifts, rubbing, pending };
+            cloud.for_each_row(rows.start, &mut responses[rows.clone()], &pass);
+            let lost = response::change_velocity(step, id, responses, owed)?;
+            step.ledger.add(account, id, lost);
+            displace(step, id, &moves[rows], self.gravity, SHIFTING_ENERGY)?;
+            response::change_density(step, cloud, id, (locals, responses))?;
         }
         Ok(())
     }

@@ -89,3 +89,36 @@ fn the_density_of_a_closed_box_does_not_creep() {
     assert!((mean - 1.0).abs() < 0.004, "{mean}");
     assert!(sim.ledger().relative_error().abs() < 0.002, "{}", sim.ledger().relative_error());
 }
+
+/// A column of water, 0.4 m wide and high, that collapses in a tank 1.6 m long: at rest it is 0.1 m deep.
+const DAM_BREAK: &str = r#"(dimension: Two, gravity: (0, -9.81), domain: (min: (-0.5, -0.5), max: (2.1, 3), outside: Remove),
+    materials: {"water": Fluid(density: 1000.0, viscosity: 1e-3)},
+    bodies: [
+        (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.4)), spacing: 0.04, formulation: Fluid,
+         plugins: [density_diffusion(), artificial_viscosity(alpha: 0.02, beta: 0), particle_shifting()]),
+        (name: "tank", material: "wall", spacing: 0.04, formulation: Wall(slip: Free),
+         shape: Difference(Box(min: (-0.16, -0.16), max: (1.76, 1)), Box(min: (0, 0), max: (1.6, 2)))),
+    ],
+    time: (end: 8.0))"#;
+
+#[test]
+fn a_dam_break_does_not_swell_and_the_shift_gives_no_energy() {
+    let (scene, source) = parse(Source::new("test.ron", DAM_BREAK)).unwrap_or_else(|error| panic!("{error}"));
+    let registry = Registry::standard()
+        .with(particle_shifting::register)
+        .with(density_diffusion::register)
+        .with(artificial_viscosity::register);
+    let mut sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
+    let mut least = f64::INFINITY;
+    sim.run(|sim| {
+        least = least.min(sim.ledger().total_named("particle_shifting"));
+        true
+    })
+    .expect("a run");
+    let position = column::<Position>(&sim);
+    let level = 2.0 * position.iter().map(|x| x.0.y).sum::<f64>() / position.len() as f64;
+    assert!((level - 0.1).abs() < 0.005, "{level}");
+    let supplied = sim.ledger().total_named("gravity");
+    assert!(least > -1e-3 * supplied, "{least} of {supplied}");
+    assert!(sim.ledger().total_named("wall_pressure") > -0.05 * supplied);
+}

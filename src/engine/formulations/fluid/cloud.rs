@@ -164,6 +164,11 @@ impl FlowCloud {
         self.records[i].volume()
     }
 
+    /// The state of a fluid body; none of another one.
+    pub fn state(&self, body: BodyId) -> Option<&FluidState> {
+        self.groups.iter().find(|group| group.body == body).and_then(Group::fluid)
+    }
+
     /// Number of neighbours within the support of every particle of a fluid body, what bounds the fluid included.
     pub fn neighbor_counts(&self, body: BodyId) -> Option<Vec<usize>> {
         let group = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())?;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::cloud::{FlowCloud, Near};
 use super::near::RowPass;
-use super::surroundings::smallest_of;
+use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
 use crate::parallel::{Arithmetic, Vector};
 use crate::record::Field;
@@ -82,7 +82,7 @@ impl RowPass for FreeSurface<'_> {
             inward = near.x_ij.mul_add(weight, inward);
         }
         let (moment, inward) = (moment.sum(), inward.sum());
-        let least = smallest_of(moment.matrix(), A::AXES == 2);
+        let least = smallest_eigenvalue(moment.matrix(), A::AXES == 2);
         if !(ALONE..=INSIDE).contains(&least) {
             return f64::from(u8::from(least < ALONE));
         }

@@ -65,5 +65,5 @@ pub use near::{FourNear, Fours, RowPass};
 pub use record::Record;
 pub use ringing::damp_ringing;
 pub use sound_speed::estimate as estimate_sound_speeds;
-pub use surroundings::SmallestEigenvalue;
+pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
 pub use wall::{Slip, Wall};

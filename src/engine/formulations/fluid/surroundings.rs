@@ -19,12 +19,13 @@ impl RowPass for SmallestEigenvalue<'_> {
         for near in self.0.fours(a, i, &self.0.everything()) {
             moment.add(near.volume * near.weight, near.x_ij);
         }
-        smallest_of(moment.sum().matrix(), A::AXES == 2)
+        smallest_eigenvalue(moment.sum().matrix(), A::AXES == 2)
     }
 }
 
 /// The smallest eigenvalue of a moment matrix; in a plane that of its two axes.
-pub(super) fn smallest_of(moment: &Sym3, plane: bool) -> f64 {
+#[inline(always)]
+pub fn smallest_eigenvalue(moment: &Sym3, plane: bool) -> f64 {
     if plane {
         let (mean, difference) = (0.5 * (moment.xx + moment.yy), 0.5 * (moment.xx - moment.yy));
         mean - difference.hypot(moment.xy)
