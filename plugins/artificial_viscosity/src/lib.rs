@@ -9,7 +9,8 @@ use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::Arithmetic;
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::world::BodySet;
+use meshless_engine::scene::Dimension;
+use meshless_engine::world::{BodyId, BodySet};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -46,9 +47,12 @@ impl Plugin for ArtificialViscosity {
             return Ok(());
         }
         for id in sim.scope().clone().iter() {
-            let material = &sim.body(id).material;
-            let Some(sound_speed) = material.sound_speed() else { continue };
+            let Some(sound_speed) = sim.body(id).material.sound_speed() else { continue };
             let parting = sim.body(id).formulation == "Fluid";
+            if parting {
+                self.warn_where_it_drowns(id, sim);
+            }
+            let material = &sim.body(id).material;
             let term = Friction {
                 alpha: self.alpha,
                 beta: self.beta,
@@ -59,6 +63,28 @@ impl Plugin for ArtificialViscosity {
             sim.add_pair_term(BodySet::new([id]), Self::NAME, term);
         }
         Ok(())
+    }
+}
+
+/// Reynolds number of the artificial viscosity below which it decides what the flow does.
+const LEAST_REYNOLDS: f64 = 50.0;
+
+impl ArtificialViscosity {
+    /// Warns where the viscosity is too large for a flow of a tenth of the speed of sound, which this is chosen for, over the smallest extent
+    /// of the body: `nu = alpha h c_0 / 8`, in three dimensions over 10.
+    fn warn_where_it_drowns(self, id: BodyId, sim: &mut SimBuilder<'_>) {
+        let body = sim.body(id);
+        let (share, h, axes) = if sim.dimension() == Dimension::Two { (8.0, 1.5, 2) } else { (10.0, 1.3, 3) };
+        let length = body.bounds.extent().to_array()[..axes].iter().copied().fold(f64::INFINITY, f64::min);
+        let reynolds = 0.1 * length * share / (self.alpha * h * body.spacing);
+        if reynolds < LEAST_REYNOLDS {
+            let text = format!(
+                "`artificial_viscosity(alpha: {})` drowns the flow of `{}`: beside it a flow with a tenth of the speed of sound has a \
+                 Reynolds number of {reynolds:.0} over the {length:.3} m of the body; `alpha: 0.02, beta: 0.0` is usual for fluids",
+                self.alpha, body.name
+            );
+            sim.warn(text);
+        }
     }
 }
 

@@ -139,3 +139,28 @@ fn the_ledger_names_what_it_takes() {
     let left = ledger.total_named("kinetic") + ledger.total_named("strain") + ledger.total_named("hourglass");
     assert!((left + taken - start).abs() < 2e-3 * start, "{left} + {taken} of {start}");
 }
+
+#[test]
+fn a_viscosity_that_drowns_a_flow_is_warned_of() {
+    let warnings = |parameters: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [(name: "water", material: "water", shape: Box(min: (0, 0), max: (4, 2)), spacing: 0.1, formulation: Fluid,
+                          plugins: [artificial_viscosity({parameters})])],
+                time: (end: 1.0))"#
+        );
+        let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+        let mut registry = Registry::standard();
+        artificial_viscosity::register(&mut registry);
+        let sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
+        sim.warnings()
+            .iter()
+            .filter(|text| text.contains("drowns the flow of `water`"))
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    // u L / nu with u = 2 m/s, L = 2 m and nu = alpha h c_0 / 8 = 0.375 m2/s.
+    let default = warnings("");
+    assert!(default.len() == 1 && default[0].contains("Reynolds number of 11 "), "{default:?}");
+    assert!(warnings("alpha: 0.02, beta: 0.0").is_empty());
+}

@@ -1,15 +1,19 @@
 //! Forces per mass.
 
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::Field;
-use super::load::{self, DeadLoad};
+use super::load::{self, LoadLaw};
+use super::part::Part;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
+use crate::schedule::{Step, StepError};
+use crate::world::Mass;
 
 /// Loads particles with a force per mass, a function of their reference position and time: a shaking table, an
-/// electromagnetic force. Constant gravity of all bodies is `gravity` of the scene.
+/// electromagnetic force. Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid feel it as they feel gravity.
 ///
 /// Gravity that grows within 0.1 s: `BodyForce(on: Select(), value: (0.0, "-9.81*smoothstep(t/0.1)"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -28,14 +32,27 @@ impl Plugin for BodyForce {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
-        let masses = |(id, rows): &(crate::world::BodyId, Vec<u32>)| {
-            let body = sim.body(*id);
-            let mass = |&row: &u32| body.material.density * body.sites[row as usize - body.rows.start].volume;
-            rows.iter().map(mass).collect()
-        };
-        let shares = selection.parts.iter().map(masses).collect();
-        let law = DeadLoad { name: Self::NAME, field, shares };
+        let law = ForcePerMass { field };
         load::apply("body_force", law, &selection, sim, |system| system);
         Ok(())
+    }
+}
+
+/// A field of the reference position and time, times the mass of every particle.
+struct ForcePerMass {
+    field: Field,
+}
+
+impl LoadLaw for ForcePerMass {
+    fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
+        self.field.values(&part.points, step.clock.end(), BodyForce::NAME, out)?;
+        let (view, _) = step.world.body_view(part.body);
+        let mass = view.read::<Mass>()?;
+        out.iter_mut().zip(&part.rows).for_each(|(force, &row)| *force *= mass[row as usize].0);
+        Ok(())
+    }
+
+    fn is_constant(&self) -> bool {
+        !self.field.depends_on_time()
     }
 }

@@ -5,13 +5,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::Field;
-use super::part::parts_of;
-use crate::plugin::{Plugin, SetupError, SimBuilder};
+use super::part::{Part, parts_of};
+use crate::formulations::fluid::Wall;
+use crate::plugin::{Formulation, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::{Mobility, Velocity};
 
 /// Gives particles a velocity to start with, a function of their place; it takes the place of the body's `velocity`. Axes
-/// whose motion is prescribed keep the prescribed one.
+/// whose motion is prescribed keep the prescribed one, and walls their own: nothing would stop them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocity {
@@ -28,7 +29,17 @@ impl Plugin for InitialVelocity {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
-        let parts = parts_of(&selection, sim);
+        let all = parts_of(&selection, sim);
+        let parts: Vec<Part> =
+            all.into_iter().filter(|part| sim.body(part.body).formulation != Wall::NAME).collect();
+        if parts.is_empty() {
+            let message = "walls move by their `velocity` and by `Velocity` and `Displacement` alone, for as long as these say";
+            return Err(SetupError::parameter(
+                "on",
+                message,
+                "use `velocity` of the body, or a condition `Velocity`",
+            ));
+        }
         field.require_finite(&parts, "velocity")?;
         sim.add_setup(move |setup| {
             let axes = field.axes();

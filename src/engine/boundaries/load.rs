@@ -2,9 +2,12 @@
 //!
 //! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, which is what the two kicks of the leapfrog put into the motion.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::field::Field;
+use super::flow_load;
 use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{Selection, SimBuilder};
@@ -12,7 +15,7 @@ use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use crate::world::{Force, Removed, Velocity};
 
 /// What gives the force on every particle of a part.
-pub(super) trait LoadLaw: Send + 'static {
+pub(super) trait LoadLaw: Send + Sync + 'static {
     /// Writes the force on every particle of part `k`, N, at the end of the step.
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError>;
 
@@ -56,7 +59,9 @@ pub(super) fn apply(
     let parts = parts_of(selection, sim);
     let phases = phases_of(selection, sim);
     let forces = vec![Vec::new(); parts.len()];
-    let load = Load { label, law: Box::new(law), parts, forces, next: Vec::new() };
+    let law: Arc<dyn LoadLaw> = Arc::new(law);
+    flow_load::add(label, &law, &parts, sim);
+    let load = Load { label, law, parts, forces, next: Vec::new() };
     let system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     let system = system.reads::<Velocity>().reads::<Removed>().adds::<Force>();
     sim.add_system(declare(system));
@@ -64,7 +69,7 @@ pub(super) fn apply(
 
 struct Load {
     label: &'static str,
-    law: Box<dyn LoadLaw>,
+    law: Arc<dyn LoadLaw>,
     parts: Vec<Part>,
     /// Forces at the end of the last step; empty before the first.
     forces: Vec<Vec<DVec3>>,

@@ -5,6 +5,7 @@ mod displacement;
 mod face_area;
 mod field;
 mod fix;
+mod flow_load;
 mod force;
 #[cfg(test)]
 mod image_tests;

@@ -91,6 +91,13 @@ impl PhaseTerms {
         self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|body| body.id == id)
     }
 
+    /// Whether a body has a term that changes its density.
+    pub fn change_density_of(&self, id: BodyId) -> bool {
+        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = bodies.iter().filter(|body| body.id == id).flat_map(|body| &body.terms);
+        own.into_iter().any(|&k| self.terms[k].changes_density())
+    }
+
     /// The bodies that have terms.
     pub fn bodies(&self) -> Vec<BodyId> {
         self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|body| body.id).collect()

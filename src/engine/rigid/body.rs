@@ -59,6 +59,11 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
+    /// Whether a condition prescribes the motion along an axis.
+    pub fn is_driven_along(&self, axis: usize) -> bool {
+        self.constraint.drives.iter().any(|drive| drive.axes[axis])
+    }
+
     pub(super) fn new(parts: RigidParts, state: RigidState) -> Self {
         let RigidParts { id, mass, inertia, points, reach, surface, nodes, constraint } = parts;
         let contact = Wrench::default();

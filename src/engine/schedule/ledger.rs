@@ -133,6 +133,11 @@ impl Ledger {
         self.largest = turnover.fold(self.largest, f64::max);
     }
 
+    /// The largest energy that any account has held, J.
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+
     /// What the ledger cannot account for, J.
     pub fn balance_error(&self) -> f64 {
         self.stored() - self.stored_at_start - self.supplied() + self.total_of(AccountKind::Dissipated)

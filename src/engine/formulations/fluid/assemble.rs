@@ -2,17 +2,18 @@
 
 use glam::DVec3;
 
+use super::advice;
 use super::checks;
 use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
 use super::drift::Skins;
 use super::formulation::FluidBody;
 use super::kernel::FluidKernel;
-use super::layers::pressure_above;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
+use super::rest;
 use super::sides::ThinBody;
-use super::start::{StartPressure, start};
+use super::start::start;
 use super::systems;
 use super::viscosities::Viscosities;
 use super::wall::WallBody;
@@ -44,17 +45,12 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         checks::is_fine(sim.body(id), spacing)?;
     }
     let mut groups = Vec::new();
-    let mut pressures = Vec::new();
-    let at_rest = fluids.iter().filter(|fluid| fluid.parameters.pressure.is_none());
-    let at_rest: Vec<&BodyPlan> = at_rest.map(|fluid| sim.body(fluid.id)).collect();
-    for FluidBody { id, parameters, .. } in fluids {
-        let body = sim.body(id);
+    for fluid in &fluids {
+        let body = sim.body(fluid.id);
         groups.push(group(body, Role::Fluid(fluid_state(body)?), &groups));
-        pressures.push(match parameters.pressure {
-            Some(expression) => StartPressure::Given(expression),
-            None => hydrostatic(body, &at_rest, sim.gravity()),
-        });
     }
+    let given = fluids.into_iter().map(|fluid| (fluid.id, fluid.parameters.pressure));
+    let pressures = rest::pressures(given.collect(), support, sim)?;
     let fluid: usize = groups.iter().map(|group| group.rows.len()).sum();
     for WallBody { id, parameters } in &walls {
         let surface = Surface {
@@ -66,8 +62,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         groups.push(group(sim.body(*id), Role::Boundary(surface), &groups));
     }
     let (mut thin, plane) = (Vec::new(), sim.dimension() == Dimension::Two);
+    let suction = is_confined(&walls, sim);
     for id in moved {
-        let surface = Surface { no_slip: true, suction: false, velocity: DVec3::ZERO, moved: true };
+        let surface = Surface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true };
         let body = sim.body(id);
         groups.push(group(body, Role::Boundary(surface), &groups));
         if checks::wall_is_thick(body, spacing, support, &periodic).is_err() {
@@ -99,15 +96,24 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         near_boundary: NearRows::default(),
         compression: Vec::new(),
         free_surface: false,
+        loads: Vec::new(),
     };
+    let (walls, contacts, gravity) = (advice::walls(sim), advice::contacts(sim), sim.gravity());
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
         checks::flow_is_slow(&cloud, setup.world)?;
+        advice::sinking(&cloud, &walls, &contacts, gravity, setup);
         setup.resources.insert(cloud);
         Ok(())
     });
     systems::add(&groups, sim)
+}
+
+/// Whether the flow has no free surface, so that bodies in it can pull at it: where walls do, or where the domain has no end.
+fn is_confined(walls: &[WallBody], sim: &SimBuilder<'_>) -> bool {
+    let endless = sim.periodic().axes().iter().take(sim.dimension().count()).all(|&repeats| repeats);
+    endless || walls.iter().any(|wall| wall.parameters.suction)
 }
 
 /// The bodies that a fluid moves, those of a phase together.
@@ -137,12 +143,6 @@ fn fluid_state(body: &BodyPlan) -> Result<FluidState, SetupError> {
         viscosity: law.viscosity,
         eos: law.eos,
     })
-}
-
-fn hydrostatic(body: &BodyPlan, fluids: &[&BodyPlan], gravity: DVec3) -> StartPressure {
-    let (min, max) = (body.bounds.min, body.bounds.max);
-    let surface = DVec3::select(gravity.cmplt(DVec3::ZERO), max, min);
-    StartPressure::Hydrostatic { gravity, surface, above: pressure_above(body, fluids, gravity) }
 }
 
 fn one_support(fluids: &[FluidBody], support: f64, sim: &SimBuilder<'_>) -> Result<(), SetupError> {

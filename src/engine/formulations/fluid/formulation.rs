@@ -14,8 +14,8 @@ use crate::world::{BodyId, ColumnSet, Density, DensityRate, Pressure};
 pub struct Fluid {
     /// Support radius of the Wendland C2 kernel over spacing; without it 3 in two dimensions, 2.6 in three.
     pub support: Option<f64>,
-    /// Pressure at the start \[Pa\], a function of place. Without it that of a fluid at rest under gravity whose surface
-    /// is at the highest point of the body, with the weight of fluids that lie on it.
+    /// Pressure at the start \[Pa\], a function of place. Without it that of a fluid at rest under gravity below the surface
+    /// above each particle, with the weight of fluids that lie on it.
     pub pressure: Option<Expression>,
 }
 

@@ -5,6 +5,7 @@
 //! them (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075). Fluids and boundaries are packed into one cloud with
 //! one search for neighbours; every pair force has its exact opposite on the other particle.
 
+mod advice;
 mod assemble;
 mod batch;
 #[cfg(test)]
@@ -17,20 +18,31 @@ mod density;
 mod displace;
 mod drift;
 mod fields;
+mod filling;
 mod force;
 mod formulation;
+mod intrusion;
 mod kernel;
 mod late_impulse;
-mod layers;
+mod loads;
+#[cfg(test)]
+mod loads_tests;
+mod mach;
 mod near;
 mod near_rows;
 mod neighbors;
+#[cfg(test)]
+mod noticing_tests;
 mod pack;
 mod pair_force;
 mod pair_sums;
 mod pairs;
+mod passing;
 mod reaction;
 mod record;
+mod rest;
+#[cfg(test)]
+mod rest_tests;
 mod ringing;
 #[cfg(test)]
 mod ringing_tests;
@@ -53,6 +65,9 @@ mod viscosities;
 mod wall;
 mod wall_pressure;
 mod wall_state;
+#[cfg(test)]
+mod walls_tests;
+mod watch;
 
 pub use assemble::add_systems;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};

@@ -33,6 +33,7 @@ impl FlowCloud {
 impl Run for Neighbors {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
+        cloud.forget_loads();
         let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
             system: super::systems::NEIGHBORS.to_owned(),

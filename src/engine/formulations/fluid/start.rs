@@ -15,8 +15,8 @@ use crate::world::{
 pub(super) enum StartPressure {
     /// A function of place.
     Given(Expression),
-    /// At rest under gravity: p = p_s + rho_0 g . (x - x_s) with a point x_s of the surface, on which p_s presses.
-    Hydrostatic { gravity: DVec3, surface: DVec3, above: f64 },
+    /// Of every particle at rest, in the order of rows, Pa.
+    AtRest(Vec<f64>),
 }
 
 /// Fills the columns of all groups; `pressures` are those of the fluid groups.
@@ -50,9 +50,7 @@ fn start_fluid(group: &Group, start: &StartPressure, world: &World) -> Result<()
         let x = position[row].0;
         let p = match start {
             StartPressure::Given(expression) => expression.eval(x, 0.0),
-            StartPressure::Hydrostatic { gravity, surface, above } => {
-                above + (state.density * gravity.dot(x - *surface)).max(0.0)
-            }
+            StartPressure::AtRest(pressures) => pressures[row - group.rows.start],
         };
         let rho = state.eos.density(p, state.density, state.sound_speed);
         if !(p.is_finite() && rho > 0.0) {

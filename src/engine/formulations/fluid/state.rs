@@ -1,13 +1,12 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
 use super::cloud::{FlowCloud, FluidState};
+use super::mach::Mach;
 use super::record::Record;
 use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
 
-/// Speed of the flow over that of sound above which density changes are no longer small.
-const FAST: f64 = 0.1;
 /// Stable step in units of h / (c_0 + v). A tank at rest is stable up to 1.6, and grows at once at 1.8; the
 /// energy of impacts asks for less.
 const COURANT: f64 = 0.4;
@@ -16,8 +15,8 @@ const VISCOUS: f64 = 0.125;
 
 /// Sets pressure and volume from the density.
 pub(super) struct EquationOfState {
-    /// Bodies whose speed the user has been warned of.
-    pub warned: Vec<bool>,
+    /// Largest Mach numbers of the bodies that the user has been warned of.
+    pub mach: Vec<Mach>,
     pub sums: Vec<StateSum>,
 }
 
@@ -45,8 +44,8 @@ impl Run for EquationOfState {
         let FlowCloud { groups, records, kernel, .. } = &mut *cloud;
         let h = kernel.smoothing_length();
         let account = step.ledger.account("compression", AccountKind::Stored);
-        self.warned.resize(groups.len(), false);
-        for (group, warned) in groups.iter().zip(&mut self.warned) {
+        self.mach.resize(groups.len(), Mach::default());
+        for (group, mach) in groups.iter().zip(&mut self.mach) {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
             let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
@@ -65,13 +64,7 @@ impl Run for EquationOfState {
             step.ledger.set(account, group.body, sum.energy);
             let (speed, sound) = (sum.speed_squared.sqrt(), state.sound_speed);
             let name = &step.world.body(group.body).name;
-            if speed > FAST * sound && !*warned {
-                *warned = true;
-                step.warnings.push(format!(
-                    "the flow of `{name}` has reached {speed:.3} m/s, more than a tenth of its speed of sound of {sound} m/s: \
-                     its density changes are no longer small; a larger `sound_speed` costs a smaller step"
-                ));
-            }
+            mach.look(speed, state, name, step)?;
             step.limits.propose(COURANT * h / (sound + speed), format_args!("sound speed of `{name}`"));
             if state.viscosity > 0.0 {
                 let limit = VISCOUS * h * h * state.density / state.viscosity;
@@ -82,12 +75,13 @@ impl Run for EquationOfState {
     }
 
     fn save(&self) -> Vec<u8> {
-        self.warned.iter().map(|&warned| u8::from(warned)).collect()
+        self.mach.iter().flat_map(|mach| mach.told.to_le_bytes()).collect()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        self.warned = state.iter().map(|&warned| warned != 0).collect();
-        true
+        let (told, rest) = state.as_chunks::<8>();
+        self.mach = told.iter().map(|bytes| Mach { told: f64::from_le_bytes(*bytes) }).collect();
+        rest.is_empty()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use super::advice;
 use super::cloud::{Group, Role};
 use super::compression::Compression;
 use super::coupling;
@@ -13,6 +14,7 @@ use super::state::EquationOfState;
 use super::surface_friction::SurfaceFriction;
 use super::wall::{PreviousVelocity, WALL_WEIGHT, Wall};
 use super::wall_state::WallState;
+use super::watch;
 use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
 use crate::integrate::KICK;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -55,9 +57,11 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     phases.dedup();
     let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
     let terms = PhaseTerms::take(sim, fluid)?;
+    advice::undamped_density(terms.as_ref(), groups, sim);
     let account = terms.as_ref().and_then(|terms| terms.of_density.clone());
     // Sorting permutes all columns.
     let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
+    watch::add(phases.clone(), sim.body(groups[0].body).spacing, sim);
     let lists =
         System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default()).on_phases(phases).after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
@@ -79,7 +83,7 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
         System::new(
             Stage::Constitutive,
             "fluid_pressure",
-            EquationOfState { warned: Vec::new(), sums: Vec::new() },
+            EquationOfState { mach: Vec::new(), sums: Vec::new() },
         )
         .on_phases([fluid])
         .reads::<Density>()

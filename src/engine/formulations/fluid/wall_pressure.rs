@@ -1,7 +1,8 @@
 //! Pass over the particles of boundaries: pressure and mean velocity of the fluid beside them.
 //!
 //! `p_w = (sum_f p_f W - (g - a_w) . sum_f rho_f x_wf W) / sum_f W` (Adami, Hu, Adams 2012, eq. 27, with x_wf = x_f - x_w and
-//! W for the kernel times the volume V_f, so that removed particles have no part in it).
+//! W for the kernel times the volume V_f, so that removed particles have no part in it). Loads b_f on the fluid act as gravity does, with the
+//! value that each particle feels: `- sum_f b_f . rho_f x_wf W` beside the pressures.
 
 use glam::DVec3;
 
@@ -16,7 +17,7 @@ const LEAST_SHARE: f64 = 1e-10;
 /// The fluid beside a particle of a boundary.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Beside {
-    /// Mean pressure, Pa.
+    /// Mean pressure, with what loads on the fluid add on the way from it, Pa.
     pub pressure: f64,
     /// Mean of rho_f x_wf, kg/m2.
     pub moment: DVec3,
@@ -85,6 +86,10 @@ impl Rows<'_> {
                     total = a.plus(total, value);
                     pressure = a.times_add(value, four.pressure, pressure);
                     let weighed = a.times(value, density);
+                    if !cloud.loads.is_empty() {
+                        let along = along_loads::<A, D>(a, cloud, rows, &four.x);
+                        pressure = a.minus(pressure, a.times(weighed, along));
+                    }
                     for axis in 0..D {
                         moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
                         velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
@@ -102,4 +107,20 @@ impl Rows<'_> {
             }
         }
     }
+}
+
+/// b_f . x_wf of four particles of the fluid.
+#[inline(always)]
+fn along_loads<A: Arithmetic, const D: usize>(
+    a: A,
+    cloud: &FlowCloud,
+    rows: [u32; 4],
+    x: &[Lanes4; D],
+) -> Lanes4 {
+    let loads = rows.map(|j| cloud.loads[j as usize]);
+    let mut sum = Lanes4::ZERO;
+    for axis in 0..D {
+        sum = a.times_add(Lanes4(loads.map(|load| load[axis])), x[axis], sum);
+    }
+    sum
 }

@@ -4,6 +4,7 @@ mod domain;
 mod energy_growth;
 mod hourglass;
 mod system;
+mod wrong_sign;
 
 pub use system::{WATCHDOG, add_system};
 

@@ -3,6 +3,7 @@
 use super::domain::DomainCheck;
 use super::energy_growth::EnergyGrowth;
 use super::hourglass::HourglassShare;
+use super::wrong_sign::{WrongSign, work_of_weight};
 use crate::plugin::SimBuilder;
 use crate::record::trigger::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
@@ -17,6 +18,8 @@ const DOMAIN_INTERVAL: u64 = 10;
 struct Watchdog {
     energy: EnergyGrowth,
     hourglass: HourglassShare,
+    wrong_sign: WrongSign,
+    weight: f64,
     domain: Option<DomainCheck>,
     /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
     frames: Trigger,
@@ -29,6 +32,8 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     let watchdog = Watchdog {
         energy: EnergyGrowth::default(),
         hourglass: HourglassShare::default(),
+        wrong_sign: WrongSign::default(),
+        weight: work_of_weight(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
@@ -48,17 +53,19 @@ impl Run for Watchdog {
         self.hourglass.look(step.ledger, step.world.bodies().len());
         if self.frames.is_due(step.clock.time) || at_end {
             self.hourglass.warn(step);
+            self.wrong_sign.warn(step, self.weight, at_end);
         }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.energy, &self.hourglass, self.frames)).unwrap_or_default()
+        postcard::to_stdvec(&(self.energy, &self.hourglass, &self.wrong_sign, self.frames))
+            .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, frames)) = postcard::from_bytes(state) else { return false };
-        (self.energy, self.hourglass) = (energy, hourglass);
+        let Ok((energy, hourglass, wrong_sign, frames)) = postcard::from_bytes(state) else { return false };
+        (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
         self.frames.resume(frames);
         true
     }

@@ -39,6 +39,8 @@ fn blocks_under(gravity: f64, more: &str) -> Simulation {
 struct Book {
     account: String,
     energy: f64,
+    #[serde(default)]
+    dissipated: bool,
 }
 
 impl Plugin for Book {
@@ -47,6 +49,11 @@ impl Plugin for Book {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         sim.add_system(System::new(Stage::PostStep, "book", move |step: &mut Step<'_>| {
+            if self.dissipated {
+                let account = step.ledger.account(&self.account, AccountKind::Dissipated);
+                step.ledger.add(account, BodyId(1), self.energy * step.clock.dt);
+                return Ok(());
+            }
             let account = step.ledger.account(&self.account, AccountKind::Stored);
             step.ledger.set(account, BodyId(1), self.energy * step.clock.end());
             Ok(())
@@ -140,4 +147,24 @@ fn a_balance_that_does_not_close_is_warned_of_at_the_end() {
     let warnings = sim.finish().unwrap().warnings;
     assert!(warnings.iter().any(|w| w.contains("the energy balance is off by")), "{warnings:?}");
     assert_eq!(sim.finish().unwrap().warnings, warnings);
+}
+
+#[test]
+fn what_can_only_take_energy_and_gives_it_is_warned_of_with_the_largest_share() {
+    let scene = |energy: f64| {
+        format!(
+            "conditions: [Book(account: \"made_up\", energy: {energy:?}, dissipated: true)], record: (every: 0.01), time: (end: 0.1),"
+        )
+    };
+    let given = |energy: f64| {
+        let mut sim = blocks(&scene(energy));
+        sim.run(|_| true).unwrap();
+        sim.warnings()
+            .iter()
+            .filter(|text| text.contains("`made_up` has given energy"))
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    assert!(given(1.0).is_empty());
+    assert_eq!(given(-1.0).len(), 1);
 }

@@ -1,6 +1,6 @@
 //! The pressure that a sensor in a wall shows: the mean over points of its face of the pressure that a particle of the wall would have there.
 //!
-//! `p = (sum_f p_f W - g . sum_f rho_f x_f W) / sum_f W` with x_f from the point (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075, eq.
+//! `p = (sum_f p_f W - sum_f (g + b_f) . rho_f x_f W) / sum_f W` with x_f from the point and loads b_f on the fluid (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075, eq.
 //! 27, and W for the kernel times the volume V_f); zero where no fluid is in front of the point.
 
 use glam::DVec3;
@@ -45,25 +45,26 @@ impl SensorGauge {
     /// Mean over the points of the face, Pa.
     fn pressure(&self, cloud: &FlowCloud) -> f64 {
         let reach = cloud.kernel.support;
-        let near = |record: &&Record| {
+        let near = |record: &Record| {
             let is_near =
                 |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
             record.volume() > 0.0 && self.points.iter().any(is_near)
         };
-        let fluid: Vec<&Record> = cloud.records()[..cloud.fluid].iter().filter(near).collect();
+        let fluid: Vec<usize> = (0..cloud.fluid).filter(|&i| near(&cloud.records()[i])).collect();
         let sum: f64 = self.points.iter().map(|&point| self.at(cloud, &fluid, point)).sum();
         sum / self.points.len() as f64
     }
 
-    fn at(&self, cloud: &FlowCloud, fluid: &[&Record], point: DVec3) -> f64 {
+    fn at(&self, cloud: &FlowCloud, fluid: &[usize], point: DVec3) -> f64 {
         let (mut total, mut sum) = (0.0, 0.0);
-        for record in fluid {
+        for &i in fluid {
+            let record = &cloud.records()[i];
             let x = cloud.offset(point, record.position());
             if x.dot(self.normal) > 0.0 {
                 let weight = record.volume() * cloud.kernel.value(x.length());
                 total += weight;
                 sum += weight * record.pressure();
-                sum -= weight * self.density(cloud, record) * self.gravity.dot(x);
+                sum -= weight * self.density(cloud, record) * (self.gravity + cloud.load(i)).dot(x);
             }
         }
         if total > LEAST { sum / total } else { 0.0 }

@@ -1,0 +1,53 @@
+//! Loads on fluids, told to the walls beside them: the pressure in a wall rises along every acceleration that the fluid feels.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::load::LoadLaw;
+use super::part::Part;
+use crate::formulations::fluid::{FlowCloud, Fluid};
+use crate::plugin::{Formulation, SimBuilder};
+use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::world::{Mass, PhaseId};
+
+/// Adds the system that tells what a load does to fluids, where anything bounds them.
+pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
+    let is_fluid = |part: &Part| sim.body(part.body).formulation == Fluid::NAME;
+    let parts: Vec<(usize, Part)> =
+        parts.iter().cloned().enumerate().filter(|(_, part)| is_fluid(part)).collect();
+    let has_walls = sim.bodies().iter().any(|body| body.formulation != Fluid::NAME);
+    if parts.is_empty() || !has_walls {
+        return;
+    }
+    let mut phases: Vec<PhaseId> = parts.iter().map(|(_, part)| sim.body(part.body).phase).collect();
+    phases.dedup();
+    let accelerations = vec![Vec::new(); parts.len()];
+    let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
+    let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
+    sim.add_system(system.on_phases(phases).reads::<Mass>());
+}
+
+struct FlowLoad {
+    law: Arc<dyn LoadLaw>,
+    /// The parts that flow, with their numbers in the load.
+    parts: Vec<(usize, Part)>,
+    /// Accelerations of each, m/s2; empty before the first step.
+    accelerations: Vec<Vec<DVec3>>,
+}
+
+impl Run for FlowLoad {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for ((k, part), accelerations) in self.parts.iter().zip(&mut self.accelerations) {
+            if accelerations.is_empty() || !self.law.is_constant() {
+                self.law.forces(*k, part, step, accelerations)?;
+                let mass = step.world.phase(step.world.body(part.body).phase).read::<Mass>()?;
+                for (acceleration, &row) in accelerations.iter_mut().zip(&part.rows) {
+                    *acceleration /= mass[row as usize].0;
+                }
+            }
+            step.resources.get_mut::<FlowCloud>().add_loads(part.body, &part.rows, accelerations);
+        }
+        Ok(())
+    }
+}

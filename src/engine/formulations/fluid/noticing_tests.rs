@@ -1,0 +1,136 @@
+//! Flows that go wrong, and what the run says of them.
+
+use super::tests::simulation;
+use crate::plugin::{Registry, build};
+use crate::scene::{Source, parse};
+use crate::simulation::Simulation;
+
+/// A tank with water, with what else is in the scene.
+fn tank(water: &str, bodies: &str, more: &str) -> String {
+    format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "block": NeoHookean(density: 7800.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.6, 0.2)), spacing: 0.02, formulation: Fluid({water})),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.66, 0.4)), Box(min: (0, 0), max: (0.6, 1)))),
+                {bodies}
+            ],
+            {more})"#
+    )
+}
+
+fn warning<'s>(sim: &'s Simulation, part: &str) -> Option<&'s str> {
+    sim.warnings().iter().find(|warning| warning.contains(part)).map(String::as_str)
+}
+
+/// What is wrong with a scene.
+fn fault(text: &str) -> String {
+    let built = parse(Source::new("test.ron", text))
+        .and_then(|(scene, source)| build(&scene, &source, &Registry::standard()));
+    match built {
+        Ok(_) => panic!("the scene is taken"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn a_flow_without_density_diffusion_is_warned_of() {
+    let sim = simulation(&tank("", "", "time: (end: 1.0)"));
+    assert!(warning(&sim, "nothing diffuses the density of `water`").is_some(), "{:?}", sim.warnings());
+}
+
+#[test]
+fn the_warning_of_a_fast_flow_names_its_largest_mach_number_and_sound_is_the_end() {
+    let scene = |end: f64| {
+        format!(
+            r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
+                materials: {{"oil": Fluid(density: 1000.0, sound_speed: 10.0)}},
+                bodies: [(name: "oil", material: "oil", shape: Box(min: (0, 0), max: (1, 1)), spacing: 0.1, formulation: Fluid)],
+                conditions: [BodyForce(on: Select(), value: (10.0, 0.0))], time: (end: {end}))"#
+        )
+    };
+    // The flow is accelerated as a whole: v = 10 t.
+    let mut slow = simulation(&scene(0.19));
+    slow.run(|_| true).expect("a run");
+    assert!(warning(&slow, "Mach").is_none(), "{:?}", slow.warnings());
+    let mut fast = simulation(&scene(0.6));
+    fast.run(|_| true).expect("a run");
+    let fast: Vec<&String> = fast.warnings().iter().filter(|text| text.contains("Mach number of")).collect();
+    let number = |text: &str| -> f64 {
+        let rest = text.split("Mach number of ").nth(1).expect("a number");
+        rest.split(',').next().expect("a number").parse().expect("a number")
+    };
+    assert!(fast.len() == 1 && (0.55..=0.6).contains(&number(fast[0])), "{fast:?}");
+    let error = simulation(&scene(2.0)).run(|_| true).expect_err("faster than sound").to_string();
+    assert!(error.contains("faster than its sound of 10.0000 m/s"), "{error}");
+}
+
+#[test]
+fn a_particle_inside_of_a_wall_is_named_with_place_and_time() {
+    let more = r#"conditions: [Velocity(on: Select(body: "water", nearest: (0.31, 0.01)), value: (0.0, "-0.4"))], time: (end: 0.1)"#;
+    let mut sim = simulation(&tank("", "", more));
+    sim.run(|_| true).expect("a run");
+    // It starts 0.01 m above the floor and goes down with 0.4 m/s: it is 0.01 m below the surface at 0.05 s.
+    let text = warning(&sim, "is inside of `tank`").expect("a warning");
+    let time: f64 = text
+        .split("] and ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .expect("a time")
+        .parse()
+        .expect("a time");
+    assert!(text.contains("of `water`") && (0.05..0.08).contains(&time), "{text}");
+}
+
+#[test]
+fn a_fluid_that_has_swollen_is_warned_of() {
+    // Lengths have grown by a tenth, and the densities do not know.
+    let more = r#"conditions: [InitialDisplacement(on: Select(body: "water"), value: ("0.1*(x - 0.3)", "0.1*y"))], time: (end: 0.001)"#;
+    let scene = tank("pressure: 0.0", "", more)
+        .replace("(-0.06, -0.06), max: (0.66", "(-0.16, -0.06), max: (0.76")
+        .replace("Box(min: (0, 0), max: (0.6, 1))", "Box(min: (-0.1, 0), max: (0.7, 1))");
+    let mut sim = simulation(&scene);
+    sim.run(|_| true).expect("a run");
+    let text = warning(&sim, "do not fill").expect("a warning");
+    let share: f64 = text
+        .split("make up ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .expect("a share")
+        .parse()
+        .expect("a share");
+    assert!((share - 100.0 / 1.21).abs() < 3.0, "{text}");
+}
+
+#[test]
+fn a_rigid_body_that_sinks_to_a_wall_without_contact_is_warned_of() {
+    let block = r#"(name: "block", material: "block", shape: Box(min: (0.2, 0.26), max: (0.4, 0.34)), spacing: 0.02, formulation: Rigid()),"#;
+    let contact = r#"contacts: [(between: ("block", "tank"), law: Penalty())], time: (end: 1.0)"#;
+    let sinks = simulation(&tank("", block, "time: (end: 1.0)"));
+    assert!(warning(&sinks, "no contact holds it off a wall").is_some(), "{:?}", sinks.warnings());
+    let held = simulation(&tank("", block, contact));
+    assert!(warning(&held, "no contact").is_none(), "{:?}", held.warnings());
+    let wood = tank("", block, "time: (end: 1.0)").replace("7800.0", "500.0");
+    assert!(warning(&simulation(&wood), "no contact").is_none());
+}
+
+#[test]
+fn a_body_that_passes_through_a_wall_is_named() {
+    let block = r#"(name: "block", material: "block", shape: Box(min: (0.2, 0.21), max: (0.4, 0.29)), spacing: 0.02, formulation: Rigid(), velocity: (0.0, -4.0)),"#;
+    let mut sim = simulation(&tank("", block, "time: (end: 0.12)"));
+    sim.run(|_| true).expect("a run");
+    let text = warning(&sim, "of `block` is inside of `tank`").expect("a warning");
+    assert!(text.contains("no contact holds the two apart"), "{text}");
+}
+
+#[test]
+fn walls_have_no_initial_velocity() {
+    let more = r#"conditions: [InitialVelocity(on: Select(), value: (0.1, 0.0))], time: (end: 0.01)"#;
+    let mut sim = simulation(&tank("", "", more));
+    sim.run(|_| true).expect("a run");
+    let moves =
+        |body| super::tests::column::<crate::world::Velocity>(&sim, body).iter().any(|v| v.0.x != 0.0);
+    assert!(moves(0) && !moves(1));
+    let fault = fault(&tank("", "", &more.replace("Select()", "Select(body: \"tank\")")));
+    assert!(fault.contains("walls move by their `velocity`"), "{fault}");
+}

@@ -1,0 +1,68 @@
+//! What a flow must not do, looked at on the way: particles inside of what bounds it, gaps and swelling.
+
+use super::cloud::FlowCloud;
+use super::filling::Filling;
+use super::intrusion::Intrusion;
+use super::passing::Passing;
+use crate::plugin::SimBuilder;
+use crate::record::trigger::Trigger;
+use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::world::{ParticleId, PhaseId, Position, ReferencePosition};
+
+/// Steps between two looks for particles inside of something: what has entered stays for some time.
+const INTERVAL: u64 = 50;
+
+struct FlowWatch {
+    intrusion: Intrusion,
+    passing: Passing,
+    filling: Filling,
+    /// The filling is looked at with the frames.
+    frames: Trigger,
+    end: f64,
+}
+
+/// Adds the system that looks.
+pub(super) fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
+    let watch = FlowWatch {
+        intrusion: Intrusion::new(sim, spacing),
+        passing: Passing::new(sim),
+        filling: Filling::default(),
+        frames: Trigger::after_interval(sim.scene().record_interval()),
+        end: sim.scene().time.end,
+    };
+    sim.add_system(
+        System::new(Stage::Record, "fluid_watch", watch)
+            .on_phases(phases)
+            .reads::<Position>()
+            .reads::<ReferencePosition>()
+            .reads::<ParticleId>(),
+    );
+}
+
+impl Run for FlowWatch {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let cloud = step.resources.get::<FlowCloud>();
+        let at_end = step.clock.time >= self.end || step.stop.is_some();
+        let is_frame = self.frames.is_due(step.clock.time) || at_end;
+        if is_frame || step.clock.step.is_multiple_of(INTERVAL) {
+            self.intrusion.look(&cloud, step)?;
+            self.passing.look(step)?;
+        }
+        if is_frame {
+            self.filling.look(&cloud, step);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(&self.intrusion.told, &self.passing.told, &self.filling, self.frames))
+            .unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok((told, passing, filling, frames)) = postcard::from_bytes(state) else { return false };
+        (self.intrusion.told, self.passing.told, self.filling) = (told, passing, filling);
+        self.frames.resume(frames);
+        true
+    }
+}

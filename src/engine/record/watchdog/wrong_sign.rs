@@ -1,0 +1,93 @@
+//! Energy from what can only take it: friction, diffusion, shifting, walls.
+
+use serde::{Deserialize, Serialize};
+
+use crate::formulations::fluid::Wall;
+use crate::plugin::{BodyPlan, Formulation, SimBuilder};
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{Account, AccountKind, Step};
+
+/// Energy given, over the largest one that any account has held, that is worth a warning.
+const SHARE: f64 = 0.05;
+/// The same over the work that gravity could do on all bodies along their own heights: what is at rest has hardly any energy else.
+const SHARE_OF_WEIGHT: f64 = 0.005;
+/// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of a run counts for all.
+const LOOKS: u32 = 5;
+/// Growth of that share for which the warning is written anew.
+const GROWTH: f64 = 1.2;
+
+/// Watches the accounts of what takes energy out of the motion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct WrongSign {
+    accounts: Vec<Given>,
+}
+
+/// What an account has given.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Given {
+    name: String,
+    /// Looks in a row at which it has given too much.
+    looks: u32,
+    /// Largest share that the user has been told.
+    told: f64,
+}
+
+impl WrongSign {
+    /// Warns of every account that has given energy; the warning keeps up with the largest share. `weight` is the work of
+    /// [`work_of_weight`], J.
+    pub fn warn(&mut self, step: &mut Step<'_>, weight: f64, at_end: bool) {
+        let largest = step.ledger.largest().max(SHARE_OF_WEIGHT / SHARE * weight);
+        let can_only_take = |account: &&Account| {
+            // What has left the domain may have been below zero height.
+            account.kind == AccountKind::Dissipated && account.name != REMOVED_ENERGY
+        };
+        for account in step.ledger.accounts().iter().filter(can_only_take) {
+            let share = if largest > 0.0 { -account.total() / largest } else { 0.0 };
+            let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
+                self.accounts.push(Given { name: account.name.clone(), ..Given::default() });
+                self.accounts.len() - 1
+            });
+            let given = &mut self.accounts[k];
+            given.looks = if share > SHARE { given.looks + 1 } else { 0 };
+            if share <= SHARE.max(GROWTH * given.told) || (given.looks < LOOKS && !at_end) {
+                continue;
+            }
+            given.told = share;
+            let begin = format!("`{}` has given energy ", account.name);
+            let text = format!(
+                "{begin}where it can only take it: {:.3e} J, {:.0} % of the largest energy, by {:.6e} s; {}",
+                -account.total(),
+                100.0 * share,
+                step.clock.end(),
+                advice(&account.name)
+            );
+            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
+                Some(warning) => *warning = text,
+                None => step.warnings.push(text),
+            }
+        }
+    }
+}
+
+/// Work that gravity could do on all bodies along their own heights, J.
+pub(super) fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
+    let gravity = sim.gravity();
+    let of = |body: &BodyPlan| {
+        let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
+        let height = body.bounds.extent().abs().dot(gravity.abs());
+        if height.is_finite() { body.material.density * volume * height } else { 0.0 }
+    };
+    let moved = sim.bodies().iter().filter(|body| body.formulation != Wall::NAME);
+    moved.map(of).sum()
+}
+
+fn advice(account: &str) -> &'static str {
+    match account {
+        "wall_pressure" => {
+            "the pressure of walls does not fit that of the flow: `density_diffusion()` for its noise, no particle inside of a wall, more particles"
+        }
+        _ => {
+            "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
+        }
+    }
+}
