@@ -26,7 +26,7 @@ impl Plugin for BondViscosity {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         ParameterError::require_not_negative("viscosity", self.viscosity)?;
         let factor = 2.0 * (sim.dimension().count() as f64 + 2.0) * self.viscosity;
-        for id in sim.scope().clone().iter() {
+        for id in sim.scope_offering(Offer::PairTerms)?.iter() {
             let term = Dashpots { factor, density: sim.body(id).material.density };
             sim.add_pair_term(BodySet::new([id]), Self::NAME, term);
         }

@@ -169,3 +169,116 @@ fn links_between_pages_lead_somewhere() {
         }
     }
 }
+
+/// The modules of the engine, each above those that it may import.
+const LAYERS: &[&str] = &[
+    "assembly",
+    "contact",
+    "boundaries",
+    "simulation",
+    "record",
+    "formulations",
+    "solids",
+    "symmetry",
+    "removal",
+    "pair",
+    "rigid",
+    "integrate",
+    "fields",
+    "plugin",
+    "schedule",
+    "materials",
+    "world",
+    "scene",
+    "shapes",
+    "space",
+    "neighbors",
+    "correction",
+    "kernels",
+    "parallel",
+    "linalg",
+];
+
+/// Folders whose files must not import each other in circles.
+const WITHOUT_CIRCLES: &[&str] =
+    &["formulations/total_lagrangian", "contact", "solids", "symmetry", "assembly"];
+
+/// The text of a file of the engine without comments and tests; none for a file of tests.
+fn without_tests(path: &Path) -> Option<String> {
+    let of_tests = |part: &std::ffi::OsStr| {
+        let part = part.to_string_lossy();
+        let stem = part.trim_end_matches(".rs");
+        stem == "tests" || stem.ends_with("_tests")
+    };
+    if path.iter().any(of_tests) {
+        return None;
+    }
+    let text = read(path);
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    Some(lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// The words that follow `path::` in a text.
+fn words_after<'t>(text: &'t str, path: &str) -> Vec<&'t str> {
+    let is_word = |c: char| c.is_alphanumeric() || c == '_';
+    let rests = text.match_indices(path).map(|(at, _)| (at, &text[at + path.len()..]));
+    // `supercrate::` is not `crate::`.
+    let whole = rests.filter(|(at, _)| !text[..*at].ends_with(is_word));
+    whole.map(|(_, rest)| &rest[..rest.find(|c| !is_word(c)).unwrap_or(rest.len())]).collect()
+}
+
+#[test]
+fn imports_of_the_engine_go_down_the_list_of_modules() {
+    let engine = root().join("src/engine");
+    let rank = |module: &str| LAYERS.iter().position(|layer| *layer == module);
+    for line in read(&engine.join("lib.rs")).lines() {
+        if let Some(module) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) {
+            assert!(rank(module).is_some(), "module `{module}` has no place in the list");
+        }
+    }
+    let mut files = Vec::new();
+    collect_sources(&engine, &mut files);
+    let mut imports = 0;
+    for path in &files {
+        let inside = path.strip_prefix(&engine).expect("a file of the engine");
+        let first = inside.iter().next().expect("a name").to_string_lossy().into_owned();
+        let Some(own) = rank(first.trim_end_matches(".rs")) else { continue };
+        let Some(text) = without_tests(path) else { continue };
+        for other in words_after(&text, "crate::").into_iter().filter_map(|word| rank(word)) {
+            imports += 1;
+            let (own_name, name) = (LAYERS[own], LAYERS[other]);
+            assert!(own <= other, "{}: `{own_name}` is below `{name}` and imports it", shown(path));
+        }
+    }
+    assert!(imports > 500, "only {imports} imports are found");
+}
+
+#[test]
+fn files_of_a_folder_import_each_other_without_circles() {
+    for folder in WITHOUT_CIRCLES {
+        let folder = root().join("src/engine").join(folder);
+        let mut open: Vec<(String, Vec<String>)> = Vec::new();
+        for path in
+            entries(&folder).iter().filter(|path| name(path).ends_with(".rs") && name(path) != "mod.rs")
+        {
+            if let Some(text) = without_tests(path) {
+                let imports = words_after(&text, "super::").into_iter().map(str::to_owned).collect();
+                open.push((name(path).trim_end_matches(".rs").to_owned(), imports));
+            }
+        }
+        // What imports nothing that is still open is closed, until all are closed or wait for each other.
+        loop {
+            let names: Vec<String> = open.iter().map(|(name, _)| name.clone()).collect();
+            let waits = |(own, imports): &(String, Vec<String>)| {
+                imports.iter().any(|other| other != own && names.contains(other))
+            };
+            open.retain(waits);
+            if open.len() == names.len() {
+                break;
+            }
+        }
+        let waiting: Vec<&str> = open.iter().map(|(name, _)| name.as_str()).collect();
+        assert!(waiting.is_empty(), "{}: circles among {}", shown(&folder), waiting.join(", "));
+    }
+}

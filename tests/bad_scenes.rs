@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use meshless::plugin::build;
+use meshless::assembly::build;
 use meshless::scene::load;
 
 fn marked<'a>(text: &'a str, mark: &'a str) -> impl Iterator<Item = &'a str> {

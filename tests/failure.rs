@@ -5,7 +5,7 @@ use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
 use meshless::world::{BodyId, Damage, Mass, Velocity};
-use meshless::{plugin, standard_plugins};
+use meshless::{assembly, standard_plugins};
 
 /// A notched strip of metal that is pulled apart, with the given plugins.
 fn strip(plugins: &str) -> Simulation {
@@ -20,7 +20,7 @@ fn strip(plugins: &str) -> Simulation {
             time: (end: 1.5e-4))"#
     );
     let (scene, source) = parse(Source::new("strip.ron", text)).unwrap_or_else(|error| panic!("{error}"));
-    plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+    assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A strip in flight that breaks, with that form of the control.
@@ -35,7 +35,7 @@ fn flying(form: &str, then: &str) -> Simulation {
             time: (end: 10.0))"#
     );
     let (scene, source) = parse(Source::new("strip.ron", text)).unwrap_or_else(|error| panic!("{error}"));
-    plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+    assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Momentum, and the sum of its sizes.
@@ -78,7 +78,7 @@ fn fragments_of_a_brittle_bar_do_not_pull_on_each_other() {
     let (scene, source) =
         parse(Source::new("brittle_bar.ron", text)).unwrap_or_else(|error| panic!("{error}"));
     let mut sim =
-        plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+        assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
     sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
     assert!(failed(&sim) > 200, "{}", failed(&sim));
     assert!(sim.ledger().relative_error().abs() < 1e-2, "{}", sim.ledger().relative_error());

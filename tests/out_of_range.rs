@@ -1,7 +1,7 @@
 //! Every parameter of laws, equations of state, failure, control, contact and tools: a value out of range is refused where it stands in the scene, with
 //! what would be right.
 
-use meshless::plugin::build;
+use meshless::assembly::build;
 use meshless::scene::{Source, parse};
 
 /// A scene in which one slot is filled otherwise. The value that is out of range stands between « and ».

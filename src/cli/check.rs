@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshless_engine::plugin::{self, Registry};
+use meshless_engine::assembly;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Dimension, Scene};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Mass};
@@ -33,7 +34,7 @@ const TRIAL_STEPS: u64 = 50;
 /// Builds the scene, does some steps in memory, and says what was found.
 pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
     let (scene, source) = arguments.scene.load()?;
-    let mut sim = plugin::build(&scene, &source, registry)?;
+    let mut sim = assembly::build(&scene, &source, registry)?;
     sim.start().map_err(|error| Failure::Run(error.to_string()))?;
     let limit = sim.limit().map_or_else(|| "nothing".to_owned(), |limit| limit.by.clone());
     let mut text = header(&scene, &source.name);

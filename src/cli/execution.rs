@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshless_engine::plugin::{self, BuildOptions, OutputOptions, Registry};
+use meshless_engine::assembly::{self, BuildOptions};
+use meshless_engine::plugin::Registry;
+use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{Scene, SceneError, Source};
 use meshless_engine::simulation::{RunError, Simulation};
 
@@ -58,7 +60,7 @@ impl Execution {
         output: OutputOptions,
     ) -> Result<Self, SceneError> {
         let folder = output.folder.clone();
-        let sim = plugin::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
+        let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
         Ok(Self { sim, folder, source: source.clone() })
     }
 

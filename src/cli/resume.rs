@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshless_engine::plugin::{OutputOptions, Registry};
+use meshless_engine::plugin::Registry;
 use meshless_engine::record::Existing;
+use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{self, Scene, SceneError, Source};
 use meshless_engine::simulation::Checkpoint;
 

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshless_engine::plugin::{OutputOptions, Registry};
+use meshless_engine::plugin::Registry;
 use meshless_engine::record::Existing;
+use meshless_engine::record::OutputOptions;
 
 use super::execution::{Execution, How};
 use super::failure::Failure;

@@ -3,7 +3,8 @@
 use std::fmt::Display;
 
 use anyhow::Result;
-use meshless_engine::plugin::{self, Registry};
+use meshless_engine::assembly;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{self, SceneError, Source};
 use meshless_engine::simulation::Simulation;
 
@@ -26,6 +27,6 @@ impl Template {
     /// Builds the simulation.
     pub fn build(self, registry: &Registry) -> Result<Simulation, SceneError> {
         let (scene, source) = scene::parse(self.0)?;
-        plugin::build(&scene, &source, registry)
+        assembly::build(&scene, &source, registry)
     }
 }

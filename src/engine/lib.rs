@@ -1,7 +1,7 @@
 //! The engine of `meshless`: particles are hecs entities with component columns, systems run in stages.
 //!
-//! The data flow is scene -> world -> schedule -> systems -> recording; imports between the modules go down this
-//! list, never up.
+//! The data flow is scene -> world -> schedule -> systems -> recording. Imports between the modules go down one list, which a test holds them to
+//! (`LAYERS` in `tests/architecture.rs`).
 //!
 //! Conventions that hold everywhere: SI units, three-dimensional vectors (a two-dimensional scene is plane strain in
 //! x-y with z = 0), pair vectors point from i to j, `x_ij = x_j - x_i`, and the pair weight is
@@ -14,9 +14,11 @@ pub use glam;
 pub use schemars;
 pub use serde;
 
+pub mod assembly;
 pub mod boundaries;
 pub mod contact;
 pub mod correction;
+pub mod fields;
 pub mod formulations;
 pub mod integrate;
 pub mod kernels;
@@ -33,4 +35,7 @@ pub mod scene;
 pub mod schedule;
 pub mod shapes;
 pub mod simulation;
+pub mod solids;
+pub mod space;
+pub mod symmetry;
 pub mod world;

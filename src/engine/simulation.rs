@@ -232,7 +232,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut self.limits,
             warnings: &mut self.warnings,
-            turn: Turn::long(&self.sub_steps.phases),
+            turn: Turn::long(&self.sub_steps.phases, self.clock.step),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
@@ -247,7 +247,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut state.limits,
             warnings: &mut self.warnings,
-            turn: Turn::short(phases, *divided),
+            turn: Turn::short(phases, *divided, state.total),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

@@ -7,7 +7,7 @@ pub mod touching;
 
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
-use meshless::{plugin, standard_plugins};
+use meshless::{assembly, standard_plugins};
 
 /// Two bodies in two or three dimensions, one irregular, loaded and damped, with every stabilizer of
 /// solids, and a rigid ball that is thrown onto one of them.
@@ -246,5 +246,5 @@ pub fn failing_metals() -> Source {
 /// The simulation of a scene with the standard plugins.
 pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
-    plugin::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+    assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,6 +1,7 @@
 //! A periodic box of fluid, for the tests of the plugins that act on one.
 
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Column};

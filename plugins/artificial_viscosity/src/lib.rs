@@ -8,7 +8,7 @@
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::Arithmetic;
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::scene::Dimension;
 use meshless_engine::world::{BodyId, BodySet};
 use schemars::JsonSchema;
@@ -46,9 +46,9 @@ impl Plugin for ArtificialViscosity {
         if self.alpha == 0.0 && self.beta == 0.0 {
             return Ok(());
         }
-        for id in sim.scope().clone().iter() {
+        for id in sim.scope_offering(Offer::PairTerms)?.iter() {
             let Some(sound_speed) = sim.body(id).material.sound_speed() else { continue };
-            let parting = sim.body(id).formulation == "Fluid";
+            let parting = sim.body(id).kind == BodyKind::Fluid;
             if parting {
                 self.warn_where_it_drowns(id, sim);
             }

@@ -1,7 +1,8 @@
 //! The force against a naive second implementation, and what every viscosity must do.
 
 use glam::{DVec2, DVec3};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Force, Mass, Position, ReferenceVolume, Velocity};

@@ -8,7 +8,7 @@ mod gradient;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Number, Vector};
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Density};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -53,7 +53,7 @@ impl Plugin for DensityDiffusion {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         ParameterError::require_not_negative("delta", self.delta)?;
-        let fluids = sim.scope_of("Fluid");
+        let fluids = sim.scope_of(BodyKind::Fluid)?;
         if self.delta == 0.0 || fluids.is_empty() {
             return Ok(());
         }

@@ -1,8 +1,9 @@
 //! The rate against a naive second implementation, linear fields, energy, and off as if it were not there.
 
+use meshless_engine::assembly::build;
 use meshless_engine::glam::{DMat2, DVec2, DVec3};
 use meshless_engine::kernels::{Kernel, KernelName};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Column, Density, DensityRate, Mass, Position};

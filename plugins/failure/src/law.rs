@@ -84,8 +84,8 @@ impl FailingLaw {
         rows.energy[k] = own.energy[k].0;
     }
 
-    /// A particle in which there is damage, below or just at 1; `before` is its stress at the end of the last step, Pa.
-    fn soften(&self, k: usize, stress: &Sym3, before: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
+    /// A particle in which there is damage, below or just at 1.
+    fn soften(&self, k: usize, stress: &Sym3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
         let f = &rows.deformation[k];
         let damage = own.damage[k].0;
         let stored = if damage < 1.0 {
@@ -104,7 +104,7 @@ impl FailingLaw {
         rows.modulus[k] *= 1.0 - damage;
         if rows.dt > 0.0 {
             let change = *f - own.deformation[k].0;
-            let work = 0.5 * double_dot(&(*before + rows.stress[k]), &change);
+            let work = 0.5 * double_dot(&(rows.stress_before[k] + rows.stress[k]), &change);
             own.fracture[k].0 += work - (stored - own.energy[k].0) - rows.plastic_work[k];
         }
         rows.energy[k] = stored;
@@ -147,9 +147,7 @@ impl SolidLaw for FailingLaw {
     fn stress(&self, rows: &mut StressRows<'_>) {
         let n = rows.deformation.len();
         let mut given = [DMat3::IDENTITY; BLOCK];
-        let mut before = [DMat3::ZERO; BLOCK];
         let mut strain = [0.0; BLOCK];
-        before[..n].copy_from_slice(rows.stress);
         let mut state = rows.state.reborrow();
         let (damage, reached) = (state.take::<Damage>(), state.take::<DamagedDeformation>());
         for k in 0..n {
@@ -163,6 +161,7 @@ impl SolidLaw for FailingLaw {
         self.inner.stress(&mut StressRows {
             dt: rows.dt,
             deformation: &given[..n],
+            stress_before: rows.stress_before,
             stress: rows.stress,
             energy: rows.energy,
             modulus: rows.modulus,
@@ -197,7 +196,7 @@ impl SolidLaw for FailingLaw {
                 }
             }
             if own.damage[k].0 > 0.0 {
-                self.soften(k, &stress, &before[k], rows, &mut own);
+                self.soften(k, &stress, rows, &mut own);
             }
             own.deformation[k].0 = given[k];
             own.energy[k].0 = rows.energy[k];

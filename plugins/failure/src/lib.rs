@@ -100,7 +100,7 @@ impl Plugin for Failure {
             let growth = match self.growth {
                 Growth::AtOnce => f64::INFINITY,
                 Growth::CrackSpeed { factor } => {
-                    factor * speed / sim.mean_support(id).unwrap_or(SUPPORT * body.spacing)
+                    factor * speed / body.support.unwrap_or(SUPPORT * body.spacing)
                 }
             };
             let (name, criterion, then) = (body.name.clone(), self.criterion.clone(), self.then);

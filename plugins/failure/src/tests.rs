@@ -79,11 +79,13 @@ impl Specimen {
     /// One step to the deformation `f`.
     fn to(&mut self, f: DMat3, dt: f64) {
         let before = self.stress[0];
-        let (mut stress, mut energy, mut modulus) = (self.stress, self.energy, self.modulus);
+        // What stands in the output before the call is of no account.
+        let (mut stress, mut energy, mut modulus) = ([DMat3::NAN], [f64::NAN], [f64::NAN]);
         self.with_state(|law, state| {
             law.stress(&mut StressRows {
                 dt,
                 deformation: &[f],
+                stress_before: &[before],
                 stress: &mut stress,
                 energy: &mut energy,
                 modulus: &mut modulus,
@@ -244,6 +246,7 @@ fn a_law_that_does_not_fail_is_left_as_it_is() {
         bare.stress(&mut StressRows {
             dt: 1e-6,
             deformation: &[f],
+            stress_before: &[DMat3::ZERO],
             stress: &mut stress,
             energy: &mut energy,
             modulus: &mut modulus,

@@ -4,10 +4,10 @@
 //! the deformation gradient that other bonds are compared with. The variational form needs nothing of this, as bond terms do not act across cracks.
 
 use glam::DMat3;
-use meshless_engine::formulations::total_lagrangian::{BodyBondTerm, BondEnergy, BondRows, BondTerm};
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Matrix, Number};
 use meshless_engine::plugin::{SetupError, SimBuilder};
+use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
     BodyId, BodySet, Column, ColumnSet, Damage, HourglassGradient, HourglassModulus,
 };
@@ -26,21 +26,20 @@ pub fn can_fail(sim: &SimBuilder<'_>, id: BodyId) -> Result<bool, SetupError> {
 pub fn add_off_cracks(sim: &mut SimBuilder<'_>, id: BodyId, account: &str, term: impl PairTerm) {
     let bodies = BodySet::new([id]);
     sim.add_column_to::<HourglassGradient>(&bodies);
-    let measure =
-        BodyBondTerm { bodies: bodies.clone(), account: None, released: None, term: Box::new(Measure) };
-    sim.extend(measure);
+    let measure = FoldedTermOfBodies { account: None, released: None, term: Box::new(Measure) };
+    measure.add(bodies.clone(), sim);
     sim.add_pair_term(bodies, account, term);
 }
 
 /// Writes the fit to the neighbours that hold to its column.
 struct Measure;
 
-impl BondTerm for Measure {
-    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+impl FoldedTerm for Measure {
+    fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         for (column, gradient) in rows.memory.gradient.iter_mut().zip(rows.displacement_gradient) {
             *column = DMat3::IDENTITY + *gradient;
         }
-        BondEnergy::default()
+        FoldedEnergy::default()
     }
 
     fn stiffness_factor(&self) -> f64 {

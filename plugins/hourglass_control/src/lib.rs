@@ -14,9 +14,9 @@ use std::marker::PhantomData;
 
 use cracks::{OffCracks, add_off_cracks, can_fail};
 use ganzenmueller_2015::Ganzenmueller2015;
-use meshless_engine::formulations::total_lagrangian::{BodyBondTerm, BondTerm};
 use meshless_engine::materials::ParameterError;
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{Offer, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
     BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus,
 };
@@ -78,7 +78,7 @@ impl Plugin for HourglassControl {
     const REFERENCE: &'static str = "hourglass control: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106, in variational form";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let bodies = sim.scope_of("TotalLagrangian");
+        let bodies = sim.scope_offering(Offer::FoldedTerms)?;
         let default = if self.form == Form::Ganzenmueller2015 { 25.0 } else { 5.0 };
         let alpha = self.alpha.unwrap_or(default);
         ParameterError::require_not_negative("alpha", alpha)?;
@@ -120,8 +120,9 @@ impl HourglassControl {
             sim.add_column_to::<HourglassMisfit>(&bodies);
             released = Some("hourglass_released".to_owned());
         }
-        let term: Box<dyn BondTerm> = Box::new(Variational { alpha, after_yield: self.after_yield });
-        sim.extend(BodyBondTerm { bodies, account: Some("hourglass".to_owned()), released, term });
+        let term: Box<dyn FoldedTerm> = Box::new(Variational { alpha, after_yield: self.after_yield });
+        let account = Some("hourglass".to_owned());
+        FoldedTermOfBodies { account, released, term }.add(bodies, sim);
         Ok(())
     }
 
@@ -135,8 +136,8 @@ impl HourglassControl {
             return Ok(());
         }
         sim.add_column_to::<HourglassModulus>(bodies);
-        let term: Box<dyn BondTerm> = Box::new(Resistance(self.after_yield));
-        sim.extend(BodyBondTerm { bodies: bodies.clone(), account: None, released: None, term });
+        let term: Box<dyn FoldedTerm> = Box::new(Resistance(self.after_yield));
+        FoldedTermOfBodies { account: None, released: None, term }.add(bodies.clone(), sim);
         for id in bodies.iter() {
             let density = sim.body(id).material.density;
             if can_fail(sim, id)? {

@@ -1,6 +1,6 @@
 //! The modulus that the control resists with.
 
-use meshless_engine::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
+use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub enum AfterYield {
 impl AfterYield {
     /// E_i, Pa, of row `k`.
     #[inline]
-    pub fn modulus(self, rows: &BondRows<'_>, k: usize) -> f64 {
+    pub fn modulus(self, rows: &FoldedRows<'_>, k: usize) -> f64 {
         match self {
             Self::YieldStress => rows.modulus[k].min(rows.strength[k]),
             Self::Young => rows.modulus[k],
@@ -29,12 +29,12 @@ impl AfterYield {
 /// Writes E_i to its column, for pair forces that need that of both particles.
 pub struct Resistance(pub AfterYield);
 
-impl BondTerm for Resistance {
-    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+impl FoldedTerm for Resistance {
+    fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         for k in 0..rows.memory.modulus.len() {
             rows.memory.modulus[k] = self.0.modulus(rows, k);
         }
-        BondEnergy::default()
+        FoldedEnergy::default()
     }
 
     fn stiffness_factor(&self) -> f64 {

@@ -3,13 +3,13 @@
 //! `U = sum_i (alpha/12) E_i V_i sum_j V_j w_ij |F_i X_ij - x_ij|^2`. F_i is the fit that makes the inner sum least, so
 //! its change does not contribute to dU/dx, and the force is
 //! `f_i = -(alpha/6) V_i sum_j V_j w_ij [E_i (F_i X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors.
-//! With F_i X_ij - x_ij = H_i X_ij - u_ij it folds into the pair stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness,
+//! With F_i X_ij - x_ij = H_i X_ij - u_ij it folds into the corrected stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness,
 //! k_i += (alpha/6) E_i.
 //!
 //! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has worked for
 //! that: it is booked as released.
 
-use meshless_engine::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
+use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 
 use crate::resistance::AfterYield;
 
@@ -21,16 +21,16 @@ pub struct Variational {
     pub after_yield: AfterYield,
 }
 
-impl BondTerm for Variational {
-    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+impl FoldedTerm for Variational {
+    fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         let factor = self.alpha / 6.0;
-        let mut energy = BondEnergy::default();
+        let mut energy = FoldedEnergy::default();
         let changes = !rows.memory.misfit.is_empty();
         for k in 0..rows.deformation.len() {
             let modulus = self.after_yield.modulus(rows, k);
             let stiffness = factor * modulus;
-            rows.pair_stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
-            rows.pair_stress.add_stiffness(k, stiffness);
+            rows.stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
+            rows.stress.add_stiffness(k, stiffness);
             let misfit = 0.5 * rows.volume[k] * rows.misfit[k];
             energy.stored += stiffness * misfit;
             if changes {

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use meshless_engine::assembly::build;
 use meshless_engine::materials::{ElasticConstants, SolidLaw, StateRows, StressRows, Stretches};
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{
@@ -59,6 +60,7 @@ impl SolidLaw for Crumbling {
         self.law.stress(&mut StressRows {
             dt: rows.dt,
             deformation: rows.deformation,
+            stress_before: rows.stress_before,
             stress: rows.stress,
             energy: rows.energy,
             modulus: rows.modulus,

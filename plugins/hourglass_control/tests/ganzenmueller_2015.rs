@@ -1,7 +1,8 @@
 //! The form of the paper against a naive sum over all pairs, at random displacements.
 
 use glam::{DMat2, DVec2, DVec3};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Force, Position, ReferencePosition, ReferenceVolume};

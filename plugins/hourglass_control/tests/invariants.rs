@@ -1,7 +1,8 @@
 //! What holds exactly, with and without the control: affine maps, force as the gradient of the energy, conservation.
 
 use glam::{DMat3, DVec3};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, DeformationGradient, Force, Mass, Position, Velocity};

@@ -1,7 +1,8 @@
 //! The control under plastic flow: viscous form against a naive sum, books of what softening releases, the switch.
 
 use glam::{DMat2, DVec2, DVec3};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{

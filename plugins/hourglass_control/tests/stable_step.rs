@@ -2,7 +2,8 @@
 //! linearised equations, found by power iteration over all pairs.
 
 use glam::{DMat2, DVec2};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::assembly::build;
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, ReferencePosition, ReferenceVolume};

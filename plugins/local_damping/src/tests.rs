@@ -1,7 +1,8 @@
 //! Decay against the closed form, relaxation against an independent way to the static solution.
 
+use meshless_engine::assembly::build;
 use meshless_engine::glam::DVec3;
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::{Checkpoint, Simulation};
 use meshless_engine::world::{BodyId, Position, ReferencePosition, Velocity};

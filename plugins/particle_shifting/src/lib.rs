@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, SHIFTING_ENERGY, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity};
 use schemars::JsonSchema;
@@ -55,7 +55,7 @@ impl Plugin for ParticleShifting {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         ParameterError::require_not_negative("strength", self.strength)?;
-        let bodies = sim.scope_of("Fluid");
+        let bodies = sim.scope_of(BodyKind::Fluid)?;
         if self.strength == 0.0 || bodies.is_empty() {
             return Ok(());
         }

@@ -2,10 +2,11 @@
 
 use std::sync::{Arc, Mutex};
 
+use meshless_engine::assembly::build;
 use meshless_engine::formulations::fluid::{DensityShift, SHIFTING_ENERGY};
 use meshless_engine::glam::{DMat2, DVec2, DVec3};
 use meshless_engine::kernels::{Kernel, KernelName};
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
+use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::schedule::{Ledger, Stage, Step, System};
 use meshless_engine::simulation::Simulation;

@@ -5,10 +5,10 @@
 //! no better than particles are evenly spread.
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FLUID_FORCE, FlowCloud, RowPass};
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Force, Pressure, Velocity};
 use schemars::JsonSchema;
@@ -29,14 +29,13 @@ impl Plugin for TensileControl {
     const REFERENCE: &'static str = "tensile control: P. N. Sun, A. Colagrossi, S. Marrone, M. Antuono, A. M. Zhang, Comput. Phys. Commun. 224 (2018) 63-80";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let bodies = sim.scope_of("Fluid");
+        let bodies = sim.scope_of(BodyKind::Fluid)?;
         if bodies.is_empty() {
             return Ok(());
         }
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
                 .on_bodies(bodies)
-                .after(FLUID_FORCE)
                 .reads::<Pressure>()
                 .reads::<Velocity>()
                 .adds::<Force>(),

@@ -8,7 +8,7 @@ use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::parallel::{Arithmetic, Vector};
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Mass, Position, Velocity};
 use schemars::JsonSchema;
@@ -43,7 +43,7 @@ impl Plugin for Xsph {
             let message = format!("`epsilon` is {}, not from 0 to 1", self.epsilon);
             return Err(ParameterError::new("epsilon", message, "0.5 is usual").into());
         }
-        let bodies = sim.scope_of("Fluid");
+        let bodies = sim.scope_of(BodyKind::Fluid)?;
         if self.epsilon == 0.0 || bodies.is_empty() {
             return Ok(());
         }

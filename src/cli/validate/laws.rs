@@ -43,6 +43,7 @@ fn stress_and_energy(material: &Material, deformation: DMat3) -> Result<(DMat3, 
     law.stress(&mut StressRows {
         dt: 0.0,
         deformation: &[deformation],
+        stress_before: &[DMat3::ZERO],
         stress: &mut stress,
         energy: &mut energy,
         modulus: &mut [0.0],

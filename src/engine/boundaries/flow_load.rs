@@ -6,17 +6,17 @@ use glam::DVec3;
 
 use super::load::LoadLaw;
 use super::part::Part;
-use crate::formulations::fluid::{FlowCloud, Fluid};
-use crate::plugin::{Formulation, SimBuilder};
+use crate::formulations::fluid::FlowCloud;
+use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{Mass, PhaseId};
 
 /// Adds the system that tells what a load does to fluids, where anything bounds them.
 pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
-    let is_fluid = |part: &Part| sim.body(part.body).formulation == Fluid::NAME;
+    let is_fluid = |part: &Part| sim.body(part.body).kind == BodyKind::Fluid;
     let parts: Vec<(usize, Part)> =
         parts.iter().cloned().enumerate().filter(|(_, part)| is_fluid(part)).collect();
-    let has_walls = sim.bodies().iter().any(|body| body.formulation != Fluid::NAME);
+    let has_walls = sim.bodies().iter().any(|body| body.kind != BodyKind::Fluid);
     if parts.is_empty() || !has_walls {
         return;
     }

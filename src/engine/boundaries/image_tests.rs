@@ -4,30 +4,31 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::formulations::total_lagrangian::{BondEnergy, BondRows, BondTerm};
+use crate::assembly::build;
 use crate::pair::{Pair, PairTerm, Rates};
 use crate::parallel::{Arithmetic, Matrix, Vector};
-use crate::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
+use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
+use crate::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 use crate::world::{BodyId, DeformationGradient, Mass, Position, ReferencePosition, Velocity};
 
-/// A bond term that uses the bond stiffness and the pair stress: images must carry both.
+/// A bond term that uses the bond stiffness and the corrected stress: images must carry both.
 #[derive(Deserialize, JsonSchema)]
 pub(super) struct Stiffener {}
 
 struct Stiff;
 
-impl BondTerm for Stiff {
-    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy {
+impl FoldedTerm for Stiff {
+    fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         let mut stored = 0.0;
         for k in 0..rows.deformation.len() {
             let stiffness = 0.5 * rows.modulus[k];
-            rows.pair_stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
-            rows.pair_stress.add_stiffness(k, stiffness);
+            rows.stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
+            rows.stress.add_stiffness(k, stiffness);
             stored += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
         }
-        BondEnergy { stored, released: 0.0 }
+        FoldedEnergy { stored, released: 0.0 }
     }
 
     fn stiffness_factor(&self) -> f64 {
@@ -61,7 +62,7 @@ impl Plugin for Stiffener {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        sim.add_bond_term(sim.scope().clone(), "stiffener", Stiff);
+        sim.add_folded_term(sim.scope().clone(), "stiffener", Stiff);
         sim.add_pair_term(sim.scope().clone(), "friction", Friction);
         Ok(())
     }

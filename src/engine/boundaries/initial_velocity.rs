@@ -6,8 +6,7 @@ use serde::Deserialize;
 
 use super::field::Field;
 use super::part::{Part, parts_of};
-use crate::formulations::fluid::Wall;
-use crate::plugin::{Formulation, Plugin, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::{Mobility, Velocity};
 
@@ -31,7 +30,7 @@ impl Plugin for InitialVelocity {
         let field = Field::new(self.value, sim)?;
         let all = parts_of(&selection, sim);
         let parts: Vec<Part> =
-            all.into_iter().filter(|part| sim.body(part.body).formulation != Wall::NAME).collect();
+            all.into_iter().filter(|part| sim.body(part.body).kind != BodyKind::Boundary).collect();
         if parts.is_empty() {
             let message = "walls move by their `velocity` and by `Velocity` and `Displacement` alone, for as long as these say";
             return Err(SetupError::parameter(

@@ -11,7 +11,6 @@ use glam::DVec3;
 use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::split_rigid;
-use crate::integrate::KICK;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody};
@@ -61,7 +60,7 @@ pub(super) fn prescribe(
     let label = name.to_lowercase();
     let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
     let at_end = SetVelocity { motion, end_of_step: true, values: Vec::new() };
-    // No two conditions hold one axis of one particle, so their order does not matter: `Adds` says so.
+    // After the kick, which writes velocities. No two conditions hold one axis of one particle, so their order does not matter: `Adds` says so.
     sim.add_system(
         System::new(Stage::PreStep, label.clone(), at_middle)
             .on_phases(phases.clone())
@@ -77,7 +76,6 @@ pub(super) fn prescribe(
             .reads::<Mass>()
             .reads::<Removed>()
             .touches(Velocity::NAME, Mode::Adds)
-            .after(KICK)
             .by_body(),
     );
     Ok(())

@@ -1,7 +1,6 @@
 //! Rigid bodies in a selection: what holds or drives them does so as a whole.
 
-use crate::plugin::{Formulation, Selection, SetupError, SimBuilder};
-use crate::rigid::Rigid;
+use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::world::BodyId;
 
 /// The selection without rigid bodies, and the rigid bodies. It is an error to select a part of one.
@@ -13,7 +12,7 @@ pub(super) fn split_rigid(
     let mut rigid = Vec::new();
     for (id, rows) in &selection.parts {
         let body = sim.body(*id);
-        if body.formulation != Rigid::NAME {
+        if body.kind != BodyKind::Rigid {
             particles.parts.push((*id, rows.clone()));
         } else if rows.len() == body.sites.len() {
             rigid.push(*id);

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::formulations::total_lagrangian::MirrorPlane;
-use crate::plugin::{BodyPlan, Plugin, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Offer, Plugin, SetupError, SimBuilder};
 use crate::scene::{Axis, Dimension};
+use crate::symmetry::MirrorPlane;
 use crate::world::{BodyId, BodySet};
 
 /// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem is solved like
@@ -54,7 +54,7 @@ impl Plugin for Symmetry {
         }
         let mut cut = Vec::new();
         // Walls have no stress that an image could take up.
-        for body in sim.bodies().iter().filter(|body| body.formulation != "Wall") {
+        for body in sim.bodies().iter().filter(|body| body.kind != BodyKind::Boundary) {
             if self.cuts(body)? {
                 cut.push(body.id);
             }
@@ -70,16 +70,18 @@ impl Plugin for Symmetry {
                 format!("along {:?}, {}", self.plane, extents.join("; ")),
             ));
         }
-        let mirrored = cut.iter().copied().filter(|id| sim.body(*id).formulation == "TotalLagrangian");
+        let mirrored = cut.iter().copied().filter(|id| sim.body(*id).offers(Offer::MirrorImages));
         let mirrored: Vec<BodyId> = mirrored.collect();
         for body in cut.iter().filter(|id| !mirrored.contains(id)).map(|id| sim.body(*id)) {
-            let fluid = body.formulation == "Fluid";
+            let fluid = body.kind == BodyKind::Fluid;
             if fluid && !mirrored.is_empty() && self.is_held(body, sim) {
                 continue;
             }
             let name = &body.name;
-            let message =
-                format!("body `{name}` ends at a symmetry plane, but is not a total-Lagrangian solid");
+            let formulation = body.formulation;
+            let message = format!(
+                "body `{name}` ends at a symmetry plane, and bodies with the formulation `{formulation}` have no mirror images"
+            );
             let help = if fluid {
                 "for a fluid, a `Wall` with free slip behind the plane does the same; the plane is for solids beside it"
             } else {
@@ -128,6 +130,6 @@ impl Symmetry {
                 .any(|site| (0.0..body.spacing).contains(&(side * (site.position[axis] - self.at))))
         };
         let side = if beyond(fluid, 1.0) { -1.0 } else { 1.0 };
-        sim.bodies().iter().any(|body| body.formulation == "Wall" && beyond(body, side))
+        sim.bodies().iter().any(|body| body.kind == BodyKind::Boundary && beyond(body, side))
     }
 }

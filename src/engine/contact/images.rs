@@ -4,53 +4,17 @@
 //! second: a force on the first goes mirrored, with opposite sign, to the source of the image. Of the two pairs of the whole problem, one is
 //! the mirror image of the other, and one is in the half that is solved.
 
-use glam::{DMat3, DVec3};
-
-use crate::formulations::total_lagrangian::MirrorPlane;
+use crate::symmetry::{Map, MirrorPlane};
 use crate::world::BodyId;
-
-/// The map x -> S x + c to an image, with a diagonal S of signs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mirror {
-    signs: DVec3,
-    shift: DVec3,
-}
-
-impl Mirror {
-    /// No image: the body itself.
-    pub const NONE: Self = Self { signs: DVec3::ONE, shift: DVec3::ZERO };
-
-    /// Place of the image, m.
-    pub fn place(&self, x: DVec3) -> DVec3 {
-        self.signs * x + self.shift
-    }
-
-    /// A vector of the image; and a vector at the image, at its source.
-    pub fn turn(&self, v: DVec3) -> DVec3 {
-        self.signs * v
-    }
-
-    /// A deformation gradient of the image.
-    pub fn map(&self, f: DMat3) -> DMat3 {
-        let signs = DMat3::from_diagonal(self.signs);
-        signs * f * signs
-    }
-
-    fn and(mut self, plane: &MirrorPlane) -> Self {
-        self.signs[plane.axis] *= -1.0;
-        self.shift[plane.axis] = 2.0 * plane.at - self.shift[plane.axis];
-        self
-    }
-}
 
 /// The images of the second body that the first one may touch, beginning with that body itself: mirrored by each plane that cuts both, and by
 /// planes at right angles together.
-pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> Vec<Mirror> {
-    let mut all: Vec<(Mirror, [bool; 3])> = vec![(Mirror::NONE, [false; 3])];
+pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> Vec<Map> {
+    let mut all: Vec<(Map, [bool; 3])> = vec![(Map::IDENTITY, [false; 3])];
     for plane in planes.iter().filter(|plane| plane.bodies.contains(first) && plane.bodies.contains(second)) {
         for (mirror, mut axes) in all.clone() {
             if !std::mem::replace(&mut axes[plane.axis], true) {
-                all.push((mirror.and(plane), axes));
+                all.push((Map::mirror(plane.axis, plane.at).after(mirror), axes));
             }
         }
     }
@@ -59,6 +23,8 @@ pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> 
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::world::BodySet;
 
@@ -79,6 +45,6 @@ mod tests {
         assert_eq!(places(1, 2).len(), 2);
         // Opposite planes of one body have no images of images.
         assert_eq!(places(0, 0).len(), 6);
-        assert_eq!(Mirror::NONE.place(x), x);
+        assert_eq!(Map::IDENTITY.place(x), x);
     }
 }

@@ -6,10 +6,10 @@ use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
 use super::shape::Shape;
-use crate::formulations::total_lagrangian::{PackedRows, Surroundings, TotalLagrangian, packed_rows};
-use crate::plugin::{BodyPlan, Formulation};
+use crate::plugin::{BodyPlan, Offer};
 use crate::scene::Dimension;
 use crate::schedule::Resources;
+use crate::solids::{LocalMotion, SolidPhase};
 use crate::world::{
     BodyId, Column, ColumnSet, Damage, DeformationGradient, MissingColumn, Mobility, Position, Removed,
     Velocity, World,
@@ -37,7 +37,7 @@ impl Particles {
         if let Ok(law) = body.solid_law() {
             law.state(&mut state);
         }
-        let deform = body.formulation == TotalLagrangian::NAME && state.get(Damage::NAME).is_none();
+        let deform = body.offers(Offer::DeformedContact) && state.get(Damage::NAME).is_none();
         let on_a_side = on_a_side(body.sites.iter().map(|site| site.position), &radius, dimension);
         Self { body: body.id, radius, deform, on_a_side }
     }
@@ -74,7 +74,7 @@ pub(super) struct MemberColumns<'a> {
     mobility: ArchetypeColumn<'a, Mobility>,
     removed: ArchetypeColumn<'a, Removed>,
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
-    packed: Option<Ref<'a, PackedRows>>,
+    solid: Option<Ref<'a, dyn SolidPhase>>,
 }
 
 impl<'a> MemberColumns<'a> {
@@ -93,7 +93,7 @@ impl<'a> MemberColumns<'a> {
             mobility: view.read()?,
             removed: view.read()?,
             gradient: if particles.deform { Some(view.read()?) } else { None },
-            packed: if particles.deform { packed_rows(resources) } else { None },
+            solid: if particles.deform { resources.solid(world.body(particles.body).phase) } else { None },
         })
     }
 
@@ -107,7 +107,7 @@ impl<'a> MemberColumns<'a> {
             mobility: &self.mobility,
             removed: &self.removed,
             gradient: self.gradient.as_deref(),
-            packed: self.packed.as_deref(),
+            solid: self.solid.as_deref(),
         }
     }
 }
@@ -122,7 +122,7 @@ pub(super) struct Members<'a> {
     mobility: &'a [Mobility],
     removed: &'a [Removed],
     gradient: Option<&'a [DeformationGradient]>,
-    packed: Option<&'a PackedRows>,
+    solid: Option<&'a dyn SolidPhase>,
 }
 
 impl Members<'_> {
@@ -162,11 +162,11 @@ impl Members<'_> {
     }
 
     /// How the material around a particle moves, if that is asked for, and can be moved.
-    pub fn surroundings(&self, i: usize, moving: bool) -> Surroundings {
+    pub fn local_motion(&self, i: usize, moving: bool) -> LocalMotion {
         let row = self.first_row + i;
-        match self.packed {
-            Some(packed) => packed.surroundings(row, self.velocity, self.mobility[row], moving),
-            None => Surroundings::alone(self.velocity[row], self.mobility[row]),
+        match self.solid {
+            Some(solid) => solid.local_motion(row, self.velocity, self.mobility[row], moving),
+            None => LocalMotion::alone(self.velocity[row], self.mobility[row]),
         }
     }
 }

@@ -13,6 +13,7 @@ mod particles;
 mod penalty;
 mod plan;
 mod reaction;
+mod registry;
 mod response;
 mod restitution;
 mod search;
@@ -27,6 +28,7 @@ mod tally;
 #[cfg(test)]
 mod tests;
 mod touched;
+mod touching;
 
 pub use hertz::{Hertz, PlaneForce};
 pub use law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::members::Members;
 use super::shape::{Nearness, on_surface};
-use crate::formulations::total_lagrangian::Surroundings;
 use crate::rigid::RigidBody;
+use crate::solids::LocalMotion;
 
 /// The nodes of a body as they are now.
 pub(super) enum NodeView<'a> {
@@ -85,7 +85,7 @@ impl NodeView<'_> {
     /// How the material of a node moves, if that is asked for.
     pub fn motion(&self, i: usize, moving: bool) -> NodeMotion<'_> {
         match self {
-            Self::Particles(members) => NodeMotion::Particle(members.surroundings(i, moving)),
+            Self::Particles(members) => NodeMotion::Particle(members.local_motion(i, moving)),
             Self::Rigid(body) => NodeMotion::Rigid(body),
         }
     }
@@ -93,7 +93,7 @@ impl NodeView<'_> {
 
 /// How the material of a node moves.
 pub(super) enum NodeMotion<'a> {
-    Particle(Surroundings),
+    Particle(LocalMotion),
     Rigid(&'a RigidBody),
 }
 

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::images::Mirror;
 use super::law::Touch;
 use super::meetings::Meetings;
 use super::members::{MemberColumns, Particles};
@@ -13,10 +12,11 @@ use super::search::{Crowd, Search};
 use super::shape::{Nearness, of_pair};
 use super::tally::Tally;
 use super::touched::{End, Pull, Touched};
-use crate::formulations::total_lagrangian::Surroundings;
 use crate::neighbors::{NeighborError, Periodic};
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
+use crate::solids::LocalMotion;
+use crate::symmetry::Map;
 use crate::world::{Position, ReferencePosition};
 
 /// Particles of one body closer than this in the reference configuration do not touch, over the distance at which they
@@ -32,7 +32,7 @@ pub(super) struct ParticleContact {
     pub first: Particles,
     pub second: Particles,
     /// The image of the second body that the first one touches.
-    mirror: Mirror,
+    mirror: Map,
     periodic: Periodic,
     search: Search,
     pub meetings: Meetings<Nearness, Push, Least>,
@@ -70,7 +70,7 @@ impl ParticleContact {
     pub fn new(
         interaction: Interaction,
         [first, second]: [Particles; 2],
-        mirror: Mirror,
+        mirror: Map,
         periodic: Periodic,
     ) -> Self {
         let room = CANDIDATES * first.on_a_side.min(second.on_a_side);
@@ -92,7 +92,7 @@ impl ParticleContact {
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));
         let (x, y) = (first.read::<Position>()?, second.read::<Position>()?);
         let own =
-            Crowd { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Mirror::NONE };
+            Crowd { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
         let other = Crowd { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
         let found = if self.first.body == self.second.body {
             let reference = first.read::<ReferencePosition>()?;
@@ -147,7 +147,7 @@ impl ParticleContact {
                 return None;
             }
             let (radius, f) = second.shape(j);
-            let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.map(f))));
+            let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.tensor(f))));
             least.add(&Least(reach / near.scale));
             // What is not a number does not touch.
             (near.overlap > 0.0 && first.is_there(i) && second.is_there(j)).then_some(near)
@@ -157,8 +157,8 @@ impl ParticleContact {
         let moving = !interaction.is_elastic();
         touched[0].look(&first, meetings.numbers(), moving);
         touched[1].look(&second, meetings.numbers(), moving);
-        let velocity = |of: [&Surroundings; 2], arms: [DVec3; 2]| {
-            of[0].velocity(arms[0]) - mirror.turn(of[1].velocity(mirror.turn(arms[1])))
+        let velocity = |of: [&LocalMotion; 2], arms: [DVec3; 2]| {
+            of[0].velocity(arms[0]) - mirror.vector(of[1].velocity(mirror.vector(arms[1])))
         };
         // Of a particle and its own image one half is in the half that is solved.
         let share = move |key: PairKey| if of_itself && key.0 == key.1 { 0.5 } else { 1.0 };
@@ -166,10 +166,10 @@ impl ParticleContact {
             let (i, j) = (key.0 as usize, key.1 as usize);
             // What is new may need the velocity where the others do not.
             let new = (before.is_none() && !moving)
-                .then(|| [first.surroundings(i, true), second.surroundings(j, true)]);
+                .then(|| [first.local_motion(i, true), second.local_motion(j, true)]);
             let of = match &new {
                 Some([first, second]) => [first, second],
-                None => [touched[0].surroundings(key.0), touched[other].surroundings(key.1)],
+                None => [touched[0].local_motion(key.0), touched[other].local_motion(key.1)],
             };
             let share = share(key);
             // The forces of the last step on the motion of this one.
@@ -178,7 +178,7 @@ impl ParticleContact {
             }
             let reach = first.radius(i) + second.radius(j);
             let radius = first.radius(i) * second.radius(j) / reach;
-            let mobility = [of[0].mobility(near.arms[0]), of[1].mobility(mirror.turn(near.arms[1]))];
+            let mobility = [of[0].mobility(near.arms[0]), of[1].mobility(mirror.vector(near.arms[1]))];
             let meeting = Meeting {
                 touch: Touch { overlap: near.overlap, radius, length: reach, depth: reach },
                 normal: near.normal,
@@ -198,7 +198,7 @@ impl ParticleContact {
         let end = |key: PairKey, memory: &Memory, tally: &mut Tally| {
             if !memory.is_elastic() {
                 let of =
-                    [first.surroundings(key.0 as usize, true), second.surroundings(key.1 as usize, true)];
+                    [first.local_motion(key.0 as usize, true), second.local_motion(key.1 as usize, true)];
                 tally.losses.add_work(share(key), memory, velocity([&of[0], &of[1]], memory.arms), dt);
             }
             tally.losses.keep(share(key), memory, &Memory::default());
@@ -209,7 +209,7 @@ impl ParticleContact {
             let Push { arms, force, stiffness } = pushes[number];
             let (force, arm, stiffness) = match end {
                 End::First => (force, arms[0], stiffness[0]),
-                End::Second => (-mirror.turn(force), mirror.turn(arms[1]), stiffness[1]),
+                End::Second => (-mirror.vector(force), mirror.vector(arms[1]), stiffness[1]),
             };
             Pull { force, arm, stiffness, beside: DVec3::ZERO }
         };

@@ -8,12 +8,13 @@ use super::response::Interaction;
 use super::restitution::damping_ratio;
 use super::sides::{Nodes, Sides};
 use super::surface::SurfaceContact;
-use super::system::{self, Touching};
-use crate::formulations::total_lagrangian::MirrorPlane;
+use super::system;
+use super::touching::Touching;
 use crate::materials::{ElasticConstants, Law};
-use crate::plugin::{BodyPlan, Formulation, SimBuilder};
-use crate::rigid::{Rigid, sphere_of};
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::rigid::sphere_of;
 use crate::scene::{Contact, Item, Problem};
+use crate::symmetry::MirrorPlane;
 use crate::world::{BodyId, BodySet};
 
 /// Makes the force of a law between two bodies.
@@ -147,7 +148,7 @@ fn refuse_short_periods(
 }
 
 fn is_rigid(body: &BodyPlan) -> bool {
-    body.formulation == Rigid::NAME
+    body.kind == BodyKind::Rigid
 }
 
 fn find<'s>(sim: &'s SimBuilder<'_>, name: &str) -> &'s BodyPlan {

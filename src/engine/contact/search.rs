@@ -5,12 +5,12 @@
 
 use glam::DVec3;
 
-use super::images::Mirror;
 use super::memory::PairKey;
 use super::sieve::Sieve;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
 use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::shapes::Aabb;
+use crate::symmetry::Map;
 use crate::world::Position;
 
 /// Skin over the distance of two particles that just touch.
@@ -23,7 +23,7 @@ pub(super) struct Crowd<'a> {
     /// Radius of every particle, m.
     pub radius: &'a [f64],
     /// The image of the body that is looked at.
-    pub mirror: Mirror,
+    pub mirror: Map,
 }
 
 /// Candidates of contact between the particles of two bodies, or of one with itself.
@@ -162,7 +162,7 @@ impl Search {
         other: Crowd<'_>,
         apart: impl Fn(u32, u32) -> bool,
     ) -> Result<(), NeighborError> {
-        let mirrored = other.mirror != Mirror::NONE;
+        let mirrored = other.mirror != Map::IDENTITY;
         if mirrored {
             self.between(own, other)?;
             self.pairs.retain(|&(i, j)| i <= j && apart(i, j));

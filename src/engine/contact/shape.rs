@@ -3,7 +3,7 @@
 //! Overlaps are measured in the reference configuration, d = r (1 - s), where s is how far the other side is away over how far it would be where
 //! both just touch. So contact is at the surface of the body however flat its particles are pressed, a particle that turns keeps its shape, and
 //! the spring of a particle gets stiffer as it gets thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the
-//! point of contact `x_i + F_i A_i` and not at the particle (see [`Surroundings`](crate::formulations::total_lagrangian::Surroundings)).
+//! point of contact `x_i + F_i A_i` and not at the particle (see [`LocalMotion`](crate::solids::LocalMotion)).
 
 use glam::{DMat3, DVec3};
 

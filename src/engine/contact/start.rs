@@ -1,7 +1,7 @@
 //! Bodies that start inside others.
 
 use super::sides::{Nodes, Sides};
-use super::system::Touching;
+use super::touching::Touching;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::rigid::RigidBodies;
 

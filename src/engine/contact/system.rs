@@ -2,84 +2,22 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::members::Particles;
-use super::memory::{Memories, Memory, PairKey};
+use super::memory::{Memory, PairKey};
 use super::pace::Pace;
-use super::particles::ParticleContact;
 use super::start;
-use super::surface::SurfaceContact;
 use super::tally::{self, Tally};
-use super::touched::Touched;
-use crate::formulations::total_lagrangian::PackedRows;
+use super::touching::Touching;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{
-    BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed, Velocity,
+    Body, BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed,
+    Velocity,
 };
 
 /// Label of the system that works out the forces of contact.
 pub const CONTACT: &str = "contact";
 /// Label of the system that adds them to the particles.
 const CONTACT_FORCE: &str = "contact_force";
-
-/// Two bodies that touch.
-pub(super) enum Touching {
-    Particles(Box<ParticleContact>),
-    Surface(Box<SurfaceContact>),
-}
-
-impl Touching {
-    /// The two bodies.
-    pub fn bodies(&self) -> [BodyId; 2] {
-        match self {
-            Self::Particles(contact) => [contact.first.body, contact.second.body],
-            Self::Surface(contact) => [contact.sides.first, contact.sides.second],
-        }
-    }
-
-    fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
-        match self {
-            Self::Particles(contact) => contact.run(step, paces),
-            Self::Surface(contact) => contact.run(step, paces),
-        }
-    }
-
-    /// The particles of both.
-    fn particles(&self) -> impl Iterator<Item = &Particles> {
-        let (first, second) = match self {
-            Self::Particles(contact) => (Some(&contact.first), Some(&contact.second)),
-            Self::Surface(contact) => (contact.sides.nodes.particles(), None),
-        };
-        first.into_iter().chain(second)
-    }
-
-    /// The particles of both that touch.
-    fn touched(&self) -> impl Iterator<Item = (BodyId, &Touched)> {
-        let [first, second] = self.bodies();
-        match self {
-            Self::Particles(contact) => {
-                [Some((first, &contact.touched[0])), Some((second, &contact.touched[1]))]
-            }
-            Self::Surface(contact) => [Some((first, &contact.touched)), None],
-        }
-        .into_iter()
-        .flatten()
-    }
-
-    fn memories(&self) -> &Memories {
-        match self {
-            Self::Particles(contact) => &contact.meetings.memories,
-            Self::Surface(contact) => &contact.meetings.memories,
-        }
-    }
-
-    fn memories_mut(&mut self) -> &mut Memories {
-        match self {
-            Self::Particles(contact) => &mut contact.meetings.memories,
-            Self::Surface(contact) => &mut contact.meetings.memories,
-        }
-    }
-}
 
 /// Adds the system of the pairs; `numbers` are those of their contacts in the scene.
 pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Vec<usize>, bodies: &BodySet) {
@@ -94,7 +32,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
     let shared = Arc::new(Mutex::new(contacts));
     let mut system = System::new(Stage::Boundary, CONTACT, Meet(Arc::clone(&shared)));
     if deforms {
-        system = system.reads::<DeformationGradient>().touches("pair_stress", Mode::Adds);
+        system = system.reads::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
     }
     sim.add_system(
         system
@@ -145,18 +83,24 @@ impl Contacts {
         Ok(())
     }
 
-    /// Adds what acts on the material beside particles to the pair stress, before the pass of the internal force.
+    /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.
     fn add_couples(&self, step: &Step<'_>) {
         let deforms = |touching: &&Touching| touching.particles().any(|particles| particles.deform);
         let mut deforming = self.touching.iter().filter(deforms).peekable();
         if deforming.peek().is_none() {
             return;
         }
-        let mut packed = step.resources.get_mut::<PackedRows>();
         for (body, touched) in deforming.flat_map(Touching::touched) {
-            touched.add_couples(&mut packed, step.world.body_view(body).1.start);
+            let Body { phase, rows, .. } = step.world.body(body);
+            if let Some(mut solid) = step.resources.solid_mut(*phase) {
+                touched.add_couples(&mut *solid, rows.start);
+            }
         }
-        packed.renew_images();
+        for phase in step.world.phases() {
+            if let Some(mut solid) = step.resources.solid_mut(phase) {
+                solid.renew_ghosts();
+            }
+        }
     }
 
     /// Adds the forces on particles.

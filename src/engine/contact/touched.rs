@@ -7,8 +7,8 @@ use super::meetings::Numbers;
 use super::members::Members;
 use super::memory::PairKey;
 use super::sieve::BLOCKS_OF_TEST;
-use crate::formulations::total_lagrangian::{PackedRows, Surroundings};
 use crate::parallel::{Largest, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
+use crate::solids::{LocalMotion, SolidPhase};
 use crate::world::Force;
 
 /// In the place of a number in the list for particles that no candidate names.
@@ -43,7 +43,7 @@ pub(super) struct Touched {
     starts: Vec<u32>,
     /// Of every particle its candidates, ascending: twice their number, and one more where it is the second one.
     ends: Vec<u32>,
-    surroundings: Vec<Surroundings>,
+    local_motions: Vec<LocalMotion>,
     /// Sum of the forces on each, N.
     forces: Vec<DVec3>,
     /// Sums of f (x) A of forces on points A beside it, N m.
@@ -60,7 +60,7 @@ impl Touched {
             nodes: Vec::new(),
             starts: Vec::new(),
             ends: Vec::new(),
-            surroundings: Vec::new(),
+            local_motions: Vec::new(),
             forces: Vec::new(),
             couples: Vec::new(),
             stiffness: Vec::new(),
@@ -76,7 +76,7 @@ impl Touched {
         let count = (2 * candidates).min(self.numbers.len());
         room(&mut self.nodes, count);
         room(&mut self.starts, count + 1);
-        room(&mut self.surroundings, count);
+        room(&mut self.local_motions, count);
         room(&mut self.forces, count);
         room(&mut self.couples, count);
         room(&mut self.stiffness, count);
@@ -115,7 +115,7 @@ impl Touched {
             }
         }
         starts.insert(0, 0);
-        self.surroundings.resize(self.nodes.len(), Surroundings::default());
+        self.local_motions.resize(self.nodes.len(), LocalMotion::default());
     }
 
     /// The ends of a particle, by its number in the lists.
@@ -123,28 +123,28 @@ impl Touched {
         &self.ends[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 
-    /// Looks at the surroundings of those that touch, and at how they move, if that is asked for.
+    /// Looks at the local_motions of those that touch, and at how they move, if that is asked for.
     pub fn look(&mut self, members: &Members<'_>, contacts: &Numbers, moving: bool) {
-        let mut surroundings = std::mem::take(&mut self.surroundings);
+        let mut local_motions = std::mem::take(&mut self.local_motions);
         let all = &*self;
         for_each_block_in_tasks(
             BLOCKS_OF_TEST,
-            &mut surroundings[..],
+            &mut local_motions[..],
             &mut Vec::new(),
-            &|first, found: &mut [Surroundings]| {
+            &|first, found: &mut [LocalMotion]| {
                 for (number, found) in (first..).zip(found) {
                     if all.ends(number).iter().any(|end| contacts.of(end / 2).is_some()) {
-                        *found = members.surroundings(all.nodes[number] as usize, moving);
+                        *found = members.local_motion(all.nodes[number] as usize, moving);
                     }
                 }
             },
         );
-        self.surroundings = surroundings;
+        self.local_motions = local_motions;
     }
 
-    /// The surroundings of a particle that touches.
-    pub fn surroundings(&self, node: u32) -> &Surroundings {
-        &self.surroundings[self.numbers[node as usize] as usize]
+    /// The local_motions of a particle that touches.
+    pub fn local_motion(&self, node: u32) -> &LocalMotion {
+        &self.local_motions[self.numbers[node as usize] as usize]
     }
 
     /// Adds up what the contacts do to every particle; `pull` says what one does to the particle at that end.
@@ -186,8 +186,8 @@ impl Touched {
     }
 
     /// Adds what acts on the neighbourhoods; `first` is the first row of the body.
-    pub fn add_couples(&self, packed: &mut PackedRows, first: usize) {
-        packed.add_couples(first, &self.nodes, &self.couples);
+    pub fn add_couples(&self, solid: &mut dyn SolidPhase, first: usize) {
+        solid.add_couples(first, &self.nodes, &self.couples);
     }
 
     /// Adds what acts on the particles of a body.

@@ -117,7 +117,10 @@ pub struct StressRows<'a> {
     pub dt: f64,
     /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
-    /// First Piola-Kirchhoff stress P, Pa: to be written.
+    /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first.
+    pub stress_before: &'a [DMat3],
+    /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account, in this and in the other
+    /// outputs, unless they say so.
     pub stress: &'a mut [DMat3],
     /// Strain energy per reference volume, J/m3: to be written.
     pub energy: &'a mut [f64],

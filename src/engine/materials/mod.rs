@@ -46,23 +46,3 @@ pub use return_mapping::Trial;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use state::{MAX_STATE, StateColumns, StateRows};
 pub use stretches::Stretches;
-
-use crate::plugin::Registry;
-
-/// Registers all materials of the engine.
-pub fn register(registry: &mut Registry) {
-    registry
-        .material::<StVenantKirchhoff>()
-        .material::<NeoHookean>()
-        .material::<DecoupledNeoHookean>()
-        .material::<Fluid>()
-        .material::<J2>()
-        .material::<JohnsonCook>()
-        .material::<Hypoelastic>()
-        .material::<Al6061T6>()
-        .material::<PMMA>()
-        .material::<Copper>()
-        .material::<Steel>()
-        .material::<Steel42CrMo4>()
-        .material::<Rubber>();
-}

@@ -40,11 +40,23 @@ pub struct FourPairs {
     pub kept: Lanes4,
 }
 
+/// The configuration whose length a pair weight, and a kernel value, was taken at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WeightAt {
+    /// |X_ij|: total-Lagrangian solids.
+    #[default]
+    Reference,
+    /// |x_ij|: fluids, and solids whose neighbours are those of the current configuration.
+    Current,
+}
+
 /// What the pairs of a body have beside x_ij and what all pairs have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
     /// Reference vectors. The squares of the lengths are then all that is known of these: a term takes the roots that it needs.
     pub reference: bool,
+    /// Where weights were taken, if there are reference vectors; without them it is at |x_ij|.
+    pub weight_at: WeightAt,
     /// Neighbours that are mirror images.
     pub mirrors: bool,
     /// Supports that differ from pair to pair.
@@ -86,6 +98,62 @@ pub struct Room<'a> {
     pub supports: &'a mut [Lanes4],
 }
 
+/// One neighbour, as [`Room::put`] takes it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Neighbor {
+    /// Real row in the phase.
+    pub row: u32,
+    /// Signs of the axes: those of the map to a ghost, else one.
+    pub signs: DVec3,
+    /// x_ij, m.
+    pub current: DVec3,
+    /// X_ij, m.
+    pub reference: DVec3,
+    /// v_ij, m/s.
+    pub velocity: DVec3,
+    /// Pair weight w_ij.
+    pub weight: f64,
+    /// Kernel value W_ij.
+    pub kernel: f64,
+    /// Volume V_j, m3.
+    pub volume: f64,
+    /// Mean support radius, m.
+    pub support: f64,
+}
+
+impl Room<'_> {
+    /// Puts a neighbour in place `k`: for formulations that do not fill the lanes themselves.
+    pub fn put(&mut self, k: usize, neighbor: Neighbor) {
+        let Neighbor { row, signs, current, reference, velocity, weight, kernel, volume, support } = neighbor;
+        let (n, lane) = (k / 4, k % 4);
+        let has_reference = !self.reference.is_empty();
+        let put = |four: &mut FourVectors, vector: DVec3| {
+            (0..3).for_each(|axis| four.vector[axis].0[lane] = vector[axis]);
+            let square = vector.length_squared().max(f64::MIN_POSITIVE);
+            four.length.0[lane] = if has_reference { square } else { square.sqrt() };
+        };
+        let pair = &mut self.pairs[n];
+        put(&mut pair.current, current);
+        (0..3).for_each(|axis| pair.velocity[axis].0[lane] = velocity[axis]);
+        (pair.weight.0[lane], pair.kernel.0[lane], pair.volume_j.0[lane]) = (weight, kernel, volume);
+        self.rows[n][lane] = row;
+        if let Some(four) = self.reference.get_mut(n) {
+            put(four, reference);
+        }
+        if let Some(mirrors) = self.mirrors.get_mut(n) {
+            mirrors[lane] = signs;
+        }
+        if let Some(supports) = self.supports.get_mut(n) {
+            supports.0[lane] = support;
+        }
+    }
+
+    /// Empties the places from `k` on.
+    pub fn close(&mut self, k: usize) {
+        (k..4 * self.pairs.len()).for_each(|k| self.put(k, Neighbor::default()));
+    }
+}
+
 impl PairBatch {
     /// Takes all rows out. `support` is the support radius of all pairs, m; it has no meaning where they differ.
     #[inline(always)]
@@ -117,7 +185,7 @@ impl PairBatch {
         self.volumes[self.count] = volume_i;
         self.count += 1;
         self.starts[self.count] = end;
-        let Extras { reference, mirrors, supports } = self.extras;
+        let Extras { reference, mirrors, supports, .. } = self.extras;
         Room {
             pairs: &mut self.pairs[start..end],
             rows: &mut self.rows[start..end],
@@ -147,11 +215,12 @@ impl PairBatch {
     #[inline(always)]
     pub(super) fn row(&self, r: usize) -> Row<'_> {
         let part = self.starts[r]..self.starts[r + 1];
-        let Extras { reference, mirrors, supports } = self.extras;
+        let Extras { reference, mirrors, supports, weight_at } = self.extras;
         let extra = |wanted: bool| if wanted { part.clone() } else { 0..0 };
         Row {
             volume_i: self.volumes[r],
             support: self.support,
+            weight_at,
             reference: &self.reference[extra(reference)],
             mirrors: &self.mirrors[extra(mirrors)],
             supports: &self.supports[extra(supports)],
@@ -169,6 +238,7 @@ pub(super) struct Row<'a> {
     mirrors: &'a [[DVec3; 4]],
     supports: &'a [Lanes4],
     support: f64,
+    weight_at: WeightAt,
     volume_i: f64,
 }
 
@@ -204,6 +274,7 @@ impl Row<'_> {
             length: Number::new(a, current.length),
             reference_length: Number::new(a, reference.length),
             is_reference: PLAIN,
+            weight_at: if PLAIN { WeightAt::Current } else { self.weight_at },
         }
     }
 }

@@ -57,7 +57,7 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        let Extras { reference, mirrors, supports } = self.batch.extras();
+        let Extras { reference, mirrors, supports, .. } = self.batch.extras();
         match (reference, mirrors || supports) {
             (false, false) => self.add::<A, true, true>(a),
             (true, false) => self.add::<A, false, true>(a),

@@ -13,10 +13,10 @@ mod read;
 mod term;
 mod work;
 
-pub use batch::{Extras, FourPairs, FourVectors, PairBatch, Room};
+pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, Room, WeightAt};
 pub(crate) use of_phase::{BodyTerms, BoundTerms, Fastest, PhaseTerms, TermRows};
 pub(crate) use pass::with_batch;
 pub use pass::{PairRows, PairSource, add_pair_systems};
 pub use read::{FourOf, ReadSet};
-pub use term::{BodyPairTerm, Pair, PairReads, PairTerm, Rates};
+pub use term::{Pair, PairReads, PairTerm, Rates};
 pub(crate) use work::add_work_systems;

@@ -5,14 +5,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::batch::{MAX_ROWS, PairBatch};
-use super::bound::{Chain, ErasedTerm, RowsOut, bind_all};
-use super::term::{BodyPairTerm, PairReads};
+use super::bound::{Chain, RowsOut, bind_all};
+use super::term::{PairReads, PairTermOfBodies};
 use super::work;
 use crate::parallel::{BlockSum, Split};
-use crate::plugin::{SetupError, SimBuilder};
+use crate::plugin::{ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Step, StepError};
-use crate::world::{BodyId, Column, DensityRate, Force, PhaseId};
+use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId};
 
 /// Largest number of pair terms on one body.
 pub(super) const MAX_TERMS: usize = 8;
@@ -31,7 +31,7 @@ pub(crate) struct BodyTerms {
 
 /// The terms of all bodies of a phase.
 pub(crate) struct PhaseTerms {
-    terms: Vec<Box<dyn ErasedTerm>>,
+    terms: Vec<Arc<PairTermOfBodies>>,
     bodies: Arc<Mutex<Vec<BodyTerms>>>,
     sums: Vec<Fastest>,
     /// What the terms read of the pairs.
@@ -44,19 +44,16 @@ impl PhaseTerms {
     /// Takes the pair terms of the bodies of a phase out of the builder, and adds the booking of their work; none where there are no
     /// terms. They are to be run in a system that declares what they touch.
     pub fn take(sim: &mut SimBuilder<'_>, phase: PhaseId) -> Result<Option<Self>, SetupError> {
-        let (own, others): (Vec<BodyPairTerm>, Vec<BodyPairTerm>) = sim
-            .take_extensions::<BodyPairTerm>()
-            .into_iter()
-            .partition(|term| term.bodies.iter().any(|id| sim.body(id).phase == phase));
-        others.into_iter().for_each(|term| sim.extend(term));
+        let of_phase =
+            BodySet::new(sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id));
+        let own: Vec<ForBodies<PairTermOfBodies>> = sim.take_for(&of_phase);
         if own.is_empty() {
             return Ok(None);
         }
-        let of_density = own.iter().find(|term| term.term.changes_density()).map(|term| term.account.clone());
-        let ids: Vec<BodyId> =
-            sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id).collect();
+        let of_density = own.iter().map(|term| &term.value).find(|term| term.term.changes_density());
+        let of_density = of_density.map(|term| term.account.clone());
         let mut bodies = Vec::new();
-        for id in ids {
+        for id in of_phase.iter() {
             let terms: Vec<usize> = (0..own.len()).filter(|&k| own[k].bodies.contains(id)).collect();
             if terms.len() > MAX_TERMS {
                 let name = &sim.body(id).name;
@@ -67,12 +64,12 @@ impl PhaseTerms {
                 bodies.push(BodyTerms { id, terms, forces: Vec::new() });
             }
         }
-        let accounts = own.iter().map(|term| term.account.clone()).collect();
-        let terms: Vec<Box<dyn ErasedTerm>> = own.into_iter().map(|term| term.term).collect();
+        let accounts = own.iter().map(|term| term.value.account.clone()).collect();
+        let terms: Vec<Arc<PairTermOfBodies>> = own.into_iter().map(|term| term.value).collect();
         let mut reads = PairReads::default();
         for term in &terms {
-            reads.kernel |= term.reads().kernel;
-            reads.velocity |= term.reads().velocity;
+            reads.kernel |= term.term.reads().kernel;
+            reads.velocity |= term.term.reads().velocity;
         }
         let bodies = Arc::new(Mutex::new(bodies));
         work::add_work_systems(sim, phase, accounts, Arc::clone(&bodies));
@@ -83,7 +80,7 @@ impl PhaseTerms {
     pub fn access(&self, sim: &SimBuilder<'_>, phase: PhaseId) -> Vec<Access> {
         let rates = sim.columns(phase).get(DensityRate::NAME).is_some();
         let rates = rates.then_some(Access { column: DensityRate::NAME, mode: Mode::Writes });
-        rates.into_iter().chain(self.terms.iter().flat_map(|term| term.access())).collect()
+        rates.into_iter().chain(self.terms.iter().flat_map(|term| term.term.access())).collect()
     }
 
     /// Whether a body has terms.
@@ -95,7 +92,7 @@ impl PhaseTerms {
     pub fn change_density_of(&self, id: BodyId) -> bool {
         let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
         let own = bodies.iter().filter(|body| body.id == id).flat_map(|body| &body.terms);
-        own.into_iter().any(|&k| self.terms[k].changes_density())
+        own.into_iter().any(|&k| self.terms[k].term.changes_density())
     }
 
     /// The bodies that have terms.
@@ -117,8 +114,8 @@ impl PhaseTerms {
         let body = bodies.iter_mut().find(|body| body.id == id);
         let Some(BodyTerms { terms: indices, forces, .. }) = body else { return Ok(fastest) };
         let Some(&first) = indices.first() else { return Ok(fastest) };
-        let mut slots = [&*self.terms[first]; MAX_TERMS];
-        slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k]);
+        let mut slots = [&*self.terms[first].term; MAX_TERMS];
+        slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k].term);
         let terms = &slots[..indices.len()];
         let (view, rows) = step.world.body_view(id);
         let mut density = if view.has::<DensityRate>() { Some(view.write::<DensityRate>()?) } else { None };

@@ -41,19 +41,17 @@ pub trait PairSource: Send + 'static {
 }
 
 /// Takes the pair terms of the bodies of a phase out of the builder, and adds the pass that runs them after the
-/// system `after`, and the booking of their work. Without terms nothing is added.
+/// systems that write the force, and the booking of their work. Without terms nothing is added.
 pub fn add_pair_systems(
     sim: &mut SimBuilder<'_>,
     phase: PhaseId,
-    after: &'static str,
     source: impl PairSource,
 ) -> Result<(), SetupError> {
     let Some(terms) = PhaseTerms::take(sim, phase)? else { return Ok(()) };
     let bodies = terms.bodies();
     let access = terms.access(sim, phase);
     let pass = PairPass { phase, source, terms, bodies };
-    let system =
-        System::new(Stage::Rates, "pair_terms", pass).on_phases([phase]).adds::<Force>().after(after);
+    let system = System::new(Stage::Rates, "pair_terms", pass).on_phases([phase]).adds::<Force>();
     sim.add_system(system.touches_all(access));
     Ok(())
 }

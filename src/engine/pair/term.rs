@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::batch::WeightAt;
 use super::bound::ErasedTerm;
 use super::read::{FourOf, ReadSet};
 use crate::parallel::{Arithmetic, Number, Vector};
@@ -17,7 +18,7 @@ pub struct Pair<A> {
     pub x_ij: Vector<A>,
     /// Reference pair vector X_ij, m.
     pub reference_x_ij: Vector<A>,
-    /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, so that grad_i W = w_ij x_ij.
+    /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, at the length that `weight_at` says: grad_i W = w_ij x_ij where it is the current one.
     pub weight: Number<A>,
     /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the phase reads it ([`PairTerm::READS_KERNEL`]).
     pub kernel: Number<A>,
@@ -35,6 +36,8 @@ pub struct Pair<A> {
     pub(super) reference_length: Number<A>,
     /// Whether the current configuration is the reference; the same for all pairs of a batch.
     pub(super) is_reference: bool,
+    /// The configuration whose length `weight` and `kernel` were taken at; the same for all pairs of a batch.
+    pub weight_at: WeightAt,
 }
 
 impl<A: Arithmetic> Pair<A> {
@@ -68,10 +71,19 @@ impl<A: Arithmetic> Pair<A> {
         if self.is_reference { self.length.squared() } else { self.reference_length }
     }
 
-    /// Slope of the kernel over the current length: |W'_ij| / |x_ij|, with the slope at the reference length where there is one.
+    /// Slope |W'_ij| of the kernel, where its weight was taken: `weight` times the length there.
+    #[inline(always)]
+    pub fn slope(&self) -> Number<A> {
+        match self.weight_at {
+            WeightAt::Current => self.weight * self.distance(),
+            WeightAt::Reference => self.weight * self.reference_distance(),
+        }
+    }
+
+    /// Slope of the kernel, where its weight was taken, over the current length: |W'_ij| / |x_ij|.
     #[inline(always)]
     pub fn slope_per_length(&self) -> Number<A> {
-        if self.is_reference {
+        if self.is_reference || self.weight_at == WeightAt::Current {
             self.weight
         } else {
             self.weight * (self.reference_length / self.length).sqrt()
@@ -156,17 +168,18 @@ pub struct PairReads {
     pub velocity: bool,
 }
 
-/// A pair term with the bodies it acts on.
-pub struct BodyPairTerm {
-    pub(super) bodies: BodySet,
+/// A pair term as a plugin hands it in for bodies, with the account of its work.
+pub(crate) struct PairTermOfBodies {
     pub(super) account: String,
     pub(super) term: Box<dyn ErasedTerm>,
 }
 
 impl SimBuilder<'_> {
     /// Adds a pair term to bodies. The energy that its forces take out of the motion is booked as dissipated, in the
-    /// account of that name; it is negative where they put energy in.
+    /// account of that name; it is negative where they put energy in. A body whose formulation takes no pair terms is an error of the
+    /// scene.
     pub fn add_pair_term(&mut self, bodies: BodySet, account: &str, term: impl PairTerm) {
-        self.extend(BodyPairTerm { bodies, account: account.to_owned(), term: Box::new(term) });
+        let term = PairTermOfBodies { account: account.to_owned(), term: Box::new(term) };
+        self.extend_bodies(bodies, "a pair term", term);
     }
 }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::of_phase::{BodyTerms, MAX_TERMS};
-use crate::integrate::{DRIFT, KICK};
+use crate::integrate::DRIFT;
 use crate::parallel::{Arithmetic, BlockSum, HotLoop, Lanes4, Split, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
@@ -52,11 +52,11 @@ pub(crate) fn add_work_systems(
     sim.add_system(
         System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)
             .on_phases([phase])
-            // Conditions set velocities along axes that no force moves: the order does not matter, `Adds` says so.
+            // After the kick, which writes them. Conditions set velocities along axes that no force moves: the order does not matter, `Adds`
+            // says so.
             .touches(Velocity::NAME, Mode::Adds)
             .reads::<Force>()
-            .reads::<Mobility>()
-            .after(KICK),
+            .reads::<Mobility>(),
     );
 }
 

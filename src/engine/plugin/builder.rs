@@ -1,6 +1,5 @@
 //! What a plugin sees while a simulation is built.
 
-use std::any::{Any, TypeId};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,6 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::error::SetupError;
+use super::handed::HandedIn;
 use super::plan::BodyPlan;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
@@ -21,24 +21,26 @@ use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
 
 /// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms, columns.
 pub struct SimBuilder<'s> {
-    pub(super) scene: &'s Scene,
-    pub(super) folder: &'s Path,
-    pub(super) bodies: Vec<BodyPlan>,
-    pub(super) phases: Vec<(&'static str, ColumnSet)>,
-    pub(super) systems: Vec<System>,
-    pub(super) setup: Vec<SetupStep>,
-    pub(super) scope: BodySet,
-    pub(super) sub_cycled: Vec<PhaseId>,
-    pub(super) warnings: Vec<String>,
-    pub(super) references: Vec<String>,
-    pub(super) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
+    pub(crate) scene: &'s Scene,
+    pub(crate) folder: &'s Path,
+    pub(crate) bodies: Vec<BodyPlan>,
+    pub(crate) phases: Vec<(&'static str, ColumnSet)>,
+    pub(crate) systems: Vec<System>,
+    pub(crate) setup: Vec<SetupStep>,
+    pub(crate) scope: BodySet,
+    /// The body whose plugin is being built; none for a plugin of the scene.
+    pub(crate) own_body: Option<BodyId>,
+    pub(crate) sub_cycled: Vec<PhaseId>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) references: Vec<String>,
+    pub(crate) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
     /// Bodies that selections hold.
-    pub(super) held: RefCell<Vec<BodyId>>,
-    extensions: BTreeMap<TypeId, Vec<Box<dyn Any>>>,
+    pub(crate) held: RefCell<Vec<BodyId>>,
+    pub(crate) handed: HandedIn,
 }
 
 impl<'s> SimBuilder<'s> {
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'s Scene,
         folder: &'s Path,
         bodies: Vec<BodyPlan>,
@@ -52,12 +54,13 @@ impl<'s> SimBuilder<'s> {
             systems: Vec::new(),
             setup: Vec::new(),
             scope: BodySet::default(),
+            own_body: None,
             sub_cycled: Vec::new(),
             warnings: Vec::new(),
             references: Vec::new(),
             prescribed: BTreeMap::new(),
             held: RefCell::default(),
-            extensions: BTreeMap::new(),
+            handed: HandedIn::default(),
         }
     }
 
@@ -104,11 +107,6 @@ impl<'s> SimBuilder<'s> {
     /// not have a plugin of that name themselves.
     pub fn scope(&self) -> &BodySet {
         &self.scope
-    }
-
-    /// The bodies of the scope that move by the formulation of that name.
-    pub fn scope_of(&self, formulation: &str) -> BodySet {
-        BodySet::new(self.scope.iter().filter(|&id| self.body(id).formulation == formulation))
     }
 
     /// The phases of the bodies of the scope.
@@ -234,23 +232,6 @@ impl<'s> SimBuilder<'s> {
             }
         }
         Ok(())
-    }
-
-    /// Adds to a slot that other parts of the engine have opened, such as the bond terms of a formulation. Things of
-    /// one type are kept in the order in which they are added.
-    pub fn extend<T: 'static>(&mut self, value: T) {
-        self.extensions.entry(TypeId::of::<T>()).or_default().push(Box::new(value));
-    }
-
-    /// Number of things in the slot of type `T`.
-    pub(super) fn count_extensions<T: 'static>(&self) -> usize {
-        self.extensions.get(&TypeId::of::<T>()).map_or(0, Vec::len)
-    }
-
-    /// Takes everything out of the slot of type `T`.
-    pub fn take_extensions<T: 'static>(&mut self) -> Vec<T> {
-        let all = self.extensions.remove(&TypeId::of::<T>()).unwrap_or_default();
-        all.into_iter().filter_map(|any| any.downcast().ok()).map(|boxed| *boxed).collect()
     }
 
     /// Tells the user something that is worth looking at; repeated at the end of the run.

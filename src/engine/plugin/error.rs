@@ -43,7 +43,7 @@ impl SetupError {
     }
 
     /// The problems with their place, `item` being what was built.
-    pub(super) fn into_problems(self, item: &Item) -> Vec<Problem> {
+    pub(crate) fn into_problems(self, item: &Item) -> Vec<Problem> {
         match self {
             Self::Parameter { field, message, help } => vec![item.problem(&field, message, help)],
             Self::Problems(problems) => problems,

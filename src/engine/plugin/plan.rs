@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::error::SetupError;
+use super::offers::{BodyKind, Offer};
 use crate::materials::{FluidLaw, Law, Material, SolidLaw};
 use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
@@ -20,6 +21,12 @@ pub struct BodyPlan {
     pub phase: PhaseId,
     /// Name of its formulation.
     pub formulation: &'static str,
+    /// What it is to the rest of the scene.
+    pub kind: BodyKind,
+    /// What its formulation takes from plugins, conditions and contacts.
+    pub offers: &'static [Offer],
+    /// Mean support radius of its particles, m; none where these have no neighbours of their own.
+    pub support: Option<f64>,
     /// Rows in the phase.
     pub rows: Range<usize>,
     /// Distance of neighbouring particles, m.
@@ -37,6 +44,11 @@ pub struct BodyPlan {
 }
 
 impl BodyPlan {
+    /// Whether its formulation takes this.
+    pub fn offers(&self, offer: Offer) -> bool {
+        self.offers.contains(&offer)
+    }
+
     /// The law of the solid that the body is made of.
     ///
     /// # Errors

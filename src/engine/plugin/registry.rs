@@ -7,8 +7,9 @@ use serde::de::DeserializeOwned;
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
+use super::offers::{BodyKind, Offer};
+use super::plan::BodyPlan;
 use super::traits::{Formulation, Plugin};
-use crate::contact::{ContactLaw, ContactPair, NormalForce};
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};
 use crate::world::{BodyId, ColumnSet};
@@ -71,16 +72,18 @@ const LATER: &[(Kind, &str)] = &[
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
 
-pub(super) struct FormulationEntry {
+pub(crate) struct FormulationEntry {
     pub name: &'static str,
     pub reference: &'static str,
+    pub kind: BodyKind,
+    pub offers: &'static [Offer],
+    pub support: fn(&dyn Any, &BodyPlan) -> Option<f64>,
     pub parse: fn(&Item) -> Result<Box<dyn Any>, Vec<Problem>>,
     pub columns: fn(&mut ColumnSet),
     pub assemble: fn(ParsedBodies, &mut SimBuilder<'_>) -> Result<(), SetupError>,
 }
 
 type BuildMaterial = fn(&Item) -> Result<Material, Vec<Problem>>;
-type BuildContactLaw = fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
 type ParseItem = fn(&Item) -> Result<(), Vec<Problem>>;
 type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 
@@ -89,7 +92,7 @@ type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 pub struct Registry {
     materials: BTreeMap<&'static str, BuildMaterial>,
     formulations: BTreeMap<&'static str, FormulationEntry>,
-    contact_laws: BTreeMap<&'static str, BuildContactLaw>,
+    builders: BTreeMap<(Kind, &'static str), Box<dyn Any + Send + Sync>>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
     /// Names of the plugins that change the laws of materials.
     of_materials: BTreeSet<&'static str>,
@@ -98,15 +101,6 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// What the engine itself brings: materials, formulations, conditions and contact laws, no plugin.
-    pub fn standard() -> Self {
-        Self::default()
-            .with(crate::materials::register)
-            .with(crate::formulations::register)
-            .with(crate::boundaries::register)
-            .with(crate::contact::register)
-    }
-
     /// Registers a material.
     pub fn material<M: MaterialModel>(&mut self) -> &mut Self {
         self.materials.insert(M::NAME, |item| {
@@ -121,6 +115,9 @@ impl Registry {
         let entry = FormulationEntry {
             name: F::NAME,
             reference: F::REFERENCE,
+            kind: F::KIND,
+            offers: F::OFFERS,
+            support: |any, body| any.downcast_ref::<F>()?.support(body),
             parse: |item| Ok(Box::new(item.parse::<F>()?)),
             columns: F::columns,
             assemble: |bodies, sim| {
@@ -139,13 +136,15 @@ impl Registry {
         self.describe::<P>(Kind::Condition, P::NAME, P::REFERENCE)
     }
 
-    /// Registers a contact law.
-    pub fn contact_law<L: ContactLaw>(&mut self) -> &mut Self {
-        self.contact_laws.insert(L::NAME, |item, pair| {
-            let law: L = item.parse()?;
-            law.build(pair).map_err(|error| SetupError::from(error).into_problems(item))
-        });
-        self.describe::<L>(Kind::ContactLaw, L::NAME, L::REFERENCE)
+    /// Registers what only another module of the engine knows how to build: it finds the builder again by [`Registry::builder`].
+    pub(crate) fn add_builder<T: schemars::JsonSchema + DeserializeOwned, B: Any + Send + Sync>(
+        &mut self,
+        kind: Kind,
+        (name, reference): (&'static str, &'static str),
+        build: B,
+    ) -> &mut Self {
+        self.builders.insert((kind, name), Box::new(build));
+        self.describe::<T>(kind, name, reference)
     }
 
     /// Registers a plugin.
@@ -165,7 +164,7 @@ impl Registry {
     }
 
     /// Whether a plugin changes the laws of materials.
-    pub(super) fn changes_materials(&self, item: &Item) -> bool {
+    pub(crate) fn changes_materials(&self, item: &Item) -> bool {
         self.of_materials.contains(item.name())
     }
 
@@ -203,38 +202,36 @@ impl Registry {
     }
 
     /// Looks whether a name is known and its parameters can be read.
-    pub(super) fn check(&self, kind: Kind, item: &Item) -> Result<(), Vec<Problem>> {
+    pub(crate) fn check(&self, kind: Kind, item: &Item) -> Result<(), Vec<Problem>> {
         let parse = self.parsers.get(&(kind, item.name())).ok_or_else(|| self.unknown(kind, item))?;
         parse(item)
     }
 
-    pub(super) fn build_material(&self, item: &Item) -> Result<Material, Vec<Problem>> {
+    pub(crate) fn build_material(&self, item: &Item) -> Result<Material, Vec<Problem>> {
         let build = self.materials.get(item.name()).ok_or_else(|| self.unknown(Kind::Material, item))?;
         build(item)
     }
 
-    pub(super) fn find_formulation(&self, item: &Item) -> Result<&FormulationEntry, Vec<Problem>> {
+    pub(crate) fn find_formulation(&self, item: &Item) -> Result<&FormulationEntry, Vec<Problem>> {
         self.formulations.get(item.name()).ok_or_else(|| self.unknown(Kind::Formulation, item))
     }
 
-    pub(super) fn build_contact_law(
-        &self,
-        item: &Item,
-        pair: &ContactPair,
-    ) -> Result<Box<dyn NormalForce>, Vec<Problem>> {
-        let build = self.contact_laws.get(item.name()).ok_or_else(|| self.unknown(Kind::ContactLaw, item))?;
-        build(item, pair)
+    /// What [`Registry::add_builder`] was given for a name.
+    pub(crate) fn builder<B: Any>(&self, kind: Kind, item: &Item) -> Result<&B, Vec<Problem>> {
+        let named = self.builders.iter().find(|((of, name), _)| *of == kind && *name == item.name());
+        let build = named.and_then(|(_, build)| build.downcast_ref());
+        build.ok_or_else(|| self.unknown(kind, item))
     }
 
     /// The source of what is behind a name; empty if it has none.
-    pub(super) fn reference(&self, kind: Kind, name: &str) -> &'static str {
+    pub(crate) fn reference(&self, kind: Kind, name: &str) -> &'static str {
         self.entries
             .iter()
             .find(|((k, n), _)| *k == kind && *n == name)
             .map_or("", |(_, entry)| entry.reference)
     }
 
-    pub(super) fn build_plugin(
+    pub(crate) fn build_plugin(
         &self,
         kind: Kind,
         item: &Item,

@@ -17,4 +17,4 @@ pub struct Setup<'a> {
     pub warnings: &'a mut Vec<String>,
 }
 
-pub(super) type SetupStep = Box<dyn FnOnce(&mut Setup<'_>) -> Result<(), SetupError>>;
+pub(crate) type SetupStep = Box<dyn FnOnce(&mut Setup<'_>) -> Result<(), SetupError>>;

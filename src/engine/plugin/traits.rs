@@ -5,6 +5,8 @@ use serde::de::DeserializeOwned;
 
 use super::builder::SimBuilder;
 use super::error::SetupError;
+use super::offers::{BodyKind, Offer};
+use super::plan::BodyPlan;
 use crate::world::{BodyId, ColumnSet};
 
 /// A plugin or a condition, named in scenes; its fields are its parameters, with units in their documentation.
@@ -30,6 +32,15 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     const NAME: &'static str;
     /// Source of the method.
     const REFERENCE: &'static str;
+    /// What its bodies are to the rest of a scene.
+    const KIND: BodyKind;
+    /// What it takes for its bodies from plugins, conditions and contacts. All else that is asked of them is an error of the scene.
+    const OFFERS: &'static [Offer];
+
+    /// Mean support radius of the particles of a body, m; none where these have no neighbours of their own.
+    fn support(&self, _body: &BodyPlan) -> Option<f64> {
+        None
+    }
 
     /// Adds the columns that its particles have beside position, velocity, force, mass and mobility.
     fn columns(columns: &mut ColumnSet);

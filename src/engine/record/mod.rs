@@ -5,7 +5,6 @@
 
 pub mod atomic;
 pub mod container;
-pub mod fields;
 pub mod hash;
 pub mod output;
 pub mod probe;
@@ -15,11 +14,11 @@ pub mod trigger;
 pub mod vtk;
 pub mod watchdog;
 
+pub use crate::fields::{ChosenField, Field, FieldInput, FieldTable};
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
-pub use fields::{ChosenField, Field, FieldInput, FieldTable};
 pub use hash::{StateHash, StateHasher};
-pub use output::{Output, OutputHandle, OutputPlan};
+pub use output::{Output, OutputHandle, OutputOptions, OutputPlan};
 pub use recorder::{
     BodyFrame, BodyInfo, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 };

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::plugin::{Registry, build};
+use crate::assembly::build;
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{

@@ -11,7 +11,7 @@ use super::nodes::Nodes;
 use super::rotation::Inertia;
 use super::systems;
 use crate::integrate::OwnMotion;
-use crate::plugin::{Formulation, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::{Dimension, Vec3};
 use crate::world::{BodyId, ColumnSet, Mass, Mobility, Position, Velocity};
 
@@ -44,6 +44,8 @@ impl Formulation for Rigid {
     const NAME: &'static str = "Rigid";
     const REFERENCE: &'static str = "rigid rotation: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) \
                                      5840-5851";
+    const KIND: BodyKind = BodyKind::Rigid;
+    const OFFERS: &'static [Offer] = &[Offer::Contact];
 
     fn columns(_: &mut ColumnSet) {}
 

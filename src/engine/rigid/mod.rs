@@ -16,5 +16,4 @@ pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
 pub use nodes::Nodes;
 pub use rotation::Inertia;
-pub use systems::{RIGID_DRIFT, RIGID_KICK, RIGID_WEIGHT};
 pub use wrench::Wrench;

@@ -11,11 +11,11 @@ use crate::schedule::{AccountKind, Clock, Run, Stage, Step, StepError, System};
 use crate::world::{BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Velocity};
 
 /// Label of the system that moves rigid bodies by the first kick and the drift.
-pub const RIGID_DRIFT: &str = "rigid_drift";
+const RIGID_DRIFT: &str = "rigid_drift";
 /// Label of the system that gives rigid bodies their weight.
-pub const RIGID_WEIGHT: &str = "rigid_weight";
+const RIGID_WEIGHT: &str = "rigid_weight";
 /// Label of the system that sums the forces on rigid bodies and makes the second kick.
-pub const RIGID_KICK: &str = "rigid_kick";
+const RIGID_KICK: &str = "rigid_kick";
 
 /// Adds the systems of all rigid bodies.
 pub(super) fn add(sim: &mut SimBuilder<'_>, bodies: &RigidBodies) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Contact, Domain, Item, Probe, Record, Time, Vec3};
+use super::{Body, Contact, Dimension, Domain, Item, Probe, Record, Time, Vec3};
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -59,24 +59,5 @@ impl Scene {
     /// Time between two samples of `probe` \[s\]: `every` of the probe, or a tenth of the interval of the recording.
     pub fn probe_interval(&self, probe: &Probe) -> f64 {
         probe.every.unwrap_or(self.record_interval() / 10.0)
-    }
-}
-
-/// The number of space dimensions of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Dimension {
-    /// Plane strain in x-y: all z are zero, and forces and masses are those of a slice 1 m thick.
-    Two,
-    /// Three dimensions.
-    Three,
-}
-
-impl Dimension {
-    /// The number of dimensions, 2 or 3.
-    pub const fn count(self) -> usize {
-        match self {
-            Self::Two => 2,
-            Self::Three => 3,
-        }
     }
 }

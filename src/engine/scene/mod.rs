@@ -26,11 +26,11 @@ mod source;
 mod syntax;
 mod time;
 mod tree;
-mod vec3;
 
+pub use crate::space::{Dimension, Vec3};
 pub use body::Body;
 pub use contact::Contact;
-pub use description::{Dimension, Scene};
+pub use description::Scene;
 pub use domain::{Axis, Domain, Outside};
 pub use expression::{Expression, ExpressionError};
 pub use item::Item;
@@ -44,7 +44,6 @@ pub use reference::{Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select};
 pub use source::Source;
 pub use time::{Step, Time};
-pub use vec3::Vec3;
 
 #[cfg(test)]
 mod tests;

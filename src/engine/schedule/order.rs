@@ -1,4 +1,5 @@
-//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity.
+//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity. What writes a column runs before what adds to it,
+//! unless the opposite is stated.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -153,7 +154,8 @@ fn order_stage(
     systems: Vec<System>,
     sub_cycled: &[PhaseId],
 ) -> Result<Vec<System>, ScheduleError> {
-    let precedes = stated_order(stage, &systems)?;
+    let mut precedes = stated_order(stage, &systems)?;
+    put_writers_before_adders(&systems, &mut precedes);
     let n = systems.len();
     let mut order = Vec::with_capacity(n);
     let mut placed = vec![false; n];
@@ -195,6 +197,13 @@ fn stated_order(stage: Stage, systems: &[System]) -> Result<Vec<Vec<bool>>, Sche
             }
         }
     }
+    close(&mut precedes);
+    Ok(precedes)
+}
+
+/// Takes in the orders that follow from others by a chain.
+fn close(precedes: &mut [Vec<bool>]) {
+    let n = precedes.len();
     for via in 0..n {
         for a in 0..n {
             if precedes[a][via] {
@@ -204,7 +213,20 @@ fn stated_order(stage: Stage, systems: &[System]) -> Result<Vec<Vec<bool>>, Sche
             }
         }
     }
-    Ok(precedes)
+}
+
+/// Of two systems without a stated order, that which writes a column runs before that which adds to it.
+fn put_writers_before_adders(systems: &[System], precedes: &mut [Vec<bool>]) {
+    let n = systems.len();
+    for writer in 0..n {
+        for adder in 0..n {
+            let is_stated = precedes[writer][adder] || precedes[adder][writer];
+            if !is_stated && systems[writer].writes_what_is_added_by(&systems[adder]) {
+                precedes[writer][adder] = true;
+            }
+        }
+    }
+    close(precedes);
 }
 
 fn check_ambiguity(
@@ -232,4 +254,40 @@ fn check_ambiguity(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Column, Force, Velocity};
+
+    fn idle(label: &str) -> System {
+        System::new(Stage::Rates, label, |_: &mut Step<'_>| Ok(()))
+    }
+
+    fn labels(systems: Vec<System>) -> Result<Vec<String>, ScheduleError> {
+        let schedule = Schedule::new(systems, &[])?;
+        Ok(schedule.timers().map(|(label, ..)| label.to_owned()).collect())
+    }
+
+    #[test]
+    fn what_writes_a_column_runs_before_what_adds_to_it_unless_the_opposite_is_stated() {
+        let adder = || idle("adder").adds::<Force>();
+        assert_eq!(labels(vec![adder(), idle("writer").writes::<Force>()]).unwrap(), ["writer", "adder"]);
+        let before = adder().before("writer");
+        let writer = || idle("writer").writes::<Force>();
+        assert_eq!(labels(vec![writer(), before]).unwrap(), ["adder", "writer"]);
+        let second = ScheduleError::Ambiguous {
+            first: "writer".to_owned(),
+            second: "second".to_owned(),
+            stage: Stage::Rates,
+            column: Force::NAME,
+        };
+        assert_eq!(labels(vec![writer(), idle("second").writes::<Force>(), adder()]), Err(second));
+        // Each adds to what the other writes: neither is first by the rule.
+        let crossed = |label, writes: fn(System) -> System| writes(idle(label));
+        let one = crossed("one", |system| system.writes::<Force>().adds::<Velocity>());
+        let other = crossed("other", |system| system.writes::<Velocity>().adds::<Force>());
+        assert!(matches!(labels(vec![one, other]), Err(ScheduleError::Ambiguous { .. })));
+    }
 }

@@ -249,15 +249,36 @@ impl System {
         }
     }
 
+    /// Whether the two may touch the same rows.
+    fn shares_rows_with(&self, other: &System) -> bool {
+        let phases = match (&self.phases, &other.phases) {
+            (Some(a), Some(b)) => a.iter().any(|phase| b.contains(phase)),
+            _ => true,
+        };
+        let bodies = match (&self.bodies, &other.bodies) {
+            (Some(a), Some(b)) => a.iter().any(|body| b.contains(body)),
+            _ => true,
+        };
+        phases && bodies
+    }
+
+    fn has(&self, column: &str, mode: Mode) -> bool {
+        self.access.iter().any(|access| access.column == column && access.mode == mode)
+    }
+
+    /// Whether the system writes a column that the other one adds to, and there is no column for which it is the other way round.
+    pub(super) fn writes_what_is_added_by(&self, other: &System) -> bool {
+        let writes = |writer: &System, adder: &System| {
+            let mut added = adder.access.iter().filter(|access| access.mode == Mode::Adds);
+            added.any(|access| {
+                writer.has(access.column, Mode::Writes) && !adder.has(access.column, Mode::Writes)
+            })
+        };
+        self.shares_rows_with(other) && writes(self, other) && !writes(other, self)
+    }
+
     pub(super) fn conflict_with(&self, other: &System) -> Option<&'static str> {
-        if let (Some(a), Some(b)) = (&self.phases, &other.phases)
-            && !a.iter().any(|phase| b.contains(phase))
-        {
-            return None;
-        }
-        if let (Some(a), Some(b)) = (&self.bodies, &other.bodies)
-            && !a.iter().any(|body| b.contains(body))
-        {
+        if !self.shares_rows_with(other) {
             return None;
         }
         let pairs = self.access.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));

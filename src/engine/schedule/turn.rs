@@ -18,18 +18,25 @@ pub enum Pace {
 pub struct Turn<'s> {
     short: bool,
     part: bool,
+    number: u64,
     sub_cycled: &'s [PhaseId],
 }
 
 impl<'s> Turn<'s> {
-    /// The long step; without sub-cycled phases, the whole of the step.
-    pub fn long(sub_cycled: &'s [PhaseId]) -> Self {
-        Self { short: false, part: false, sub_cycled }
+    /// The long step of this number; without sub-cycled phases, the whole of the step.
+    pub fn long(sub_cycled: &'s [PhaseId], number: u64) -> Self {
+        Self { short: false, part: false, number, sub_cycled }
     }
 
-    /// A short step; `part` where there are others in the long step.
-    pub fn short(sub_cycled: &'s [PhaseId], part: bool) -> Self {
-        Self { short: true, part, sub_cycled }
+    /// The short step of this number since time 0; `part` where there are others in the long step.
+    pub fn short(sub_cycled: &'s [PhaseId], part: bool, number: u64) -> Self {
+        Self { short: true, part, number, sub_cycled }
+    }
+
+    /// Number of steps done before this one by the clock of this part of the step: short steps by that of sub-cycled phases. What a system of
+    /// sub-cycled bodies does in every so many of its steps, it counts by this.
+    pub fn number(self) -> u64 {
+        self.number
     }
 
     /// Whether this is one of several short steps in a long one.

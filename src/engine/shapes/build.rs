@@ -9,7 +9,7 @@ use super::region::Region;
 use super::shape::Shape;
 use super::surface::Surface;
 use super::transform::{Rotated, Scaled, Translated};
-use crate::scene::Dimension;
+use crate::space::Dimension;
 
 impl Shape {
     /// The set of points of this shape. Files are looked for in `folder`; `path` is the field that holds the shape, for error

@@ -15,7 +15,7 @@ use super::ring::Ring;
 use super::shape::Shape;
 use super::sphere::Sphere;
 use super::surface::Surface;
-use crate::scene::{Dimension, Vec3};
+use crate::space::{Dimension, Vec3};
 
 pub(super) type Checked<T> = Result<T, FillError>;
 

@@ -13,7 +13,7 @@ use super::shape::Shape;
 use super::surface::Surface;
 use super::transform::turned;
 use super::{concentric, morton_order, points, quadrature, relaxed};
-use crate::scene::Dimension;
+use crate::space::Dimension;
 
 /// Steps of relaxation after which particles hardly move any more.
 const MAX_ITERATIONS: u32 = 1000;

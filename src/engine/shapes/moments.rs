@@ -79,8 +79,8 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::scene::Dimension;
     use crate::shapes::{Shape, Surface};
+    use crate::space::Dimension;
 
     fn surface(text: &str, dimension: Dimension) -> Box<dyn Surface> {
         let shape: Shape = ron::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::error::{FillError, FillErrorKind};
 use super::fill::Site;
-use crate::scene::Dimension;
+use crate::space::Dimension;
 
 /// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may follow a name (`x[m]`); empty
 /// lines and those that begin with `#` are passed over, other columns are ignored.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Vec3;
+use crate::space::Vec3;
 
 /// The shape of a body or of a selection. Lengths are in metres; in two dimensions z is left out (or 0).
 ///

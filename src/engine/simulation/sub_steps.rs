@@ -32,7 +32,7 @@ pub(super) struct SubStepState {
     /// Short steps in the last long one.
     last: u32,
     /// Short steps since time 0.
-    total: u64,
+    pub total: u64,
 }
 
 impl SubSteps {

@@ -9,7 +9,8 @@ mod rigid;
 
 use glam::DVec3;
 
-use crate::plugin::{Registry, build};
+use crate::assembly::build;
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, Mass, Position, Velocity};

@@ -149,7 +149,7 @@ fn a_body_may_not_start_inside_a_tool() {
         contacts: [Contact(between: ("block", "tool"), law: Penalty())],
         time: (end: 1e-3))"#;
     let (scene, source) = crate::scene::parse(crate::scene::Source::new("x.ron", text)).unwrap();
-    let error = crate::plugin::build(&scene, &source, &crate::plugin::Registry::standard());
+    let error = crate::assembly::build(&scene, &source, &crate::plugin::Registry::standard());
     let Err(error) = error else { panic!("it was built") };
     assert!(error.to_string().contains("a particle of `block` starts inside rigid body `tool`"), "{error}");
 }

@@ -3,9 +3,8 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group};
-use super::wall::Wall;
 use crate::pair::PhaseTerms;
-use crate::plugin::{Formulation, Setup, SimBuilder};
+use crate::plugin::{BodyKind, Setup, SimBuilder};
 use crate::rigid::RigidBodies;
 use crate::world::{BodyId, ReferenceVolume};
 
@@ -64,5 +63,5 @@ pub(super) fn sinking(
 
 /// The walls of a scene.
 pub(super) fn walls(sim: &SimBuilder<'_>) -> Vec<BodyId> {
-    sim.bodies().iter().filter(|body| body.formulation == Wall::NAME).map(|body| body.id).collect()
+    sim.bodies().iter().filter(|body| body.kind == BodyKind::Boundary).map(|body| body.id).collect()
 }

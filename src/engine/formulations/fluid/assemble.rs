@@ -17,9 +17,7 @@ use super::start::start;
 use super::systems;
 use super::viscosities::Viscosities;
 use super::wall::WallBody;
-use crate::formulations::total_lagrangian::TotalLagrangian;
-use crate::plugin::{BodyPlan, Formulation, SetupError, SimBuilder};
-use crate::rigid::Rigid;
+use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
 
@@ -116,10 +114,12 @@ fn is_confined(walls: &[WallBody], sim: &SimBuilder<'_>) -> bool {
     endless || walls.iter().any(|wall| wall.parameters.suction)
 }
 
-/// The bodies that a fluid moves, those of a phase together.
+/// The bodies that a fluid moves, those of a phase together: solids, then rigid bodies.
 fn moved_bodies(sim: &SimBuilder<'_>) -> Vec<BodyId> {
-    let of = |name| sim.bodies().iter().filter(move |body| body.formulation == name).map(|body| body.id);
-    of(TotalLagrangian::NAME).chain(of(Rigid::NAME)).collect()
+    let of = |kind| sim.bodies().iter().filter(move |body| body.kind == kind);
+    let mut solids: Vec<&BodyPlan> = of(BodyKind::Solid).collect();
+    solids.sort_by_key(|body| body.phase);
+    solids.into_iter().chain(of(BodyKind::Rigid)).map(|body| body.id).collect()
 }
 
 fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {

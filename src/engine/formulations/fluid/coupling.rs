@@ -8,36 +8,18 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group, Role};
+use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::force::ACCOUNTS;
 use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::pair_force::{PARTS, PairForce};
-use crate::parallel::{BlockSum, Lanes4, for_each_block};
+use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
-crate::column! {
-    /// Force of the flow in the last long step.
-    pub struct CouplingForce(glam::DVec3) = "coupling_force", "f_c", "N";
-}
-crate::column! {
-    /// Viscous part of the force of the flow.
-    pub struct CouplingFriction(glam::DVec3) = "coupling_friction", "f_v", "N";
-}
-crate::column! {
-    /// Part of the force of the flow that is due to the pressure of the boundary.
-    pub struct CouplingPressure(glam::DVec3) = "coupling_pressure", "f_w", "N";
-}
-
-/// Adds the systems for one phase of bodies beside the flow; other systems have given them their weight, and make the second kick.
-pub(super) fn add(
-    sim: &mut SimBuilder<'_>,
-    groups: &[Group],
-    phase: PhaseId,
-    label: &'static str,
-    [weight, kick]: [&'static str; 2],
-) {
+/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick.
+pub(super) fn add(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, label: &'static str) {
     let bodies = BodySet::new(groups.iter().filter(|group| group.phase == phase).map(|group| group.body));
     sim.add_column_to::<CouplingForce>(&bodies);
     sim.add_column_to::<CouplingFriction>(&bodies);
@@ -57,8 +39,7 @@ pub(super) fn add(
             bodies,
             |_, (force, coupling)| force.0 += coupling.0,
         )
-        .on_phases([phase])
-        .after(weight),
+        .on_phases([phase]),
     );
     let coupling = Coupling {
         phase,
@@ -76,8 +57,7 @@ pub(super) fn add(
             .reads::<Mobility>()
             .reads::<Removed>()
             .adds::<Force>()
-            .adds::<Velocity>()
-            .after(kick),
+            .adds::<Velocity>(),
     );
 }
 
@@ -121,25 +101,6 @@ struct Coupling {
     other_total: Vec<Force>,
     other_parts: Vec<DVec3>,
     sums: Vec<Exchange>,
-}
-
-/// What the change of the force does, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Exchange {
-    /// Gain of kinetic energy.
-    pub kinetic: f64,
-    /// Work that constraints take up.
-    pub constraints: f64,
-    /// Work of the parts of the force over the long step.
-    pub parts: [f64; PARTS],
-}
-
-impl BlockSum for Exchange {
-    fn add(&mut self, next: &Self) {
-        self.kinetic += next.kinetic;
-        self.constraints += next.constraints;
-        (0..PARTS).for_each(|part| self.parts[part] += next.parts[part]);
-    }
 }
 
 impl Coupling {

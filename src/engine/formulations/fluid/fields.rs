@@ -6,8 +6,9 @@ use super::cloud::{FlowCloud, Near};
 use super::near::RowPass;
 use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
+use crate::fields::Field;
 use crate::parallel::{Arithmetic, Vector};
-use crate::record::Field;
+use crate::plugin::BodyKind;
 use crate::world::{Column, Value, Velocity};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
@@ -34,7 +35,7 @@ pub(super) fn fields() -> [Field; 2] {
         out.extend(rows);
         Ok(())
     });
-    [vorticity, surface].map(|field| field.only_for("Fluid"))
+    [vorticity, surface].map(|field| field.only_for(BodyKind::Fluid))
 }
 
 /// `omega_i = sum_j V_j w_ij (M_i^-1 x_ij) x v_ij` over the fluids alone: exact where the velocity is linear, at walls and surfaces as well.

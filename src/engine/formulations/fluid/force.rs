@@ -13,7 +13,7 @@ use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
 /// Label of the system that makes the forces of fluids and walls.
-pub const FLUID_FORCE: &str = "fluid_force";
+pub(super) const FLUID_FORCE: &str = "fluid_force";
 /// Accounts of the parts of the force whose work is booked.
 pub(super) const ACCOUNTS: [&str; PARTS] = ["viscosity", "wall_pressure"];
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::plugin::{Formulation, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression};
 use crate::world::{BodyId, ColumnSet, Density, DensityRate, Pressure};
 
@@ -31,6 +31,8 @@ impl Formulation for Fluid {
     const NAME: &'static str = "Fluid";
     const REFERENCE: &'static str = "fluid boundaries: S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057-7075; \
          laminar viscosity: J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214-226";
+    const KIND: BodyKind = BodyKind::Fluid;
+    const OFFERS: &'static [Offer] = &[Offer::PairTerms];
 
     fn columns(columns: &mut ColumnSet) {
         columns.add::<Density>().add::<DensityRate>().add::<Pressure>();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::coupling::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::pair_force::PARTS;
 use super::record::Record;
 use crate::integrate::constrained;

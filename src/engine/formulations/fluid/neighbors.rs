@@ -7,6 +7,9 @@ use super::sort::{BUILDS, Sorter};
 use crate::neighbors::NeighborError;
 use crate::schedule::{Run, Step, StepError};
 
+/// Label of the system that keeps the neighbour lists of fluids.
+pub(super) const NEIGHBORS: &str = "fluid_neighbors";
+
 /// Keeps the lists and the packed rows of the cloud, and sorts the fluids at times.
 #[derive(Default)]
 pub(super) struct Neighbors {
@@ -36,7 +39,7 @@ impl Run for Neighbors {
         cloud.forget_loads();
         let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
-            system: super::systems::NEIGHBORS.to_owned(),
+            system: NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
         if self.restored.len() == cloud.records.len() {

@@ -1,7 +1,8 @@
 //! Flows that go wrong, and what the run says of them.
 
 use super::tests::simulation;
-use crate::plugin::{Registry, build};
+use crate::assembly::build;
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 

@@ -3,10 +3,7 @@
 use glam::DVec3;
 
 use super::advice::{contacts, touch};
-use super::wall::Wall;
-use crate::formulations::total_lagrangian::TotalLagrangian;
-use crate::plugin::{Formulation, SimBuilder};
-use crate::rigid::Rigid;
+use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
 use crate::world::{BodyId, ParticleId, Position, ReferencePosition, Removed};
@@ -33,10 +30,10 @@ impl Passing {
     /// All pairs of a scene that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let contacts = contacts(sim);
-        let of = |name: &'static str| sim.bodies().iter().filter(move |body| body.formulation == name);
+        let of = |kind: BodyKind| sim.bodies().iter().filter(move |body| body.kind == kind);
         let mut pairs = Vec::new();
-        for wall in of(Wall::NAME) {
-            for body in of(Rigid::NAME).chain(of(TotalLagrangian::NAME)) {
+        for wall in of(BodyKind::Boundary) {
+            for body in of(BodyKind::Rigid).chain(of(BodyKind::Solid)) {
                 let shape = &sim.scene().bodies[wall.id.0].shape;
                 let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
                 if !touch(&contacts, &body.name, &wall.name) {

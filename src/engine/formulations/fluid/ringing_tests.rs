@@ -29,3 +29,32 @@ fn a_strip_under_water_does_not_ring() {
     assert!(error < 1e-3, "energy is off by {error}");
     assert!(kinetic < 1e-2 * ledger.total_named("compression"), "{kinetic} J of motion");
 }
+
+/// A block that conditions press together beside a fluid: its stable step falls with its stretch, known from the conditions, long step by long step.
+#[test]
+fn the_stretches_of_a_body_in_short_steps_are_refreshed_by_its_own_clock() {
+    let mut sim = simulation(
+        r#"(dimension: Two,
+            materials: {"water": Fluid(density: 1000.0, viscosity: 1.0e-3, sound_speed: 20),
+                        "rubber": NeoHookean(density: 1000.0, young: 1e6, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.5, 0.5)), spacing: 0.1, formulation: Fluid),
+                (name: "block", material: "rubber", shape: Box(min: (10, 0), max: (10.2, 0.2)), spacing: 0.02,
+                 formulation: TotalLagrangian),
+            ],
+            conditions: [Velocity(on: Select(body: "block"), value: ("-20*(x - 10)", "0"))],
+            time: (end: 1))"#,
+    );
+    sim.start().expect("a start");
+    let unstretched = sim.short_limit().expect("a limit").dt;
+    for _ in 0..6 {
+        sim.step().expect("a step");
+        let stretch = 1.0 - 20.0 * sim.clock().time;
+        let factor = sim.short_limit().expect("a limit").dt / unstretched;
+        // It was that of at most ten short steps before, which are no longer than the first.
+        let late = factor - stretch;
+        assert!((-1e-9..10.0 * 20.0 * unstretched).contains(&late), "{factor} at a stretch of {stretch}");
+    }
+    let (short, long) = (sim.sub_steps().map_or(0, |steps| steps.1), sim.clock().step);
+    assert!(short > 5 * long && sim.clock().time > 0.01, "{short} short steps in {long}");
+}

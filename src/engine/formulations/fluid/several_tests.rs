@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::FlowCloud;
 use super::tests::{column, simulation};
+use crate::assembly::build;
 use crate::kernels::{Kernel, KernelName};
-use crate::plugin::{Registry, build};
+use crate::plugin::Registry;
 use crate::scene::load;
 use crate::world::{Density, Force, Mass, Position, Pressure, ReferencePosition, Velocity};
 

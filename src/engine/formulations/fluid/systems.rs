@@ -9,23 +9,17 @@ use super::coupling;
 use super::density::Continuity;
 use super::fields::fields;
 use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
-use super::neighbors::Neighbors;
+use super::neighbors::{NEIGHBORS, Neighbors};
 use super::state::EquationOfState;
 use super::surface_friction::SurfaceFriction;
-use super::wall::{PreviousVelocity, WALL_WEIGHT, Wall};
+use super::wall::PreviousVelocity;
 use super::wall_state::WallState;
 use super::watch;
-use crate::formulations::total_lagrangian::{INTERNAL_FORCE, TotalLagrangian};
-use crate::integrate::KICK;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
-use crate::plugin::{Formulation, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
-use crate::rigid::{RIGID_KICK, RIGID_WEIGHT, Rigid};
 use crate::schedule::{Mode, Stage, System};
 use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, Removed, Velocity};
-
-/// Label of the system that keeps the neighbour lists of fluids.
-pub(super) const NEIGHBORS: &str = "fluid_neighbors";
 
 /// The phases of what bounds the flow.
 fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
@@ -106,14 +100,14 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     }
     for phase in boundaries {
         let of_phase = sim.bodies().iter().find(|body| body.phase == phase);
-        let (label, weight, kick) = match of_phase.map(|body| body.formulation) {
-            Some(Wall::NAME) => ("fluid_force_on_walls", WALL_WEIGHT, KICK),
-            Some(TotalLagrangian::NAME) => ("fluid_force_on_solids", INTERNAL_FORCE, KICK),
-            Some(Rigid::NAME) => ("fluid_force_on_rigid_bodies", RIGID_WEIGHT, RIGID_KICK),
+        let label = match of_phase.map(|body| body.kind) {
+            Some(BodyKind::Boundary) => "fluid_force_on_walls",
+            Some(BodyKind::Solid) => "fluid_force_on_solids",
+            Some(BodyKind::Rigid) => "fluid_force_on_rigid_bodies",
             _ => continue,
         };
         if groups.iter().any(|group| group.phase == phase && group.short) {
-            coupling::add(sim, groups, phase, label, [weight, kick]);
+            coupling::add(sim, groups, phase, label);
         } else {
             add_force(sim, groups, phase, label, None);
         }
@@ -143,6 +137,6 @@ fn add_force(
     let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), friction, terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
     let system = system.reads::<Mass>().reads::<Removed>();
-    sim.add_system(if flows { system.writes::<Force>() } else { system.after(WALL_WEIGHT).adds::<Force>() });
+    sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });
     add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
 }

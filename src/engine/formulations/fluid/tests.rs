@@ -2,8 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::assembly::build;
 use crate::kernels::{Kernel, KernelName};
-use crate::plugin::{Registry, build};
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{

@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::plugin::{Formulation, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Vec3;
 use crate::schedule::{Stage, System};
 use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Pressure, Removed};
@@ -15,7 +15,7 @@ crate::column! {
 }
 
 /// Label of the system that gives walls their weight.
-pub(super) const WALL_WEIGHT: &str = "wall_weight";
+const WALL_WEIGHT: &str = "wall_weight";
 
 /// Wall: bounds the fluid, is moved by nothing but conditions and the `velocity` of its body. It needs as many layers of
 /// particles as the support of the fluid reaches, three in two dimensions and default settings.
@@ -51,6 +51,8 @@ impl Formulation for Wall {
     const NAME: &'static str = "Wall";
     const REFERENCE: &'static str =
         "walls: S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057-7075";
+    const KIND: BodyKind = BodyKind::Boundary;
+    const OFFERS: &'static [Offer] = &[Offer::Contact];
 
     fn columns(columns: &mut ColumnSet) {
         columns.add::<Pressure>().add::<PreviousVelocity>();

@@ -6,12 +6,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::images::Images;
-use super::stable_step::StepEstimate;
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::Sym3;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+use crate::solids::StepEstimate;
+use crate::symmetry::Ghosts;
 
 /// Why the bonds of a body cannot be made.
 #[derive(Debug, Error)]
@@ -34,7 +34,7 @@ pub enum BondError {
 pub struct Bonds {
     /// Where the neighbours of each row start.
     pub(super) offsets: Vec<u32>,
-    /// Row of the neighbour; rows beyond the last particle are images (see [`Images`]).
+    /// Row of the neighbour; rows beyond the last particle are ghosts (see [`Ghosts`]).
     pub(super) neighbors: Vec<u32>,
     /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
     /// deformation gradient of an affine map stays exact.
@@ -61,14 +61,14 @@ pub(super) struct BodyBonds<'a> {
     pub support: &'a [f64],
     /// Kernel.
     pub kernel: Kernel,
-    /// Images of the bodies.
-    pub images: &'a Images,
-    /// Rows of the images of this body.
-    pub image_rows: Range<usize>,
+    /// Ghosts of the bodies.
+    pub ghosts: &'a Ghosts,
+    /// Rows of the ghosts of this body.
+    pub ghost_rows: Range<usize>,
 }
 
 impl BodyBonds<'_> {
-    /// Neighbours of the rows of the body, in the body and its images, numbered from zero.
+    /// Neighbours of the rows of the body, in the body and its ghosts, numbered from zero.
     fn neighbors(&self, search: &mut NeighborSearch) -> Result<NeighborList, NeighborError> {
         let mut list = NeighborList::default();
         let mut find = |positions: &[DVec3], support: &[f64]| {
@@ -76,11 +76,11 @@ impl BodyBonds<'_> {
             search.within(cloud, 0.0, &Periodic::NONE, &mut list)
         };
         let (position, support) = (&self.position[self.rows.clone()], &self.support[self.rows.clone()]);
-        if self.image_rows.is_empty() {
+        if self.ghost_rows.is_empty() {
             find(position, support)?;
         } else {
-            let places = self.image_rows.clone().map(|row| self.images.place(self.position, row));
-            let radii = self.image_rows.clone().map(|row| self.support[self.images.source(row)]);
+            let places = self.ghost_rows.clone().map(|row| self.ghosts.place(self.position, row));
+            let radii = self.ghost_rows.clone().map(|row| self.support[self.ghosts.source(row)]);
             let position: Vec<DVec3> = position.iter().copied().chain(places).collect();
             let support: Vec<f64> = support.iter().copied().chain(radii).collect();
             find(&position, &support)?;
@@ -93,7 +93,7 @@ impl BodyBonds<'_> {
         let number = number as usize;
         let row = match number.checked_sub(self.rows.len()) {
             None => self.rows.start + number,
-            Some(image) => self.image_rows.start + image,
+            Some(ghost) => self.ghost_rows.start + ghost,
         };
         u32::try_from(row).unwrap_or(u32::MAX)
     }
@@ -118,7 +118,7 @@ impl Bonds {
         }
         self.weights.resize(self.neighbors.len(), 0.0);
         self.weigh(body, first_bond);
-        self.correct(rows.clone(), body.kernel.dimension(), body.position, body.volume, body.images);
+        self.correct(rows.clone(), body.kernel.dimension(), body.position, body.volume, body.ghosts);
         let free = self.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
         if free == rows.len() {
             return Err(BondError::NoStiffness { most: list.max_count() });
@@ -142,8 +142,8 @@ impl Bonds {
             let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
             for (weight, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
                 let j = j as usize;
-                let distance = body.images.pair(body.position, *i, j).length();
-                let support = body.support[*i] + body.support[body.images.source(j)];
+                let distance = body.ghosts.pair(body.position, *i, j).length();
+                let support = body.support[*i] + body.support[body.ghosts.source(j)];
                 let smoothing_length = 0.5 * support * ratio;
                 *weight = kernel.pair_weight(distance, smoothing_length) as f32;
             }
@@ -158,7 +158,7 @@ impl Bonds {
         dimension: usize,
         position: &[DVec3],
         volume: &[f64],
-        images: &Images,
+        ghosts: &Ghosts,
     ) {
         let corrected: Vec<(Option<Sym3>, DVec3, f64)> = rows
             .clone()
@@ -167,8 +167,8 @@ impl Bonds {
                 let mut moment = MomentMatrix::new(dimension);
                 let (mut reach, mut weight_sum) = (DVec3::ZERO, 0.0);
                 for (j, weight) in self.row(i) {
-                    let volume_weight = volume[images.source(j)] * f64::from(weight);
-                    let x_ij = images.pair(position, i, j);
+                    let volume_weight = volume[ghosts.source(j)] * f64::from(weight);
+                    let x_ij = ghosts.pair(position, i, j);
                     moment.add(volume_weight, x_ij);
                     reach += x_ij * volume_weight;
                     weight_sum += volume_weight;
@@ -197,7 +197,7 @@ impl Bonds {
         rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Neighbours and weights of a row; neighbours beyond the last particle are images (see [`Images`]).
+    /// Neighbours and weights of a row; neighbours beyond the last particle are ghosts (see [`Ghosts`]).
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let bonds = self.offsets[i] as usize..self.offsets[i + 1] as usize;
         self.neighbors[bonds.clone()].iter().map(|&j| j as usize).zip(self.weights[bonds].iter().copied())

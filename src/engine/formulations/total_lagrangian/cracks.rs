@@ -1,19 +1,17 @@
 //! Cracks: bonds that lead from a particle that holds to one that has failed and is still there. Terms on bonds do not act along them.
 //!
-//! A [`BondTerm`](super::BondTerm) of a particle at the edge of a crack is given the fit over the neighbours that hold (see
+//! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack is given the fit over the neighbours that hold (see
 //! [`edges`](super::edges)), so that its energy, and with it its force, is that of a body without those that have failed. The second pass knows one
-//! pair stress per particle, which acts on all its neighbours: what the terms put on bonds across a crack is taken back, on both sides of the bond.
+//! corrected stress per particle, which acts on all its neighbours: what the terms put on bonds across a crack is taken back, on both sides of the bond.
 //!
 //! A particle that fails in a step crosses over at the start of the next, as in a step a block of particles does not see what the others do.
 
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
-use super::constitutive::Deformation;
-use super::formulation::PackedRows;
-use super::images::Images;
 use super::rows::Site;
-use crate::world::{Damage, MissingColumn, Removed, World};
+use crate::symmetry::Ghosts;
+use crate::world::{Damage, Removed};
 
 /// What a particle is to its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,10 +32,34 @@ pub(super) struct Edge {
     pub row: u32,
     /// Whether a neighbour has failed in the last step.
     pub is_new: bool,
-    /// What bond terms have added to the pair stress A_i.
+    /// What folded terms have added to the corrected stress A_i.
     pub stress: DMat3,
     /// What they have added to the bond stiffness k_i.
     pub stiffness: f64,
+}
+
+/// The edges in a block of rows, to be written.
+pub(super) struct EdgeRows<'a> {
+    pub edges: &'a mut [Edge],
+    /// First row of the block in the phase.
+    pub first: usize,
+}
+
+impl<'a> EdgeRows<'a> {
+    /// Those of `edges` in `n` rows from `first` on.
+    pub fn of(edges: &'a mut [Edge], first: usize, n: usize) -> Self {
+        let all = EdgeRows { edges, first: 0 };
+        let (_, rest) = all.split(first);
+        rest.split(n).0
+    }
+
+    /// Those before row `at` of the block, and those from it on.
+    pub fn split(self, at: usize) -> (Self, Self) {
+        let Self { edges, first } = self;
+        let until = edges.partition_point(|edge| (edge.row as usize) < first + at);
+        let (edges, rest) = edges.split_at_mut(until);
+        (Self { edges, first }, Self { edges: rest, first: first + at })
+    }
 }
 
 /// All cracks of the phase.
@@ -62,10 +84,10 @@ impl Cracks {
         damage: &[Damage],
         removed: &[Removed],
         bonds: &Bonds,
-        images: &Images,
+        ghosts: &Ghosts,
     ) {
         if self.failed != known.len() {
-            self.relist(known, damage.len(), bonds, images);
+            self.relist(known, damage.len(), bonds, ghosts);
         }
         let is_failed = |row: usize| damage[row].0 >= 1.0 && removed[row] == Removed::NO;
         if (0..damage.len()).filter(|&row| is_failed(row)).count() == known.len() {
@@ -81,22 +103,22 @@ impl Cracks {
         }
         known.sort_unstable();
         self.failed = known.len();
-        self.list(known, bonds, images);
+        self.list(known, bonds, ghosts);
     }
 
     /// Makes the marks of the given failed rows of a phase of `len` anew.
-    pub fn relist(&mut self, failed: &[u32], len: usize, bonds: &Bonds, images: &Images) {
+    pub fn relist(&mut self, failed: &[u32], len: usize, bonds: &Bonds, ghosts: &Ghosts) {
         self.marks.clear();
         self.marks.resize(len, Mark::Holds);
         failed.iter().for_each(|&row| self.marks[row as usize] = Mark::Failed);
         self.has_fresh = false;
         self.failed = failed.len();
-        self.list(failed, bonds, images);
+        self.list(failed, bonds, ghosts);
     }
 
-    fn list(&mut self, failed: &[u32], bonds: &Bonds, images: &Images) {
+    fn list(&mut self, failed: &[u32], bonds: &Bonds, ghosts: &Ghosts) {
         let Self { marks, edges, rows, .. } = self;
-        let neighbors = |row: u32| bonds.row(row as usize).map(|(j, _)| images.source(j));
+        let neighbors = |row: u32| bonds.row(row as usize).map(|(j, _)| ghosts.source(j));
         rows.clear();
         rows.extend(failed.iter().flat_map(|&row| neighbors(row)).map(|j| j as u32));
         rows.retain(|&row| marks[row as usize] == Mark::Holds);
@@ -128,8 +150,8 @@ impl Cracks {
         if self.rows.is_empty() { &[] } else { &self.rows[until(first)..until(first + n)] }
     }
 
-    /// The force, N, that the second pass puts on a row at a crack by what bond terms have added to pair stresses on the other side of a bond or on this one.
-    pub fn force_across(&self, row: usize, bonds: &Bonds, images: &Images, sites: &[Site]) -> DVec3 {
+    /// The force, N, that the second pass puts on a row at a crack by what folded terms have added to corrected stresses on the other side of a bond or on this one.
+    pub fn force_across(&self, row: usize, bonds: &Bonds, ghosts: &Ghosts, sites: &[Site]) -> DVec3 {
         let edge_of = |row: usize| {
             let place = self.edges.binary_search_by_key(&row, |edge| edge.row as usize);
             place.ok().map(|k| &self.edges[k])
@@ -138,35 +160,17 @@ impl Cracks {
         let site = &sites[row];
         let mut force = DVec3::ZERO;
         for (j, weight) in bonds.row(row) {
-            let source = images.source(j);
+            let source = ghosts.source(j);
             let has_failed = self.marks[source] != Mark::Holds;
             let edge = if has_failed { own } else { edge_of(source).filter(|_| own.is_none()) };
             let Some(edge) = edge else { continue };
             // The terms of an image are those of its source in the mirror: S A S.
-            let signs = if has_failed { None } else { images.mirror(j) }.unwrap_or(DVec3::ONE);
+            let signs = if has_failed { None } else { ghosts.mirror(j) }.unwrap_or(DVec3::ONE);
             let arm = sites[j].reference.xyz() - site.reference.xyz();
             let change = sites[j].displacement.xyz() - site.displacement.xyz();
             let pull = signs * (edge.stress * (signs * arm)) + change * edge.stiffness;
             force += pull * (f64::from(weight) * sites[j].reference.0[3]);
         }
         force * site.reference.0[3]
-    }
-}
-
-impl Deformation {
-    /// Takes up what has failed in the last step.
-    pub(super) fn take_up_failed(
-        &mut self,
-        world: &World,
-        packed: &mut PackedRows,
-    ) -> Result<(), MissingColumn> {
-        let view = world.phase(self.phase);
-        // Without terms on bonds, nothing of them crosses a crack.
-        let damage = view.read::<Damage>().ok().filter(|_| !self.terms.is_empty());
-        let Some(damage) = damage else { return Ok(()) };
-        let removed = view.read::<Removed>()?;
-        let PackedRows { bonds, images, cracks, .. } = packed;
-        cracks.take_up(&mut self.failed, &damage, &removed, bonds, images);
-        Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Bond terms of particles at the edge of a crack: without the neighbours that have failed.
+//! Folded terms of particles at the edge of a crack: without the neighbours that have failed.
 //!
 //! The energy of a term is that of the error of a fit, so that the fit is made anew over the neighbours that hold: the force is then the gradient of an
 //! energy in which those that have failed do not occur. What the bonds held that a failure cuts is released: at the places where a step ends it is the
@@ -6,34 +6,10 @@
 
 use glam::{DMat3, DVec3};
 
-use super::bond_terms::{BondEnergy, BondRows, BondTerm};
-use super::cracks::{Edge, Mark};
-use super::deformation::{DeformationPass, MAX_TERMS};
+use super::cracks::{Edge, EdgeRows, Mark};
+use super::deformation::DeformationPass;
 use crate::correction::MomentMatrix;
-
-/// The edges in a block of rows, to be written.
-pub(super) struct EdgeRows<'a> {
-    edges: &'a mut [Edge],
-    /// First row of the block in the phase.
-    first: usize,
-}
-
-impl<'a> EdgeRows<'a> {
-    /// Those of `edges` in `n` rows from `first` on.
-    pub fn of(edges: &'a mut [Edge], first: usize, n: usize) -> Self {
-        let all = EdgeRows { edges, first: 0 };
-        let (_, rest) = all.split(first);
-        rest.split(n).0
-    }
-
-    /// Those before row `at` of the block, and those from it on.
-    pub fn split(self, at: usize) -> (Self, Self) {
-        let Self { edges, first } = self;
-        let until = edges.partition_point(|edge| (edge.row as usize) < first + at);
-        let (edges, rest) = edges.split_at_mut(until);
-        (Self { edges, first }, Self { edges: rest, first: first + at })
-    }
-}
+use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum};
 
 /// The displacement gradient that fits the neighbours which count, and its error.
 struct Fit {
@@ -55,7 +31,7 @@ struct Bond {
     change: DVec3,
 }
 
-/// What a term has added to the pair stress and to the bond stiffness of a particle.
+/// What a term has added to the corrected stress and to the bond stiffness of a particle.
 #[derive(Clone, Copy)]
 struct Added {
     stress: DMat3,
@@ -63,36 +39,35 @@ struct Added {
 }
 
 impl DeformationPass<'_> {
-    /// Adds all bond terms to a block.
+    /// Adds all folded terms to a block.
     pub(super) fn add_terms(
         &self,
-        mut rows: BondRows<'_>,
+        constitutive: &Constitutive<'_>,
+        mut rows: FoldedRows<'_>,
         edges: EdgeRows<'_>,
-        sums: &mut [BondEnergy; MAX_TERMS],
+        sum: &mut SolidSum,
     ) {
         let EdgeRows { edges, first } = edges;
         let mut next = 0;
         for edge in edges {
             let k = edge.row as usize - first;
-            self.add_to(&mut rows.part(next..k), sums);
-            self.add_at_edge(edge, &mut rows.part(k..k + 1), sums);
+            constitutive.fold(&mut rows.part(next..k), sum);
+            self.add_at_edge(constitutive, edge, &mut rows.part(k..k + 1), sum);
             next = k + 1;
         }
         let end = rows.volume.len();
-        self.add_to(&mut rows.part(next..end), sums);
+        constitutive.fold(&mut rows.part(next..end), sum);
     }
 
-    fn add_to(&self, rows: &mut BondRows<'_>, sums: &mut [BondEnergy; MAX_TERMS]) {
-        for (sum, term) in sums.iter_mut().zip(self.terms) {
-            let energy = term.add(rows);
-            sum.stored += energy.stored;
-            sum.released += energy.released;
-        }
-    }
-
-    /// Adds all bond terms to the row of an edge. Where a neighbour has failed in the last step they are added as they were before it, first, and what
+    /// Adds all folded terms to the row of an edge. Where a neighbour has failed in the last step they are added as they were before it, first, and what
     /// they lose with it is released.
-    fn add_at_edge(&self, edge: &mut Edge, row: &mut BondRows<'_>, sums: &mut [BondEnergy; MAX_TERMS]) {
+    fn add_at_edge(
+        &self,
+        constitutive: &Constitutive<'_>,
+        edge: &mut Edge,
+        row: &mut FoldedRows<'_>,
+        sum: &mut SolidSum,
+    ) {
         (edge.stress, edge.stiffness) = (DMat3::ZERO, 0.0);
         let i = edge.row as usize;
         let held = |mark: Mark| mark != Mark::Failed;
@@ -100,18 +75,19 @@ impl DeformationPass<'_> {
         let of_all = row.displacement_gradient[0];
         let old = edge.is_new.then(|| self.fit(i, of_all, held));
         let new = self.fit(i, of_all, holds);
-        for (sum, term) in sums.iter_mut().zip(self.terms) {
+        let half = 0.5 * constitutive.dt;
+        for (sum, term) in sum.terms.iter_mut().zip(constitutive.terms) {
             if let Some(old) = &old {
-                let others = row.pair_stress.0[0];
+                let others = row.stress.0[0];
                 let (energy, added) = add_fitted(*term, row, old);
-                sum.released += energy.released + energy.stored + 0.5 * self.dt * self.power(i, &added, held);
-                row.pair_stress.0[0] = others;
+                sum.released += energy.released + energy.stored + half * self.power(i, &added, held);
+                row.stress.0[0] = others;
             }
             let (energy, added) = add_fitted(*term, row, &new);
             sum.stored += energy.stored;
             sum.released += energy.released;
             if old.is_some() {
-                sum.released -= energy.stored + 0.5 * self.dt * self.power(i, &added, holds);
+                sum.released -= energy.stored + half * self.power(i, &added, holds);
             }
             edge.stress += added.stress;
             edge.stiffness += added.stiffness;
@@ -142,8 +118,8 @@ impl DeformationPass<'_> {
     /// The power, W, of what a term has added, on the particle and on the neighbours that count.
     fn power(&self, i: usize, added: &Added, counts: impl Fn(Mark) -> bool) -> f64 {
         let of_bond = |Bond { to, weight, arm, change }: Bond| {
-            let signs = self.images.mirror(to).unwrap_or(DVec3::ONE);
-            let parting = self.velocity[i].0 - signs * self.velocity[self.images.source(to)].0;
+            let signs = self.ghosts.mirror(to).unwrap_or(DVec3::ONE);
+            let parting = self.velocity[i].0 - signs * self.velocity[self.ghosts.source(to)].0;
             weight * (added.stress * arm + change * added.stiffness).dot(parting)
         };
         self.sites[i].reference.0[3] * self.bonds_of(i, &counts).map(of_bond).sum::<f64>()
@@ -152,7 +128,7 @@ impl DeformationPass<'_> {
     /// The bonds with the neighbours whose marks count.
     fn bonds_of(&self, i: usize, counts: &impl Fn(Mark) -> bool) -> impl Iterator<Item = Bond> {
         let own = &self.sites[i];
-        let that_count = move |(j, _): &(usize, f32)| counts(self.marks[self.images.source(*j)]);
+        let that_count = move |(j, _): &(usize, f32)| counts(self.marks[self.ghosts.source(*j)]);
         self.bonds.row(i).filter(that_count).map(move |(j, weight)| {
             let other = &self.sites[j];
             let arm = other.reference.xyz() - own.reference.xyz();
@@ -163,16 +139,16 @@ impl DeformationPass<'_> {
 }
 
 /// Adds a term to a row with another fit than its own.
-fn add_fitted(term: &dyn BondTerm, row: &mut BondRows<'_>, fit: &Fit) -> (BondEnergy, Added) {
-    let before = row.pair_stress.0[0];
+fn add_fitted(term: &dyn FoldedTerm, row: &mut FoldedRows<'_>, fit: &Fit) -> (FoldedEnergy, Added) {
+    let before = row.stress.0[0];
     let modulus = if fit.is_one { row.modulus[0] } else { 0.0 };
-    let energy = term.add(&mut BondRows {
+    let energy = term.add(&mut FoldedRows {
         displacement_gradient: &[fit.gradient],
         misfit: &[fit.misfit],
         modulus: &[modulus],
         ..row.part(0..1)
     });
-    let after = &row.pair_stress.0[0];
+    let after = &row.stress.0[0];
     let [x, y, z] = [0, 1, 2].map(|axis| after.columns[axis].xyz() - before.columns[axis].xyz());
     let stress = DMat3::from_cols(x, y, z);
     (energy, Added { stress, stiffness: after.stiffness() - before.stiffness() })

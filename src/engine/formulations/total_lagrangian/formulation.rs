@@ -4,29 +4,25 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::bond_terms::BodyBondTerm;
 use super::bonds::{BodyBonds, Bonds};
-use super::constitutive::{Deformation, body_law};
 use super::cracks::Cracks;
-use super::damping::{DampedBodies, DampedStrain, DampingStress};
-use super::frame::Frame;
-use super::images::{Images, MirrorPlane, Repeat};
 use super::internal_force;
 use super::pairs::BondPairs;
-use super::repeats::repeats_of;
-use super::rows::{PairStress, Site};
-use super::stable_step::StepEstimate;
+use super::phase::{BodyKernel, PackedRows};
+use super::rows::Site;
 use super::support::choose_support;
+use super::system::Deformation;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
 use crate::pair::add_pair_systems;
-use crate::plugin::{BodyPlan, Formulation, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
+use crate::solids::{CorrectedStress, SolidBodies, StepEstimate};
+use crate::symmetry::{Ghosts, Repeat, repeats_of};
 use crate::world::{
-    BodyId, Column, ColumnSet, DeformationGradient, Force, HourglassGradient, HourglassMisfit,
-    HourglassModulus, Mass, PhaseId, PiolaStress, Position, ReferencePosition, ReferenceVolume, Removed,
-    SupportRadius, Velocity,
+    BodyId, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position, ReferencePosition,
+    ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
 /// Total-Lagrangian solid: neighbours, weights and corrections stay those of the reference configuration.
@@ -51,41 +47,21 @@ impl Default for TotalLagrangian {
     }
 }
 
-/// Label of the system that makes deformation gradient, stress and pair stress.
-pub const DEFORMATION: &str = "total_lagrangian_deformation";
+/// Label of the system that makes deformation gradient, stress and corrected stress.
+const DEFORMATION: &str = "total_lagrangian_deformation";
 /// Label of the system that makes the internal force.
-pub const INTERNAL_FORCE: &str = "total_lagrangian_force";
-
-/// What the two systems share.
-pub(crate) struct PackedRows {
-    pub(super) bonds: Bonds,
-    pub(super) images: Images,
-    /// Where the reference positions of sites are measured from, m.
-    pub(super) origin: DVec3,
-    pub(super) sites: Vec<Site>,
-    pub(super) pair_stress: Vec<PairStress>,
-    /// The part of the force on each particle that comes from its own pair stress, over its volume.
-    pub(super) own_pull: Vec<DVec3>,
-    /// Of every body, in the order of rows.
-    pub(super) frames: Vec<Frame>,
-    pub(super) cracks: Cracks,
-    pub(super) kernels: Vec<BodyKernel>,
-    /// Stable step of each body in its reference configuration, s.
-    pub(super) stable_step: Vec<f64>,
-}
-
-/// The kernel of a body.
-pub(super) struct BodyKernel {
-    pub body: BodyId,
-    pub kernel: Kernel,
-    /// Support radius, m, where all particles have the same.
-    pub support: Option<f64>,
-}
+const INTERNAL_FORCE: &str = "total_lagrangian_force";
 
 impl Formulation for TotalLagrangian {
     const NAME: &'static str = "TotalLagrangian";
     const REFERENCE: &'static str =
         "total-Lagrangian SPH: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106";
+    const KIND: BodyKind = BodyKind::Solid;
+    const OFFERS: &'static [Offer] = Offer::OF_SOLIDS;
+
+    fn support(&self, body: &BodyPlan) -> Option<f64> {
+        self.mean_support(body)
+    }
 
     fn columns(columns: &mut ColumnSet) {
         columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>();
@@ -96,16 +72,12 @@ impl Formulation for TotalLagrangian {
             parameters.check(sim.body(*id)).map_err(|error| error.of_formulation(*id))?;
         }
         let phase = sim.body(bodies[0].0).phase;
-        super::fields::add(sim);
-        let planes: Vec<MirrorPlane> = sim.take_extensions();
         let repeats_of = |(id, parameters): &(BodyId, Self)| {
             let body = sim.body(*id);
-            let repeats = repeats_of(body, parameters.support * body.spacing, &planes, sim);
+            let repeats = repeats_of(body, parameters.support * body.spacing, sim);
             repeats.map_err(|error| error.of_formulation(*id))
         };
         let repeats = bodies.iter().map(repeats_of).collect::<Result<Vec<_>, _>>()?;
-        // Contacts see mirror images too.
-        planes.into_iter().for_each(|plane| sim.extend(plane));
         for ((id, parameters), repeats) in bodies.iter().zip(&repeats) {
             if parameters.neighbors.is_some() && !repeats.is_empty() {
                 let message = "neighbours cannot be counted across a symmetry plane or a periodic side";
@@ -113,30 +85,13 @@ impl Formulation for TotalLagrangian {
                 return Err(error.of_formulation(*id));
             }
         }
-        let terms: Vec<BodyBondTerm> = sim.take_extensions();
-        let damped: Vec<DampedBodies> = sim.take_extensions();
-        damped.iter().for_each(|DampedBodies(bodies)| {
-            sim.add_column_to::<DampedStrain>(bodies);
-            sim.add_column_to::<DampingStress>(bodies);
-        });
-        let is_damped = |id| damped.iter().any(|bodies| bodies.0.contains(id));
-        let law_of =
-            |id: BodyId| body_law(id, sim, &terms, is_damped(id)).map_err(|error| error.of_formulation(id));
-        let laws = bodies.iter().map(|(id, _)| law_of(*id)).collect::<Result<Vec<_>, _>>()?;
-        let estimates: Vec<StepEstimate> = laws.iter().map(|law| law.estimate).collect();
+        let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
+        let solids = SolidBodies::new(&ids, sim)?;
+        let estimates: Vec<StepEstimate> = solids.iter().map(|body| body.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
-        let deformation = Deformation::new(phase, plane, laws, terms);
-        let mut state = deformation.state();
-        if sim.columns(phase).get(HourglassModulus::NAME).is_some() {
-            state.add::<HourglassModulus>().add::<HourglassMisfit>();
-        }
-        if !damped.is_empty() {
-            state.add::<DampedStrain>().add::<DampingStress>();
-        }
-        if sim.columns(phase).get(HourglassGradient::NAME).is_some() {
-            state.add::<HourglassGradient>();
-        }
+        let state = solids.access();
+        let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])
             .reads::<Position>()
@@ -145,9 +100,8 @@ impl Formulation for TotalLagrangian {
             .reads::<Removed>()
             .reads::<Velocity>()
             .reads::<Mass>()
-            .writes::<DeformationGradient>()
-            .writes::<PiolaStress>();
-        sim.add_system(state.iter().fold(system, |system, column| system.touches(column.name, Mode::Writes)));
+            .touches_all(state);
+        sim.add_system(system);
         let gravity = sim.gravity();
         sim.add_system(
             System::new(Stage::Rates, INTERNAL_FORCE, move |step: &mut Step<'_>| {
@@ -155,15 +109,27 @@ impl Formulation for TotalLagrangian {
             })
             .on_phases([phase])
             .reads::<Mass>()
-            .touches("pair_stress", Mode::Reads)
+            .touches("corrected_stress", Mode::Reads)
             .writes::<Force>(),
         );
-        add_pair_systems(sim, phase, INTERNAL_FORCE, BondPairs { phase })?;
+        add_pair_systems(sim, phase, BondPairs { phase })?;
         Ok(())
     }
 }
 
 impl TotalLagrangian {
+    /// Mean support radius of the particles of a body, m.
+    fn mean_support(&self, body: &BodyPlan) -> Option<f64> {
+        let usual = self.support * body.spacing;
+        let Some(neighbors) = self.neighbors.filter(|n| body.sites.len() > *n as usize + 1) else {
+            return Some(usual);
+        };
+        let position: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let mut support = vec![0.0; position.len()];
+        choose_support(&position, usual, neighbors as usize, &mut support).ok()?;
+        Some(support.iter().sum::<f64>() / support.len() as f64)
+    }
+
     fn check(&self, body: &BodyPlan) -> Result<(), SetupError> {
         if let Some(neighbors) = self.neighbors {
             return self.check_neighbors(neighbors, body);
@@ -236,7 +202,7 @@ fn set_up(
     let support: &[f64] = bytemuck::cast_slice(&support);
     let dimension = setup.world.dimension().count();
     let mut bonds = Bonds::default();
-    let mut images = Images::new(view.len());
+    let mut ghosts = Ghosts::new(view.len());
     let mut search = NeighborSearch::default();
     let mut stable_step = Vec::new();
     let mut kernels = Vec::new();
@@ -248,9 +214,9 @@ fn set_up(
         let uniform = parameters.neighbors.is_none().then_some(parameters.support * body.spacing);
         kernels.push(BodyKernel { body: *id, kernel, support: uniform });
         let rows = body.rows.clone();
-        let image_rows = images.add(rows.clone(), position, parameters.support * body.spacing, repeats);
+        let ghost_rows = ghosts.add(rows.clone(), position, parameters.support * body.spacing, repeats);
         let body_bonds =
-            BodyBonds { rows: rows.clone(), position, volume, support, kernel, images: &images, image_rows };
+            BodyBonds { rows: rows.clone(), position, volume, support, kernel, ghosts: &ghosts, ghost_rows };
         bonds.append(&body_bonds, &mut search).map_err(|error| {
             let help = "use a larger `support`, or more particles across the body";
             SetupError::parameter(format!("bodies[{}].formulation", id.0), error.to_string(), help)
@@ -265,24 +231,29 @@ fn set_up(
         }
         stable_step.push(bonds.stable_step(rows, dimension, estimate));
     }
-    let sites = vec![Site::default(); view.len() + images.len()];
-    let pair_stress = vec![PairStress::default(); view.len() + images.len()];
-    let own_pull = vec![DVec3::ZERO; view.len()];
+    let stresses = vec![CorrectedStress::default(); view.len() + ghosts.len()];
+    let self_force = vec![DVec3::ZERO; view.len()];
     let (low, high) = position
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
     let origin = 0.5 * (low + high);
-    setup.resources.insert(PackedRows {
+    let mut sites = vec![Site::default(); view.len() + ghosts.len()];
+    for (site, (x, v)) in sites.iter_mut().zip(position.iter().zip(volume)) {
+        *site = Site::new(*x - origin, DVec3::ZERO, *v);
+    }
+    let mut packed = PackedRows {
         bonds,
-        images,
+        ghosts,
         origin,
         sites,
-        pair_stress,
-        own_pull,
+        stresses,
+        self_force,
         frames: Vec::with_capacity(bodies.len()),
         cracks: Cracks::default(),
         kernels,
         stable_step,
-    });
+    };
+    packed.fill_ghost_sites();
+    setup.resources.insert_solid(phase, packed);
     Ok(())
 }

@@ -3,6 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use super::rows::Site;
+use crate::parallel::Lanes4;
+use crate::solids::CorrectedStress;
 
 /// An affine motion near that of the body, u = u_0 + H X: what its middle particle did in the last step.
 ///
@@ -31,6 +33,24 @@ impl Frame {
     #[inline(always)]
     pub fn rest(&self, site: &Site) -> DVec3 {
         site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
+    }
+}
+
+impl Frame {
+    /// Takes the stress of a particle into the frame, and completes it by its affine traction.
+    #[inline(always)]
+    pub fn complete(&self, stress: &mut CorrectedStress, site: &Site) {
+        let stiffness = stress.stiffness();
+        let Self { gradient, .. } = self;
+        for (column, add) in
+            stress.columns.iter_mut().zip([gradient.x_axis, gradient.y_axis, gradient.z_axis])
+        {
+            column.0[0] += stiffness * add.x;
+            column.0[1] += stiffness * add.y;
+            column.0[2] += stiffness * add.z;
+        }
+        stress.traction =
+            Lanes4::new(stress.times(site.reference.xyz(), self.rest(site)), site.reference.0[3]);
     }
 }
 

@@ -3,10 +3,11 @@
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
-use super::rows::{PairStress, Site};
+use super::rows::Site;
 use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid};
+use crate::solids::CorrectedStress;
 
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
 pub(super) struct Gather<'a> {
@@ -60,18 +61,18 @@ impl PlaneOrSolid for Gather<'_> {
 }
 
 /// Makes A_i = P_i M_i^-1 of a block.
-pub(super) struct MakePairStress<'a> {
+pub(super) struct CorrectStress<'a> {
     pub stress: &'a [DMat3],
     pub inverse_moment: &'a [Sym3],
-    pub pair_stress: &'a mut [PairStress],
+    pub stresses: &'a mut [CorrectedStress],
 }
 
-impl HotLoop for MakePairStress<'_> {
+impl HotLoop for CorrectStress<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
-        for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.pair_stress) {
+        for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.stresses) {
             let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
             let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
             out.columns = fit::<A, 3>(a, &columns, inverse);

@@ -1,6 +1,6 @@
-//! Second pass over pairs: the force of stress and bond terms on every particle.
+//! Second pass over pairs: the force of stress and folded terms on every particle.
 //!
-//! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]` (see [`PairStress`]): swapping i and j turns the sign
+//! `f_i = V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]` (see [`CorrectedStress`]): swapping i and j turns the sign
 //! of the bracket, so momentum is kept to round-off. The sum is taken as
 //!
 //! ```text
@@ -14,22 +14,23 @@ use glam::DVec3;
 
 use super::bonds::Bonds;
 use super::cracks::Cracks;
-use super::formulation::PackedRows;
 use super::frame::{Frame, frame_of};
-use super::images::Images;
-use super::rows::{PairStress, Site};
+use super::phase::PackedRows;
+use super::rows::Site;
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
+use crate::solids::CorrectedStress;
+use crate::symmetry::Ghosts;
 use crate::world::{Force, Mass, PhaseId};
 
 /// The pass over all bodies of the phase.
 pub(super) struct InternalForce<'a> {
     pub bonds: &'a Bonds,
-    pub images: &'a Images,
+    pub ghosts: &'a Ghosts,
     pub cracks: &'a Cracks,
     pub sites: &'a [Site],
-    pub pair_stress: &'a [PairStress],
-    pub own_pull: &'a [DVec3],
+    pub stresses: &'a [CorrectedStress],
+    pub self_force: &'a [DVec3],
     /// Of every body.
     pub frames: &'a [Frame],
     /// Mass of every particle, kg.
@@ -43,19 +44,19 @@ pub(super) struct InternalForce<'a> {
 impl<'a> InternalForce<'a> {
     /// The pass over what the first one has left.
     pub fn of(packed: &'a PackedRows, mass: &'a [Mass], gravity: DVec3, plane: bool) -> Self {
-        let PackedRows { bonds, images, cracks, sites, pair_stress, own_pull, frames, .. } = packed;
+        let PackedRows { bonds, ghosts, cracks, sites, stresses, self_force, frames, .. } = packed;
         let mass = bytemuck::cast_slice(mass);
-        Self { bonds, images, cracks, sites, pair_stress, own_pull, frames, mass, gravity, plane }
+        Self { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
     }
 
     /// Writes the force on every particle: gravity plus internal force, N.
     pub fn run(&self, force: &mut [Force]) {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
             run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force });
-            let Self { bonds, images, cracks, sites, .. } = *self;
+            let Self { bonds, ghosts, cracks, sites, .. } = *self;
             for &row in cracks.rows_of_block(first, force.len()) {
                 let row = row as usize;
-                force[row - first].0 -= cracks.force_across(row, bonds, images, sites);
+                force[row - first].0 -= cracks.force_across(row, bonds, ghosts, sites);
             }
         });
     }
@@ -70,58 +71,58 @@ struct ForceRows<'a> {
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let InternalForce { bonds, sites, pair_stress, own_pull, frames, mass, gravity, .. } = *self.pass;
+        let InternalForce { bonds, sites, stresses, self_force, frames, mass, gravity, .. } = *self.pass;
         let mut frame = frame_of(frames, self.first);
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let site = sites[i];
             let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let (mut even, mut odd) = (Pull::<D>::ZERO, Pull::<D>::ZERO);
+            let (mut even, mut odd) = (ForceSum::<D>::ZERO, ForceSum::<D>::ZERO);
             let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
             let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
             // By number: zipped iterators would be called, off the instruction path.
             for n in 0..pairs.len() {
                 let (j, weight) = (pairs[n], weights[n]);
-                even.add(a, &pair_stress[j[0] as usize], weight[0]);
-                odd.add(a, &pair_stress[j[1] as usize], weight[1]);
+                even.add(a, &stresses[j[0] as usize], weight[0]);
+                odd.add(a, &stresses[j[1] as usize], weight[1]);
             }
             if let ([j], [weight]) = (last, last_weight) {
-                even.add(a, &pair_stress[*j as usize], *weight);
+                even.add(a, &stresses[*j as usize], *weight);
             }
             let sum = even.plus(a, &odd);
             if frames[frame].end <= i {
                 frame = frame_of(frames, i);
             }
             let rest = Lanes4::new(frames[frame].rest(&site), 0.0);
-            let mut pull = a.scale_add(-sum.columns[0].0[3], rest, sum.pull);
+            let mut pull = a.scale_add(-sum.columns[0].0[3], rest, sum.traction);
             for axis in 0..D {
                 pull = a.scale_add(-site.reference.0[axis], sum.columns[axis], pull);
             }
             let volume = site.reference.0[3];
             // A removed particle has no volume here: nothing acts on it, not even gravity.
             let weight = if site.is_present() { gravity * mass[i] } else { DVec3::ZERO };
-            *force = Force((pull.xyz() + own_pull[i]) * volume + weight);
+            *force = Force((pull.xyz() + self_force[i]) * volume + weight);
         }
     }
 }
 
 /// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for every other
 /// bond, so that additions need not wait for each other.
-struct Pull<const D: usize> {
+struct ForceSum<const D: usize> {
     columns: [Lanes4; D],
-    pull: Lanes4,
+    traction: Lanes4,
 }
 
-impl<const D: usize> Pull<D> {
-    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], pull: Lanes4::ZERO };
+impl<const D: usize> ForceSum<D> {
+    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], traction: Lanes4::ZERO };
 
     #[inline(always)]
-    fn add<A: Arithmetic>(&mut self, a: A, other: &PairStress, weight: f32) {
-        let weight = f64::from(weight) * other.pull.0[3];
+    fn add<A: Arithmetic>(&mut self, a: A, other: &CorrectedStress, weight: f32) {
+        let weight = f64::from(weight) * other.traction.0[3];
         for axis in 0..D {
             self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
         }
-        self.pull = a.scale_add(weight, other.pull, self.pull);
+        self.traction = a.scale_add(weight, other.traction, self.traction);
     }
 
     #[inline(always)]
@@ -129,7 +130,7 @@ impl<const D: usize> Pull<D> {
         for axis in 0..D {
             self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
         }
-        self.pull = a.plus(self.pull, other.pull);
+        self.traction = a.plus(self.traction, other.traction);
         self
     }
 }
@@ -137,7 +138,7 @@ impl<const D: usize> Pull<D> {
 /// The system of the pass.
 pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bool) -> Result<(), StepError> {
     let view = step.world.phase(phase);
-    let packed = step.resources.get::<PackedRows>();
+    let packed = step.resources.solid_rows::<PackedRows>(phase);
     let mass = view.read::<Mass>()?;
     let mut force = view.write::<Force>()?;
     InternalForce::of(&packed, &mass, gravity, plane).run(&mut force);

@@ -5,14 +5,14 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::bonds::Bonds;
-use super::formulation::{BodyKernel, PackedRows};
-use super::images::Images;
+use super::phase::{BodyKernel, PackedRows};
 use super::rows::Site;
 use crate::kernels::Kernel;
-use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room};
+use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
+use crate::symmetry::Ghosts;
 use crate::world::{BodyId, PhaseId, SupportRadius, Velocity};
 
 /// Gives pair terms the bonds of the phase.
@@ -28,18 +28,18 @@ impl PairSource for BondPairs {
         reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
-        let packed = step.resources.get::<PackedRows>();
+        let packed = step.resources.solid_rows::<PackedRows>(self.phase);
         let view = step.world.phase(self.phase);
         let support = view.read::<SupportRadius>()?;
         let velocity = if reads.velocity { Some(view.read::<Velocity>()?) } else { None };
-        let PackedRows { bonds, images, sites, kernels, .. } = &*packed;
+        let PackedRows { bonds, ghosts, sites, kernels, .. } = &*packed;
         let Some(BodyKernel { kernel, support: uniform, .. }) = kernels.iter().find(|of| of.body == body)
         else {
             return Ok(());
         };
         run(&BodyPairs {
             bonds,
-            images,
+            ghosts,
             sites,
             support: &support,
             uniform: *uniform,
@@ -52,7 +52,7 @@ impl PairSource for BondPairs {
 
 struct BodyPairs<'a> {
     bonds: &'a Bonds,
-    images: &'a Images,
+    ghosts: &'a Ghosts,
     sites: &'a [Site],
     support: &'a [SupportRadius],
     /// Support radius of all particles, m, where it is the same.
@@ -83,8 +83,12 @@ impl HotLoop for Fill<'_> {
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) {
         let Self { pairs, rows, batch } = self;
-        let extras =
-            Extras { reference: true, mirrors: !pairs.images.is_empty(), supports: pairs.uniform.is_none() };
+        let extras = Extras {
+            reference: true,
+            weight_at: WeightAt::Reference,
+            mirrors: !pairs.ghosts.is_empty(),
+            supports: pairs.uniform.is_none(),
+        };
         batch.begin(extras, pairs.uniform.unwrap_or(0.0));
         for i in rows {
             if batch.is_full() {
@@ -108,9 +112,9 @@ struct Own<A> {
 }
 
 impl BodyPairs<'_> {
-    /// Adds the row of one particle; `IMAGES` where there are images.
+    /// Adds the row of one particle; `GHOSTS` where there are ghosts.
     #[inline(always)]
-    fn fill_row<A: Arithmetic, const IMAGES: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
+    fn fill_row<A: Arithmetic, const GHOSTS: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
         let Self { bonds, sites, velocity, support, .. } = *self;
         let site = &sites[i];
         let own = Own {
@@ -126,13 +130,13 @@ impl BodyPairs<'_> {
         let (fours, rest) = neighbors.as_chunks();
         let (weights, rest_weights) = weights.as_chunks();
         for n in 0..fours.len() {
-            self.put::<A, IMAGES>(a, &own, (fours[n], weights[n]), n, &mut room);
+            self.put::<A, GHOSTS>(a, &own, (fours[n], weights[n]), n, &mut room);
         }
         if !rest.is_empty() {
             let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
             four[..rest.len()].copy_from_slice(rest);
             weight[..rest.len()].copy_from_slice(rest_weights);
-            self.put::<A, IMAGES>(a, &own, (four, weight), fours.len(), &mut room);
+            self.put::<A, GHOSTS>(a, &own, (four, weight), fours.len(), &mut room);
         }
         if let Some(kernel) = self.kernel {
             put_kernel(kernel, self.uniform, room);
@@ -141,7 +145,7 @@ impl BodyPairs<'_> {
 
     /// Puts four neighbours into the room, all but kernel values.
     #[inline(always)]
-    fn put<A: Arithmetic, const IMAGES: bool>(
+    fn put<A: Arithmetic, const GHOSTS: bool>(
         &self,
         a: A,
         own: &Own<A>,
@@ -149,7 +153,7 @@ impl BodyPairs<'_> {
         n: usize,
         room: &mut Room<'_>,
     ) {
-        let Self { images, sites, support, uniform, velocity, .. } = *self;
+        let Self { ghosts, sites, support, uniform, velocity, .. } = *self;
         let mut rows = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let [j, k, l, m] = rows;
         let of = [&sites[j], &sites[k], &sites[l], &sites[m]];
@@ -163,10 +167,10 @@ impl BodyPairs<'_> {
             Lanes4([f64::from(weight[0]), f64::from(weight[1]), f64::from(weight[2]), f64::from(weight[3])]);
         // Removed particles, and lanes without a neighbour, have neither weight nor volume.
         let volume_j = a.where_below(Lanes4::ZERO, weight, volume);
-        if IMAGES {
+        if GHOSTS {
             for lane in 0..4 {
-                room.mirrors[n][lane] = images.mirror(rows[lane]).unwrap_or(DVec3::ONE);
-                rows[lane] = images.source(rows[lane]);
+                room.mirrors[n][lane] = ghosts.mirror(rows[lane]).unwrap_or(DVec3::ONE);
+                rows[lane] = ghosts.source(rows[lane]);
             }
         }
         let [j, k, l, m] = rows;
@@ -178,7 +182,7 @@ impl BodyPairs<'_> {
         pairs.weight = a.where_below(Lanes4::ZERO, volume_j, weight);
         if let Some(v) = velocity {
             let mut of = [v[j].0, v[k].0, v[l].0, v[m].0];
-            if IMAGES {
+            if GHOSTS {
                 let signs = &room.mirrors[n];
                 of = [of[0] * signs[0], of[1] * signs[1], of[2] * signs[2], of[3] * signs[3]];
             }

@@ -1,28 +1,18 @@
-//! Removed particles leave the bonds: what is left of a neighbourhood is fitted anew, and what the bonds held is booked.
+//! The removed particles that the passes know of.
 
 use glam::DMat3;
 
-use super::constitutive::Deformation;
-use super::deformation::DeformationSum;
-use super::formulation::PackedRows;
-use super::internal_force::InternalForce;
-use super::refit::{Refits, fit_of};
-use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{AccountKind, Step, StepError};
-use crate::world::{
-    DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed, Velocity,
-    World,
-};
+use crate::solids::Refits;
 
 /// The removed rows that the passes know of.
 #[derive(Default)]
 pub(super) struct RemovedRows {
     /// Ascending.
-    rows: Vec<u32>,
+    pub rows: Vec<u32>,
     /// What the laws of plastic bodies go on from.
-    refits: Refits,
+    pub refits: Refits,
     /// Whether the bonds do not know of them yet: after a restart.
-    restored: bool,
+    pub restored: bool,
 }
 
 impl RemovedRows {
@@ -37,110 +27,5 @@ impl RemovedRows {
 
     pub fn rows(&self) -> &[u32] {
         &self.rows
-    }
-}
-
-impl Deformation {
-    /// Takes what a checkpoint says is removed out of the bonds.
-    pub(super) fn take_up_restored(
-        &mut self,
-        world: &World,
-        packed: &mut PackedRows,
-    ) -> Result<(), StepError> {
-        if std::mem::take(&mut self.removed.restored) {
-            self.cut(world, packed)?;
-        }
-        Ok(())
-    }
-
-    /// Takes up what has been removed since the last step; returns whether the pass has been run with it.
-    ///
-    /// The passes run twice from the same places, with the bonds that are gone and without them: what these held leaves
-    /// the books. The second kick of the step uses the new forces, the motion up to here was made by the old ones:
-    /// what that takes from the motion leaves the books with it.
-    pub(super) fn take_up_removed(
-        &mut self,
-        step: &mut Step<'_>,
-        packed: &mut PackedRows,
-    ) -> Result<bool, StepError> {
-        let view = step.world.phase(self.phase);
-        let removed = view.read::<Removed>()?;
-        if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
-            return Ok(false);
-        }
-        self.pass(step.world, packed, (step.clock.dt, step.turn.is_part()))?;
-        self.book(step)?;
-        let held: Vec<f64> = self.found.iter().map(DeformationSum::stored).collect();
-        let before = self.forces(step, packed)?;
-        let known = std::mem::take(&mut self.removed.rows);
-        self.removed.rows.extend((0..removed.len() as u32).filter(|&k| removed[k as usize] != Removed::NO));
-        self.cut(step.world, packed)?;
-        self.refit(step.world, packed, &known)?;
-        // States of laws have advanced by this step already.
-        self.pass(step.world, packed, (0.0, false))?;
-        self.book(step)?;
-        let after = self.forces(step, packed)?;
-        let velocity = view.read::<Velocity>()?;
-        let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
-        for ((law, held), sum) in self.laws.iter().zip(held).zip(&self.found) {
-            let rows = step.world.body(law.id).rows.clone();
-            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
-            step.ledger.add(account, law.id, held - sum.stored() + 0.5 * step.clock.dt * power);
-        }
-        Ok(true)
-    }
-
-    /// Takes in how the fits of plastic bodies have changed beside rows that were not `known` to be removed.
-    fn refit(&mut self, world: &World, packed: &mut PackedRows, known: &[u32]) -> Result<(), MissingColumn> {
-        let view = world.phase(self.phase);
-        let gradient = view.read::<DeformationGradient>()?;
-        let PackedRows { bonds, images, origin, sites, .. } = packed;
-        let mut is_new = vec![false; view.len()];
-        for &row in self.removed.rows.iter().filter(|row| known.binary_search(row).is_err()) {
-            is_new[row as usize] = true;
-            sites[row as usize].reference.0[3] = 0.0;
-        }
-        images.fill_sites(*origin, sites);
-        for law in self.laws.iter().filter(|law| law.law.remembers_path()) {
-            for row in world.body(law.id).rows.clone() {
-                let bonds_of = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
-                let is_cut = bonds.neighbors[bonds_of].iter().any(|&j| is_new[images.source(j as usize)]);
-                if is_cut && sites[row].is_present() {
-                    let after = fit_of(row, bonds, sites);
-                    self.removed.refits.take_in(row as u32, &gradient[row].0, &after);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// The internal forces of the last pass.
-    fn forces(&self, step: &Step<'_>, packed: &PackedRows) -> Result<Vec<Force>, MissingColumn> {
-        let view = step.world.phase(self.phase);
-        let mut force = vec![Force::default(); view.len()];
-        let mass = view.read::<Mass>()?;
-        InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane).run(&mut force);
-        Ok(force)
-    }
-
-    /// Takes the removed particles out of the moment matrices of their neighbours, and off the edges of cracks.
-    fn cut(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
-        let view = world.phase(self.phase);
-        let reference = view.read::<ReferencePosition>()?;
-        let volume = view.read::<ReferenceVolume>()?;
-        let mut volume: Vec<f64> = volume.iter().map(|volume| volume.0).collect();
-        self.removed.rows.iter().for_each(|&row| volume[row as usize] = 0.0);
-        let dimension = world.dimension().count();
-        let PackedRows { bonds, images, cracks, stable_step, .. } = packed;
-        if !self.failed.is_empty() {
-            self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
-            cracks.relist(&self.failed, view.len(), bonds, images);
-        }
-        for (law, stable_step) in self.laws.iter().zip(stable_step) {
-            let rows = world.body(law.id).rows.clone();
-            bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, images);
-            *stable_step = bonds.stable_step(rows, dimension, &law.estimate);
-        }
-        Ok(())
     }
 }

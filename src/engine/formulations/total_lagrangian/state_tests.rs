@@ -4,10 +4,11 @@ use glam::DMat3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::assembly::build;
 use crate::materials::{
     ElasticConstants, Material, MaterialModel, ParameterError, SolidLaw, StateRows, StressRows, Stretches,
 };
-use crate::plugin::{Registry, build};
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 use crate::simulation::{Checkpoint, Simulation};
 use crate::world::{BodyId, Column, ColumnSet, PlasticStrain, Temperature};

@@ -6,29 +6,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::formulation::TotalLagrangian;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
-use crate::plugin::{Formulation, SimBuilder};
-use crate::world::BodyId;
-
-impl SimBuilder<'_> {
-    /// Mean support radius of the particles of a total-Lagrangian body, m; none of other bodies.
-    pub fn mean_support(&self, id: BodyId) -> Option<f64> {
-        let body = self.body(id);
-        if body.formulation != TotalLagrangian::NAME {
-            return None;
-        }
-        let parameters: TotalLagrangian = self.scene().bodies[id.0].formulation.parse().ok()?;
-        let usual = parameters.support * body.spacing;
-        let Some(neighbors) = parameters.neighbors.filter(|n| body.sites.len() > *n as usize + 1) else {
-            return Some(usual);
-        };
-        let position: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let mut support = vec![0.0; position.len()];
-        choose_support(&position, usual, neighbors as usize, &mut support).ok()?;
-        Some(support.iter().sum::<f64>() / support.len() as f64)
-    }
-}
 
 /// Factor by which the search widens for particles that have not yet found their neighbours.
 const WIDER: f64 = 1.5;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use crate::plugin::OutputOptions;
+use super::options::OutputOptions;
 use crate::record::Existing;
 use crate::scene::Problem;
 

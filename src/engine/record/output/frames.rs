@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::folder::OutputFolder;
 use super::present::Present;
 use super::track::failed;
+use crate::fields::ChosenField;
 use crate::neighbors::Periodic;
-use crate::record::fields::ChosenField;
 use crate::record::trigger::Trigger;
 use crate::record::{
     BodyFrame, FieldValues, Frame, NamedUnit, PointArray, PointValues, PvdFrame, PvdWriter, RecordError,

@@ -6,6 +6,7 @@
 mod due;
 mod folder;
 mod frames;
+mod options;
 mod plan;
 mod present;
 mod system;
@@ -14,6 +15,7 @@ mod track;
 
 pub use due::Output;
 pub use folder::{CHECKPOINT, ENERGY, OutputFolder, SUMMARY};
+pub use options::OutputOptions;
 pub use plan::OutputPlan;
 pub use system::{OUTPUT, OutputHandle};
 pub use table::Extreme;

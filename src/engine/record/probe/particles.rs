@@ -1,7 +1,7 @@
 //! Mean or sum of a field over a selection.
 
+use crate::fields::ChosenField;
 use crate::plugin::Selection;
-use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
 use crate::world::{MissingColumn, Removed, World};
 

@@ -9,8 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::correction::MomentMatrix;
+use crate::fields::ChosenField;
 use crate::neighbors::Periodic;
-use crate::record::fields::ChosenField;
 use crate::schedule::Resources;
 use crate::world::{BodyId, MissingColumn, PhaseId, Position, Removed, World};
 

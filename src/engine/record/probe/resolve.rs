@@ -8,8 +8,8 @@ use super::measure::Measure;
 use super::particles::ParticleGauge;
 use super::point::PointGauge;
 use super::torque::TorqueGauge;
-use crate::plugin::{Selection, SetupError, SimBuilder};
-use crate::record::fields::{ChosenField, FieldTable};
+use crate::fields::{ChosenField, FieldTable};
+use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::scene::{self, Problem, Quantity, Select};
 use crate::schedule::Resources;
 use crate::world::{BodyId, BodySet, MissingColumn, World};
@@ -143,8 +143,8 @@ fn field_gauge(
     let Some(on) = &probe.on else {
         // The particles of walls have the pressure that the fluid beside them is to feel, which is not that at their places.
         let all = || sim.bodies().iter();
-        let flows = all().any(|body| body.formulation == "Fluid");
-        let bodies = all().filter(|body| !(flows && body.formulation == "Wall")).map(|body| body.id);
+        let flows = all().any(|body| body.kind == BodyKind::Fluid);
+        let bodies = all().filter(|body| !(flows && body.kind == BodyKind::Boundary)).map(|body| body.id);
         let bodies = BodySet::new(bodies);
         let at = probe.at.map_or(glam::DVec3::ZERO, |point| point.0);
         return Ok(Gauge::Point(PointGauge { at, field: choose(&bodies, false)?, periodic: sim.periodic() }));

@@ -1,6 +1,7 @@
 //! Scenes that go wrong, and what the watchdog says.
 
-use crate::plugin::{Plugin, Registry, SetupError, SimBuilder, build};
+use crate::assembly::build;
+use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use crate::scene::{Source, parse};
 use crate::schedule::{AccountKind, Stage, Step, StepError, System};
 use crate::simulation::{Outcome, RunError, Simulation};

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::formulations::fluid::Wall;
-use crate::plugin::{BodyPlan, Formulation, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, Step};
 
@@ -77,7 +76,7 @@ pub(super) fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
         let height = body.bounds.extent().abs().dot(gravity.abs());
         if height.is_finite() { body.material.density * volume * height } else { 0.0 }
     };
-    let moved = sim.bodies().iter().filter(|body| body.formulation != Wall::NAME);
+    let moved = sim.bodies().iter().filter(|body| body.kind != BodyKind::Boundary);
     moved.map(of).sum()
 }
 

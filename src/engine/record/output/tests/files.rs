@@ -1,7 +1,7 @@
 //! Which files there are, and what is in them.
 
 use super::*;
-use crate::plugin::build;
+use crate::assembly::build;
 use crate::record::read_series;
 use crate::world::{BodyId, Force, Mass, Position, ReferencePosition};
 

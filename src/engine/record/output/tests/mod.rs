@@ -9,8 +9,10 @@ mod scene_errors;
 use std::fs;
 use std::path::Path;
 
-use crate::plugin::{BuildOptions, OutputOptions, Registry, build_with};
+use crate::assembly::{BuildOptions, build_with};
+use crate::plugin::Registry;
 use crate::record::Existing;
+use crate::record::OutputOptions;
 use crate::scene::{Scene, SceneError, Source, parse};
 use crate::simulation::Simulation;
 

@@ -1,7 +1,7 @@
 //! Faults of a scene in what it wants to be written, found without anything being written.
 
 use super::*;
-use crate::plugin::build;
+use crate::assembly::build;
 
 fn error(from: &str, to: &str) -> String {
     let (scene, source) = cantilever(|t| {

@@ -6,7 +6,7 @@ use super::flux::FluxGauge;
 use super::level::LevelGauge;
 use super::reaction::ReactionGauge;
 use super::sensor::SensorGauge;
-use crate::plugin::{Selection, SimBuilder};
+use crate::plugin::{BodyKind, Selection, SimBuilder};
 use crate::record::probe::measure::Measure;
 use crate::scene::{self, Dimension, Problem, Quantity, Vec3};
 
@@ -73,7 +73,7 @@ pub fn resolve(
         }
         _ => return Ok(None),
     };
-    if !sim.bodies().iter().any(|body| body.formulation == "Fluid") {
+    if !sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid) {
         return Err(problem("", "there is no fluid to measure", "add a body with `formulation: Fluid`"));
     }
     Ok(Some(gauge))

@@ -1,6 +1,7 @@
 //! Gauges and fields of flows whose answers are known.
 
-use crate::plugin::{BuildOptions, Registry, build, build_with};
+use crate::assembly::{BuildOptions, build, build_with};
+use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 
 fn text(bodies: &str, velocity: &str, gravity: &str, probes: &str) -> String {

@@ -1,4 +1,4 @@
-//! The stable time step of a total-Lagrangian body.
+//! The stable time step of a body whose reference configuration gives the weights.
 //!
 //! The largest frequency of the scheme is estimated particle by particle from sums over its bonds. Stress gives
 //! `omega^2 = STRESS_FACTOR c_l^2 b_i` with `b_i = (sum_j V_j w_ij) trace(M_i^-1) / d`, which grows where the support is
@@ -16,7 +16,7 @@ const SAFETY: f64 = 0.65;
 
 /// What the stable step of a particle depends on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StepEstimate {
+pub struct StepEstimate {
     /// Squared speed of longitudinal waves c_l^2, m2/s2.
     pub wave: f64,
     /// Sum of the stiffness factors of all bond terms times E / rho, m2/s2.

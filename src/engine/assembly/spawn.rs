@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::builder::SimBuilder;
-use super::plan::BodyPlan;
 use crate::materials::{Law, StateColumns, StateRows};
 use crate::parallel::Split;
+use crate::plugin::BodyPlan;
+use crate::plugin::SimBuilder;
 use crate::scene::Dimension;
 use crate::world::{
     Body, ColumnSet, Force, Mass, Mobility, ParticleId, PhaseId, PhaseView, Position, ReferencePosition,

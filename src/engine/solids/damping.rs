@@ -14,7 +14,6 @@ use glam::DMat3;
 
 use crate::linalg::Sym3;
 use crate::materials::ElasticConstants;
-use crate::world::BodySet;
 
 /// c. A strip of rubber, four particles of the water beside it thick, rings with 0.02 and is quiet with 0.05.
 const SHARE: f64 = 0.1;
@@ -31,8 +30,8 @@ crate::column! {
 /// Account of what the damping takes.
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
-/// Total-Lagrangian bodies whose short steps are damped; who sub-cycles them adds it with [`SimBuilder::extend`](crate::plugin::SimBuilder::extend).
-pub(crate) struct DampedBodies(pub BodySet);
+/// Handed to solids whose short steps are damped, by what sub-cycles them.
+pub(crate) struct DampedInShortSteps;
 
 /// The columns of a body, empty where it is not damped.
 #[derive(Default)]

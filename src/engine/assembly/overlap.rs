@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::plan::BodyPlan;
 use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
+use crate::plugin::BodyPlan;
 use crate::scene::Problem;
 
 /// One problem for every pair of bodies that overlap.

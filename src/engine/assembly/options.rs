@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::record::Existing;
+use crate::record::{Existing, OutputOptions};
 
 /// What is asked of a simulation beside its scene. By default it writes nothing.
 #[derive(Clone, Debug, Default)]
@@ -17,16 +17,4 @@ impl BuildOptions {
         let output = OutputOptions { folder: folder.into(), existing: Existing::Refuse, resume: false };
         Self { output: Some(output) }
     }
-}
-
-/// Where a run writes.
-#[derive(Clone, Debug)]
-pub struct OutputOptions {
-    /// The folder; it is made if it is not there.
-    pub folder: PathBuf,
-    /// What happens to files of an earlier run.
-    pub existing: Existing,
-    /// The run will go on from a checkpoint: its files are continued once
-    /// [`Simulation::restore`](crate::simulation::Simulation::restore) has said where.
-    pub resume: bool,
 }

@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use super::Field;
-use crate::plugin::{BuildOptions, Plugin, Registry, SetupError, SimBuilder, build_with};
+use crate::assembly::{BuildOptions, build_with};
+use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use crate::record::read_series;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;

@@ -1,15 +1,59 @@
 //! What the bodies of a scene repeat themselves by: symmetry planes and the periodic axes of the domain.
 
-use super::images::{MirrorPlane, Repeat};
+use glam::DVec3;
+
+use super::map::Map;
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 
+/// What a body repeats itself by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Repeat {
+    /// A mirror plane at a coordinate, m.
+    Mirror {
+        /// Axis that the plane is normal to.
+        axis: usize,
+        /// Coordinate of the plane, m.
+        at: f64,
+    },
+    /// A period, m, of a body that fills it from `min` on.
+    Period {
+        /// Axis.
+        axis: usize,
+        /// Lower end of the body, m.
+        min: f64,
+        /// Length of the period, m.
+        length: f64,
+    },
+}
+
+impl Repeat {
+    /// The axis along which it repeats.
+    pub fn axis(&self) -> usize {
+        match *self {
+            Self::Mirror { axis, .. } | Self::Period { axis, .. } => axis,
+        }
+    }
+
+    /// The maps to the images of a place that is within reach of a side.
+    pub(super) fn near(&self, place: DVec3, reach: f64) -> [Option<Map>; 2] {
+        match *self {
+            Self::Mirror { axis, at } => {
+                [((place[axis] - at).abs() < reach).then(|| Map::mirror(axis, at)), None]
+            }
+            Self::Period { axis, min, length } => [
+                (place[axis] - min < reach).then(|| Map::shift(axis, length)),
+                (min + length - place[axis] < reach).then(|| Map::shift(axis, -length)),
+            ],
+        }
+    }
+}
+
 /// Repeats of a body with support radius `support`, m.
-pub(super) fn repeats_of(
-    body: &BodyPlan,
-    support: f64,
-    planes: &[MirrorPlane],
-    sim: &SimBuilder<'_>,
-) -> Result<Vec<Repeat>, SetupError> {
+///
+/// # Errors
+/// Planes or periods that are too close for the support.
+pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result<Vec<Repeat>, SetupError> {
+    let planes = sim.mirror_planes();
     let mirrors = planes.iter().filter(|plane| plane.bodies.contains(body.id));
     let mut repeats: Vec<Repeat> =
         mirrors.map(|plane| Repeat::Mirror { axis: plane.axis, at: plane.at }).collect();

@@ -1,7 +1,7 @@
 //! The first look at a scene with a registry: every name is known, and its parameters can be read. All that is misspelt is told at once, before
 //! anything is placed or estimated.
 
-use super::registry::{Kind, Registry};
+use crate::plugin::{Kind, Registry};
 use crate::scene::{Item, Problem, Scene};
 
 /// What is wrong with the names of a scene and their parameters.

@@ -7,12 +7,9 @@
 
 use glam::DMat3;
 
-use super::bonds::Bonds;
-use super::rows::Site;
-
 /// The factors C of the rows that have one, ascending by row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Refits(Vec<(u32, DMat3)>);
+pub struct Refits(Vec<(u32, DMat3)>);
 
 impl Refits {
     /// Those of a checkpoint.
@@ -75,21 +72,6 @@ pub(super) fn to_column(refits: &[(u32, DMat3)], first: usize, stress: &mut [DMa
     for (row, c) in refits {
         stress[*row as usize - first] *= 1.0 / c.determinant();
     }
-}
-
-/// The fit F of one row.
-pub(super) fn fit_of(row: usize, bonds: &Bonds, sites: &[Site]) -> DMat3 {
-    let site = &sites[row];
-    let (x, u) = (site.reference.xyz(), site.displacement.xyz());
-    let mut spread = DMat3::ZERO;
-    let range = bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize;
-    for (&j, &weight) in bonds.neighbors[range.clone()].iter().zip(&bonds.weights[range]) {
-        let other = &sites[j as usize];
-        let arm = (other.reference.xyz() - x) * (f64::from(weight) * other.reference.0[3]);
-        let change = other.displacement.xyz() - u;
-        spread += DMat3::from_cols(change * arm.x, change * arm.y, change * arm.z);
-    }
-    DMat3::IDENTITY + spread * bonds.inverse_moment[row].to_matrix()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::rows::FieldColumns;
-use crate::plugin::SimBuilder;
+use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::Resources;
 use crate::world::{BodyId, ColumnInfo, ColumnSet, MissingColumn, Value, World};
 
@@ -27,7 +27,7 @@ pub struct Field {
     unit: &'static str,
     components: &'static [&'static str],
     needs: Vec<&'static str>,
-    formulation: Option<&'static str>,
+    kind: Option<BodyKind>,
     evaluate: Box<Evaluate>,
 }
 
@@ -63,7 +63,7 @@ impl Field {
         evaluate: impl Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync + 'static,
     ) -> Self {
         let evaluate = Box::new(evaluate);
-        Self { name: name.into(), unit, components, needs, formulation: None, evaluate }
+        Self { name: name.into(), unit, components, needs, kind: None, evaluate }
     }
 
     /// The field that a column is.
@@ -85,10 +85,10 @@ impl Field {
         Self::with_input(column.name, column.unit, column.components, vec![column.name], evaluate)
     }
 
-    /// The same field for bodies of one formulation only.
+    /// The same field for bodies of one kind only.
     #[must_use]
-    pub fn only_for(mut self, formulation: &'static str) -> Self {
-        self.formulation = Some(formulation);
+    pub fn only_for(mut self, kind: BodyKind) -> Self {
+        self.kind = Some(kind);
         self
     }
 
@@ -112,10 +112,9 @@ impl Field {
         &self.needs
     }
 
-    /// Whether bodies of that formulation, with those columns, have the field.
-    pub(super) fn fits(&self, formulation: &str, columns: &ColumnSet) -> bool {
-        self.formulation.is_none_or(|only| only == formulation)
-            && self.needs.iter().all(|name| columns.get(name).is_some())
+    /// Whether bodies of that kind, with those columns, have the field.
+    pub(super) fn fits(&self, kind: BodyKind, columns: &ColumnSet) -> bool {
+        self.kind.is_none_or(|only| only == kind) && self.needs.iter().all(|name| columns.get(name).is_some())
     }
 
     /// Appends the components of the field to `out`, row by row.

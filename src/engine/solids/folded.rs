@@ -1,17 +1,18 @@
-//! The open slots of the hot passes: what is linear in X_ij or x_ij costs nothing per pair.
+//! Terms of plugins that are linear in X_ij or u_ij: they fold into the stress of a particle, `(A_i + A_j) X_ij + (k_i + k_j) u_ij` per pair with the weight of
+//! the formulation, and cost nothing per pair.
 
 use std::ops::Range;
 
 use glam::DMat3;
 
-use super::rows::PairStressRows;
+use super::corrected_stress::CorrectedStressRows;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
 /// A block of particles of one body, after their stress is known and before the pass over pairs that makes the force.
 /// All slices have one length. Beside particles that have failed, displacement gradient and error are those of a fit to the neighbours that
 /// hold, and what a term adds does not act on those that have failed: no bond across a crack carries a force of a term.
-pub struct BondRows<'a> {
+pub struct FoldedRows<'a> {
     /// Deformation gradient F_i.
     pub deformation: &'a [DMat3],
     /// Displacement gradient H_i = F_i - I, with all digits of a small strain.
@@ -21,19 +22,19 @@ pub struct BondRows<'a> {
     /// Stress beyond which a particle that has yielded flows, Pa; infinite for all that has not yielded.
     pub strength: &'a [f64],
     /// What terms leave in columns.
-    pub memory: BondMemory<'a>,
+    pub memory: FoldedMemory<'a>,
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
     pub misfit: &'a [f64],
     /// Reference volume V_i, m3.
     pub volume: &'a [f64],
-    /// Pair stress A_i and bond stiffness k_i, to be added to.
-    pub pair_stress: PairStressRows<'a>,
+    /// Corrected stress A_i and bond stiffness k_i, to be added to.
+    pub stress: CorrectedStressRows<'a>,
 }
 
-impl BondRows<'_> {
+impl FoldedRows<'_> {
     /// Some of the rows.
-    pub(super) fn part(&mut self, rows: Range<usize>) -> BondRows<'_> {
-        BondRows {
+    pub fn part(&mut self, rows: Range<usize>) -> FoldedRows<'_> {
+        FoldedRows {
             deformation: &self.deformation[rows.clone()],
             displacement_gradient: &self.displacement_gradient[rows.clone()],
             modulus: &self.modulus[rows.clone()],
@@ -41,7 +42,7 @@ impl BondRows<'_> {
             memory: self.memory.part(rows.clone()),
             misfit: &self.misfit[rows.clone()],
             volume: &self.volume[rows.clone()],
-            pair_stress: PairStressRows(&mut self.pair_stress.0[rows]),
+            stress: CorrectedStressRows(&mut self.stress.0[rows]),
         }
     }
 }
@@ -49,7 +50,7 @@ impl BondRows<'_> {
 /// What terms leave in columns: modulus and error of the mean deformation of the last step, for terms that become softer on the way, and the fit
 /// for pair terms. A slice is empty where no plugin has added its column.
 #[derive(Default)]
-pub struct BondMemory<'a> {
+pub struct FoldedMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
     pub modulus: &'a mut [f64],
     /// Error of the mean deformation: column [`HourglassMisfit`](crate::world::HourglassMisfit).
@@ -58,11 +59,11 @@ pub struct BondMemory<'a> {
     pub gradient: &'a mut [DMat3],
 }
 
-impl BondMemory<'_> {
+impl FoldedMemory<'_> {
     /// Some of the rows.
-    fn part(&mut self, rows: Range<usize>) -> BondMemory<'_> {
+    pub(super) fn part(&mut self, rows: Range<usize>) -> FoldedMemory<'_> {
         let Self { modulus, misfit, gradient } = self;
-        BondMemory {
+        FoldedMemory {
             modulus: modulus.get_mut(rows.clone()).unwrap_or_default(),
             misfit: misfit.get_mut(rows.clone()).unwrap_or_default(),
             gradient: gradient.get_mut(rows).unwrap_or_default(),
@@ -81,44 +82,47 @@ impl BondMemory<'_> {
     }
 }
 
-/// What a bond term tells of the energy of a block, J.
+/// What a folded term tells of the energy of a block, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BondEnergy {
+pub struct FoldedEnergy {
     /// Energy that it stores now.
     pub stored: f64,
     /// Energy that it has given up in this step without work, because it has become softer.
     pub released: f64,
 }
 
-/// A force term of total-Lagrangian bodies that is linear in the pair vectors: it adds to the pair stress A_i and to
-/// the bond stiffness k_i of every particle, and the engine's own pass over pairs applies it (see
-/// [`PairStress`](super::PairStress)).
-pub trait BondTerm: Send + Sync + 'static {
+/// A force term of solids that is linear in the pair vectors: it adds to the corrected stress A_i and to the bond stiffness k_i of every particle, and the
+/// formulation's own pass over pairs applies it (see [`CorrectedStress`](super::CorrectedStress)).
+pub trait FoldedTerm: Send + Sync + 'static {
     /// Adds the term to a block; returns its energy there.
-    fn add(&self, rows: &mut BondRows<'_>) -> BondEnergy;
+    fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy;
 
     /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
     /// step follows from it.
     fn stiffness_factor(&self) -> f64;
 }
 
-/// A bond term with the bodies it acts on; plugins add it with [`SimBuilder::extend`].
-pub struct BodyBondTerm {
-    /// Bodies.
-    pub bodies: BodySet,
+/// A folded term as a plugin hands it in for bodies.
+pub struct FoldedTermOfBodies {
     /// Account of the energy ledger that holds what the term stores; none if it stores nothing.
     pub account: Option<String>,
     /// Account of the energy that the term has given up without work; none if it never does.
     pub released: Option<String>,
     /// The term.
-    pub term: Box<dyn BondTerm>,
+    pub term: Box<dyn FoldedTerm>,
+}
+
+impl FoldedTermOfBodies {
+    /// Adds the term to bodies. A body whose formulation takes no such terms is an error of the scene.
+    pub fn add(self, bodies: BodySet, sim: &mut SimBuilder<'_>) {
+        sim.extend_bodies(bodies, "a term that folds into the internal force", self);
+    }
 }
 
 impl SimBuilder<'_> {
-    /// Adds a force term that is linear in the pair vectors to total-Lagrangian bodies. The energy that it stores goes
-    /// to the account of that name.
-    pub fn add_bond_term(&mut self, bodies: BodySet, account: &str, term: impl BondTerm) {
+    /// Adds a force term that is linear in the pair vectors to bodies. The energy that it stores goes to the account of that name.
+    pub fn add_folded_term(&mut self, bodies: BodySet, account: &str, term: impl FoldedTerm) {
         let account = Some(account.to_owned());
-        self.extend(BodyBondTerm { bodies, account, released: None, term: Box::new(term) });
+        FoldedTermOfBodies { account, released: None, term: Box::new(term) }.add(bodies, self);
     }
 }

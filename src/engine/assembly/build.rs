@@ -2,16 +2,13 @@
 
 use std::any::Any;
 
-use super::builder::SimBuilder;
 use super::memory;
 use super::names;
 use super::options::BuildOptions;
 use super::overlap;
-use super::plan::BodyPlan;
-use super::registry::{FormulationEntry, Kind, Registry};
-use super::setup::Setup;
 use super::spawn;
 use crate::materials::{Law, Material};
+use crate::plugin::{BodyPlan, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::{OutputPlan, Recorder};
 use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
 use crate::schedule::{Resources, Schedule};
@@ -62,6 +59,7 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);
+    crate::solids::add_fields(&mut sim);
     assemble(scene, parsed, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);
@@ -73,6 +71,7 @@ fn build_in(
     crate::record::watchdog::add_system(&mut sim);
     let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;
     let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
+    sim.refuse_leftovers()?;
     let world = spawn::spawn(&sim);
     let mut resources = Resources::default();
     let held = BodySet::new(sim.held.take());
@@ -100,10 +99,10 @@ fn build_in(
 }
 
 /// A fault that belongs to no item, such as one of a set-up step.
-fn at_scene(scene: &Scene, error: super::SetupError) -> Vec<Problem> {
+fn at_scene(scene: &Scene, error: SetupError) -> Vec<Problem> {
     match error {
-        super::SetupError::Problems(problems) => problems,
-        super::SetupError::Parameter { field, message, help } => {
+        SetupError::Problems(problems) => problems,
+        SetupError::Parameter { field, message, help } => {
             let place =
                 if field.is_empty() && scene.bodies.len() == 1 { "bodies[0]".to_owned() } else { field };
             let problem = Problem::new(message).help(help);
@@ -175,11 +174,14 @@ fn place_bodies<'r>(
         }
         let start = lens[phase];
         lens[phase] += sites.len();
-        bodies.push(BodyPlan {
+        let mut plan = BodyPlan {
             id: BodyId(k),
             name: body.name.clone(),
             phase: PhaseId(phase),
             formulation: name,
+            kind: formulation.0.kind,
+            offers: formulation.0.offers,
+            support: None,
             rows: start..lens[phase],
             spacing: body.spacing,
             material_name: body.material.clone(),
@@ -187,7 +189,9 @@ fn place_bodies<'r>(
             sites,
             bounds,
             velocity: body.velocity,
-        });
+        };
+        plan.support = (formulation.0.support)(&*formulation.1, &plan);
+        bodies.push(plan);
         parsed.push(formulation);
     }
     if problems.is_empty() { Ok((bodies, phases, parsed)) } else { Err(problems) }
@@ -208,30 +212,32 @@ fn build_plugins(
     let mut problems = Vec::new();
     let mut recorder_items = Vec::new();
     let mut build = |kind, item: &Item, scope, sim: &mut SimBuilder<'_>| {
-        sim.scope = scope;
+        (sim.scope, sim.own_body) = scope;
+        sim.handed.by = Some(item.clone());
         match registry.build_plugin(kind, item, sim) {
             Ok(reference) => sim.cite(reference),
             Err(found) => problems.extend(found),
         }
-        recorder_items.resize(sim.count_extensions::<Box<dyn Recorder>>(), item.clone());
+        recorder_items.resize(sim.handed.count::<Box<dyn Recorder>>(), item.clone());
+        sim.handed.by = None;
     };
     for of_materials in [true, false] {
         let due = |item: &&Item| registry.changes_materials(item) == of_materials;
         for (k, body) in scene.bodies.iter().enumerate() {
             for item in body.plugins.iter().filter(due) {
-                build(Kind::Plugin, item, BodySet::new([BodyId(k)]), sim);
+                build(Kind::Plugin, item, (BodySet::new([BodyId(k)]), Some(BodyId(k))), sim);
             }
         }
         for item in scene.plugins.iter().filter(due) {
             let own =
                 |body: &&crate::scene::Body| !body.plugins.iter().any(|other| other.name() == item.name());
             let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
-            build(Kind::Plugin, item, BodySet::new(ids), sim);
+            build(Kind::Plugin, item, (BodySet::new(ids), None), sim);
         }
     }
     let all = BodySet::new((0..scene.bodies.len()).map(BodyId));
     for item in &scene.conditions {
-        build(Kind::Condition, item, all.clone(), sim);
+        build(Kind::Condition, item, (all.clone(), None), sim);
     }
     if problems.is_empty() { Ok(recorder_items) } else { Err(problems) }
 }
@@ -246,13 +252,12 @@ fn assemble(scene: &Scene, parsed: Vec<Parsed<'_>>, sim: &mut SimBuilder<'_>) ->
     }
     for (entry, bodies) in groups {
         let first = bodies[0].0;
+        sim.own_body = None;
         sim.scope = BodySet::new(bodies.iter().map(|(id, _)| *id));
         sim.cite(entry.reference);
         let item = &scene.bodies[first.0].formulation;
         (entry.assemble)(bodies, sim).map_err(|error| match error {
-            super::SetupError::Parameter { ref field, .. } if field.starts_with("bodies[") => {
-                at_scene(scene, error)
-            }
+            SetupError::Parameter { ref field, .. } if field.starts_with("bodies[") => at_scene(scene, error),
             error => error.into_problems(item),
         })?;
     }

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use super::chosen::{BodyField, ChosenField};
 use super::field::Field;
 use super::{deformation, motion, stress};
-use crate::plugin::SimBuilder;
+use crate::plugin::{BodyKind, SimBuilder};
 use crate::scene::{Problem, unknown};
 use crate::world::{BodyId, BodySet, ColumnSet};
 
 /// What decides which fields the particles of a body have.
 struct BodyColumns {
     name: String,
-    formulation: &'static str,
+    kind: BodyKind,
     columns: ColumnSet,
 }
 
@@ -37,7 +37,7 @@ impl FieldTable {
             .iter()
             .map(|body| BodyColumns {
                 name: body.name.clone(),
-                formulation: body.formulation,
+                kind: body.kind,
                 columns: sim.columns(body.phase).clone(),
             })
             .collect();
@@ -87,7 +87,7 @@ impl FieldTable {
     /// Names of the fields that at least one of the bodies has.
     pub fn names(&self, among: &BodySet) -> Vec<&str> {
         let has = |field: &Field| {
-            among.iter().any(|id| field.fits(self.bodies[id.0].formulation, &self.bodies[id.0].columns))
+            among.iter().any(|id| field.fits(self.bodies[id.0].kind, &self.bodies[id.0].columns))
         };
         let mut names: Vec<&str> =
             self.fields.iter().filter(|field| has(field)).map(|field| field.name()).collect();
@@ -101,8 +101,8 @@ impl FieldTable {
     }
 
     fn find(&self, name: &str, body: usize) -> Option<usize> {
-        let BodyColumns { formulation, columns, .. } = &self.bodies[body];
-        self.fields.iter().position(|field| field.name() == name && field.fits(formulation, columns))
+        let BodyColumns { kind, columns, .. } = &self.bodies[body];
+        self.fields.iter().position(|field| field.name() == name && field.fits(*kind, columns))
     }
 
     fn shape(&self, k: usize) -> Shape<'_> {

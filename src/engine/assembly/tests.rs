@@ -4,7 +4,8 @@
 
 use std::path::PathBuf;
 
-use super::{Registry, build};
+use super::build;
+use crate::plugin::Registry;
 use crate::scene::load;
 
 fn marked<'a>(text: &'a str, mark: &'a str) -> impl Iterator<Item = &'a str> {

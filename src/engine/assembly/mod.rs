@@ -1,0 +1,16 @@
+//! From a scene to a simulation, on top of everything else: materials, particles, plugins, systems, columns.
+
+mod build;
+#[cfg(test)]
+mod handed_tests;
+mod memory;
+mod names;
+mod options;
+mod overlap;
+mod spawn;
+mod standard;
+#[cfg(test)]
+mod tests;
+
+pub use build::{build, build_with};
+pub use options::BuildOptions;

@@ -1,0 +1,36 @@
+//! What the engine itself brings under a name.
+
+use crate::materials::{
+    Al6061T6, Copper, DecoupledNeoHookean, Fluid, Hypoelastic, J2, JohnsonCook, NeoHookean, PMMA, Rubber,
+    StVenantKirchhoff, Steel, Steel42CrMo4,
+};
+use crate::plugin::Registry;
+
+impl Registry {
+    /// What the engine itself brings: materials, formulations, conditions and contact laws, no plugin.
+    pub fn standard() -> Self {
+        Self::default()
+            .with(register_materials)
+            .with(crate::formulations::register)
+            .with(crate::boundaries::register)
+            .with(crate::contact::register)
+    }
+}
+
+/// Registers all materials of the engine.
+fn register_materials(registry: &mut Registry) {
+    registry
+        .material::<StVenantKirchhoff>()
+        .material::<NeoHookean>()
+        .material::<DecoupledNeoHookean>()
+        .material::<Fluid>()
+        .material::<J2>()
+        .material::<JohnsonCook>()
+        .material::<Hypoelastic>()
+        .material::<Al6061T6>()
+        .material::<PMMA>()
+        .material::<Copper>()
+        .material::<Steel>()
+        .material::<Steel42CrMo4>()
+        .material::<Rubber>();
+}

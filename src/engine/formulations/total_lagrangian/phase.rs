@@ -1,0 +1,153 @@
+//! The packed rows of the phase, and what the rest of the engine sees of them.
+
+use glam::{DMat3, DVec3};
+
+use super::bonds::Bonds;
+use super::cracks::Cracks;
+use super::frame::{Frame, frame_of};
+use super::rows::Site;
+use crate::kernels::Kernel;
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Picked, for_each_block, run_hot};
+use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
+use crate::symmetry::Ghosts;
+use crate::world::{BodyId, Mobility, Velocity};
+
+/// What the systems of the formulation share.
+pub(super) struct PackedRows {
+    pub bonds: Bonds,
+    pub ghosts: Ghosts,
+    /// Where the reference positions of sites are measured from, m.
+    pub origin: DVec3,
+    pub sites: Vec<Site>,
+    pub stresses: Vec<CorrectedStress>,
+    /// The part of the force on each particle that comes from its own corrected stress, over its volume.
+    pub self_force: Vec<DVec3>,
+    /// Of every body, in the order of rows.
+    pub frames: Vec<Frame>,
+    pub cracks: Cracks,
+    pub kernels: Vec<BodyKernel>,
+    /// Stable step of each body in its reference configuration, s.
+    pub stable_step: Vec<f64>,
+}
+
+/// The kernel of a body.
+pub(super) struct BodyKernel {
+    pub body: BodyId,
+    pub kernel: Kernel,
+    /// Support radius, m, where all particles have the same.
+    pub support: Option<f64>,
+}
+
+impl PackedRows {
+    /// Fills the sites of the ghosts.
+    pub fn fill_ghost_sites(&mut self) {
+        let Self { ghosts, sites, origin, .. } = self;
+        ghosts.fill(sites, |ghost, site: &Site| {
+            let reference = ghost.map.place(site.reference.xyz() + *origin) - *origin;
+            Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
+        });
+    }
+
+    /// Fills the stresses of the ghosts, which have their sites.
+    pub fn fill_ghost_stresses(&mut self) {
+        let Self { ghosts, frames, sites, stresses, .. } = self;
+        ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
+            let signs = ghost.map.signs;
+            // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
+            let frame = &frames[frame_of(frames, ghost.source)];
+            let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
+            let mut stress = CorrectedStress::default();
+            for (axis, column) in stress.columns.iter_mut().enumerate() {
+                let last = own.columns[axis].0[3];
+                let plain = own.columns[axis].xyz() - own.stiffness() * moved[axis];
+                // The last lane is no component of A: the bond stiffness keeps its sign.
+                *column = Lanes4::new(plain * signs * signs[axis], last);
+            }
+            frame.complete(&mut stress, &sites[ghost.row]);
+            stress
+        });
+    }
+}
+
+impl SolidPhase for PackedRows {
+    fn ghosts(&self) -> &Ghosts {
+        &self.ghosts
+    }
+
+    fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
+        for (j, weight) in self.bonds.row(row).filter(|(j, _)| self.sites[*j].is_present()) {
+            f(j, f64::from(weight));
+        }
+    }
+
+    fn local_motion(
+        &self,
+        row: usize,
+        velocity: &[Velocity],
+        mobility: Mobility,
+        moving: bool,
+    ) -> LocalMotion {
+        let inverse = &self.bonds.inverse_moment[row];
+        let sum = if moving { run_hot(RateSum { packed: self, row, velocity }) } else { DMat3::ZERO };
+        LocalMotion {
+            velocity: velocity[row].0,
+            rate: sum * inverse.to_matrix(),
+            mobility: mobility.0,
+            own: *inverse * self.bonds.reach[row],
+        }
+    }
+
+    fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
+        let Self { bonds, sites, stresses, self_force, .. } = self;
+        let picked = Picked::new(nodes, &mut stresses[first..]);
+        let rows = (picked, Picked::new(nodes, &mut self_force[first..]), couples);
+        type Rows<'a> = (Picked<'a, CorrectedStress>, Picked<'a, DVec3>, &'a [DMat3]);
+        for_each_block(rows, &mut Vec::new(), &|_, (mut stresses, mut self_force, couples): Rows<'_>| {
+            for (k, couple) in couples.iter().enumerate().filter(|(_, couple)| **couple != DMat3::ZERO) {
+                let row = first + self_force.number(k);
+                let site = &sites[row].reference;
+                let stress = *couple * bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
+                stresses.row(k).add(&stress, site.xyz());
+                *self_force.row(k) += stress * bonds.reach[row];
+            }
+        });
+    }
+
+    fn renew_ghosts(&mut self) {
+        self.fill_ghost_stresses();
+    }
+}
+
+/// The sum of V_j w_ij v_ij (x) X_ij over the neighbours of a particle.
+struct RateSum<'a> {
+    packed: &'a PackedRows,
+    row: usize,
+    velocity: &'a [Velocity],
+}
+
+impl HotLoop for RateSum<'_> {
+    type Output = DMat3;
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) -> DMat3 {
+        let Self { packed, row, velocity } = self;
+        let (bonds, sites, ghosts) = (&packed.bonds, &packed.sites, &packed.ghosts);
+        let (own, v) = (sites[row].reference, Lanes4::new(velocity[row].0, 0.0));
+        let mut sum = [Lanes4::ZERO; 3];
+        for k in bonds.offsets[row] as usize..bonds.offsets[row + 1] as usize {
+            let j = bonds.neighbors[k] as usize;
+            let other = sites[j].reference;
+            let there = match velocity.get(j) {
+                Some(there) if ghosts.is_empty() => there.0,
+                _ => velocity[ghosts.source(j)].0 * ghosts.mirror(j).unwrap_or(DVec3::ONE),
+            };
+            let v_ij = a.minus(Lanes4::new(there, 0.0), v);
+            let weighted = a.scale(f64::from(bonds.weights[k]) * other.0[3], v_ij);
+            let x_ij = a.minus(other, own);
+            for (axis, sum) in sum.iter_mut().enumerate() {
+                *sum = a.scale_add(x_ij.0[axis], weighted, *sum);
+            }
+        }
+        DMat3::from_cols(sum[0].xyz(), sum[1].xyz(), sum[2].xyz())
+    }
+}

@@ -1,0 +1,107 @@
+//! The system of the first pass over all bodies of the phase.
+
+use super::cracks::EdgeRows;
+use super::deformation::{DeformationPass, DeformationRows};
+use super::frame::Frame;
+use super::phase::PackedRows;
+use super::removed::RemovedRows;
+use super::rows::pack;
+use crate::schedule::{Run, Step, StepError};
+use crate::solids::{SolidBodies, SolidColumns, SolidPart};
+use crate::world::{Damage, MissingColumn, PhaseId, Removed, Velocity, World};
+
+/// The system.
+pub(super) struct Deformation {
+    pub(super) phase: PhaseId,
+    pub(super) plane: bool,
+    pub(super) solids: SolidBodies,
+    pub(super) removed: RemovedRows,
+    /// Rows that had failed when the step began, and have not been removed; ascending.
+    pub(super) failed: Vec<u32>,
+}
+
+impl Deformation {
+    pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies) -> Self {
+        Self { phase, plane, solids, removed: RemovedRows::default(), failed: Vec::new() }
+    }
+
+    /// Takes up what has failed in the last step.
+    fn take_up_failed(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        // Without terms on bonds, nothing of them crosses a crack.
+        let damage = view.read::<Damage>().ok().filter(|_| self.solids.has_terms());
+        let Some(damage) = damage else { return Ok(()) };
+        let removed = view.read::<Removed>()?;
+        let PackedRows { bonds, ghosts, cracks, .. } = packed;
+        cracks.take_up(&mut self.failed, &damage, &removed, bonds, ghosts);
+        Ok(())
+    }
+
+    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    pub(super) fn pass(
+        &mut self,
+        world: &World,
+        packed: &mut PackedRows,
+        (dt, is_short): (f64, bool),
+    ) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        pack(&view, packed.origin, self.removed.rows(), &mut packed.sites[..view.len()])?;
+        packed.fill_ghost_sites();
+        let mut columns = SolidColumns::of(&view)?;
+        let velocity = view.read::<Velocity>()?;
+        let PackedRows { bonds, ghosts, sites, stresses, self_force, frames, cracks, .. } = &mut *packed;
+        frames.clear();
+        self.solids.begin();
+        for k in 0..self.solids.len() {
+            let rows = world.body(self.solids.id(k)).rows.clone();
+            let middle = rows.start + rows.len() / 2;
+            let frame = Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
+            frames.push(frame);
+            let (marks, plane) = (&cracks.marks[..], self.plane);
+            let pass =
+                DeformationPass { bonds, ghosts, sites, frame: &frame, marks, velocity: &velocity, plane };
+            let own = DeformationRows {
+                stresses: &mut stresses[rows.clone()],
+                self_force: &mut self_force[rows.clone()],
+                edges: EdgeRows::of(&mut cracks.edges, rows.start, rows.len()),
+            };
+            let part = SolidPart { dt, is_short, refits: Some(self.removed.refits()) };
+            self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
+                pass.run(law, rows, own, block)
+            });
+        }
+        packed.fill_ghost_stresses();
+        packed.cracks.settle();
+        Ok(())
+    }
+}
+
+impl Run for Deformation {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let resources = step.resources;
+        let mut packed = resources.solid_rows_mut::<PackedRows>(self.phase);
+        self.take_up_restored(step.world, &mut packed)?;
+        self.take_up_failed(step.world, &mut packed)?;
+        if !self.take_up_removed(step, &mut packed)? {
+            self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+            self.solids.book(step)?;
+        }
+        self.solids.limit(step, &packed.stable_step)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let factors = self.solids.stretch_factors();
+        postcard::to_stdvec(&(factors, self.removed.rows(), self.removed.refits().entries(), &self.failed))
+            .unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        type Saved = (Vec<f64>, Vec<u32>, Vec<(u32, glam::DMat3)>, Vec<u32>);
+        let Ok((factors, removed, refits, failed)) = postcard::from_bytes::<Saved>(state) else {
+            return false;
+        };
+        self.removed = RemovedRows::restored(removed, refits);
+        self.failed = failed;
+        self.solids.restore_stretch_factors(&factors)
+    }
+}

@@ -1,0 +1,155 @@
+//! What plugins hand to the rest of the engine while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
+//! Terms are given out by body, and what nobody has taken in the end is an error.
+
+use std::any::{Any, TypeId, type_name};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::error::SetupError;
+use super::plan::BodyPlan;
+use crate::scene::{Item, Place, Problem};
+use crate::world::{BodyId, BodySet};
+
+/// A value that was handed to the formulations of bodies, with those of the bodies that the taker asked for.
+pub struct ForBodies<T> {
+    /// Bodies of the taker.
+    pub bodies: BodySet,
+    /// The value; formulations of other bodies may have it, too.
+    pub value: Arc<T>,
+}
+
+/// A value that concerns the whole simulation.
+struct Whole {
+    by: Option<Item>,
+    value: Box<dyn Any>,
+}
+
+/// A value for bodies.
+struct Term {
+    by: Option<Item>,
+    /// What it is, for errors: `a pair term`.
+    what: &'static str,
+    /// Bodies whose formulations have not taken it.
+    left: BodySet,
+    value: Arc<dyn Any + Send + Sync>,
+}
+
+/// All that was handed in and not yet taken. Values of one type keep the order in which they came.
+#[derive(Default)]
+pub(crate) struct HandedIn {
+    /// The plugin, condition or formulation that is being built.
+    pub by: Option<Item>,
+    whole: BTreeMap<TypeId, (&'static str, Vec<Whole>)>,
+    terms: BTreeMap<TypeId, Vec<Term>>,
+}
+
+impl HandedIn {
+    pub fn put<T: 'static>(&mut self, value: T) {
+        let (_, values) = self.whole.entry(TypeId::of::<T>()).or_insert((type_name::<T>(), Vec::new()));
+        values.push(Whole { by: self.by.clone(), value: Box::new(value) });
+    }
+
+    pub fn count<T: 'static>(&self) -> usize {
+        self.whole.get(&TypeId::of::<T>()).map_or(0, |(_, values)| values.len())
+    }
+
+    pub fn take<T: 'static>(&mut self) -> Vec<T> {
+        let all = self.whole.remove(&TypeId::of::<T>()).map(|(_, values)| values).unwrap_or_default();
+        all.into_iter().filter_map(|whole| whole.value.downcast().ok()).map(|boxed| *boxed).collect()
+    }
+
+    pub fn all<T: 'static>(&self) -> impl Iterator<Item = &T> {
+        let all = self.whole.get(&TypeId::of::<T>()).into_iter().flat_map(|(_, values)| values);
+        all.filter_map(|whole| whole.value.downcast_ref())
+    }
+
+    pub fn put_for<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
+        let term = Term { by: self.by.clone(), what, left: bodies, value: Arc::new(value) };
+        self.terms.entry(TypeId::of::<T>()).or_default().push(term);
+    }
+
+    /// Takes the values of a type for the bodies that `wanted` accepts; the rest is left for others.
+    pub fn take_for<T: Send + Sync + 'static>(
+        &mut self,
+        wanted: impl Fn(BodyId) -> bool,
+    ) -> Vec<ForBodies<T>> {
+        let mut taken = Vec::new();
+        for term in self.terms.get_mut(&TypeId::of::<T>()).into_iter().flatten() {
+            let bodies = BodySet::new(term.left.iter().filter(|&id| wanted(id)));
+            if bodies.is_empty() {
+                continue;
+            }
+            term.left = BodySet::new(term.left.iter().filter(|&id| !wanted(id)));
+            if let Ok(value) = Arc::clone(&term.value).downcast() {
+                taken.push(ForBodies { bodies, value });
+            }
+        }
+        taken
+    }
+
+    /// What is wrong with what nobody has taken.
+    pub fn problems(&self, bodies: &[BodyPlan]) -> Vec<Problem> {
+        let place = |by: &Option<Item>, message: String, help: String| match by {
+            Some(item) => item.problem("", message, help),
+            None => Problem { at: Place::Scene, ..Problem::new(message).help(help) },
+        };
+        let terms = self.terms.values().flatten().flat_map(|term| {
+            term.left.iter().map(|id| {
+                let BodyPlan { name, formulation, .. } = &bodies[id.0];
+                let message = format!(
+                    "body `{name}` was given {}, which bodies with the formulation `{formulation}` do not take",
+                    term.what
+                );
+                place(&term.by, message, "leave it out for this body, or give the body another formulation".to_owned())
+            })
+        });
+        let whole = self.whole.values().flat_map(|(name, values)| {
+            values.iter().map(move |whole| {
+                let help = "this is a fault of the program, not of the scene".to_owned();
+                place(&whole.by, format!("nothing has taken the `{name}` that was added"), help)
+            })
+        });
+        terms.chain(whole).collect()
+    }
+}
+
+impl super::SimBuilder<'_> {
+    /// Hands a value to whatever part of the engine takes values of its type. What nobody takes is an error of the scene.
+    pub fn extend<T: 'static>(&mut self, value: T) {
+        self.handed.put(value);
+    }
+
+    /// Takes all values of type `T`, in the order in which they were added.
+    pub fn take_extensions<T: 'static>(&mut self) -> Vec<T> {
+        self.handed.take()
+    }
+
+    /// The values of type `T` that nobody has taken yet.
+    pub fn extensions<T: 'static>(&self) -> impl Iterator<Item = &T> {
+        self.handed.all()
+    }
+
+    /// Hands a value to the formulations of these bodies; `what` names it in errors: `a pair term`. A body whose formulation does not take it
+    /// is an error of the scene.
+    pub fn extend_bodies<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
+        self.handed.put_for(bodies, what, value);
+    }
+
+    /// Takes the values of type `T` that were handed to these bodies, in the order in which they were added.
+    pub fn take_for<T: Send + Sync + 'static>(&mut self, bodies: &BodySet) -> Vec<ForBodies<T>> {
+        self.handed.take_for(|id| bodies.contains(id))
+    }
+
+    /// # Errors
+    /// Something was handed in that nobody has taken.
+    pub(crate) fn refuse_leftovers(&self) -> Result<(), Vec<Problem>> {
+        let problems = self.handed.problems(&self.bodies);
+        if problems.is_empty() { Ok(()) } else { Err(problems) }
+    }
+}
+
+impl From<Vec<Problem>> for SetupError {
+    fn from(problems: Vec<Problem>) -> Self {
+        Self::Problems(problems)
+    }
+}

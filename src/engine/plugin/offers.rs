@@ -1,0 +1,109 @@
+//! What the bodies of a formulation are, and what they take from plugins, conditions and contacts.
+
+use super::builder::SimBuilder;
+use super::error::SetupError;
+use super::plan::BodyPlan;
+use crate::world::BodySet;
+
+/// What the bodies of a formulation are to the rest of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A deformable solid: particles with a deformation gradient and a stress.
+    Solid,
+    /// A fluid: particles with density and pressure.
+    Fluid,
+    /// Boundary particles of a fluid, which move as they are told.
+    Boundary,
+    /// A body that moves as a whole.
+    Rigid,
+}
+
+impl BodyKind {
+    /// The kind in words, in the plural.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Solid => "deformable solids",
+            Self::Fluid => "fluids",
+            Self::Boundary => "walls",
+            Self::Rigid => "rigid bodies",
+        }
+    }
+}
+
+/// Something that a formulation may take for its bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Offer {
+    /// Terms that are a function of one pair ([`PairTerm`](crate::pair::PairTerm)).
+    PairTerms,
+    /// Terms that fold into the pass of the internal force: hourglass control.
+    FoldedTerms,
+    /// Mirror images across symmetry planes.
+    MirrorImages,
+    /// Contact with other bodies.
+    Contact,
+    /// Contact of a body with itself.
+    SelfContact,
+    /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they stay spheres.
+    DeformedContact,
+}
+
+impl Offer {
+    /// All that a formulation of solids can take.
+    pub const OF_SOLIDS: &'static [Self] = &[
+        Self::PairTerms,
+        Self::FoldedTerms,
+        Self::MirrorImages,
+        Self::Contact,
+        Self::SelfContact,
+        Self::DeformedContact,
+    ];
+
+    /// What it is, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::PairTerms => "pair terms",
+            Self::FoldedTerms => "terms that fold into the internal force",
+            Self::MirrorImages => "mirror images",
+            Self::Contact => "contact",
+            Self::SelfContact => "contact of a body with itself",
+            Self::DeformedContact => "contact with deformed particles",
+        }
+    }
+}
+
+impl SimBuilder<'_> {
+    /// The bodies of the scope of that kind.
+    ///
+    /// # Errors
+    /// The plugin stands in a body of another kind, or there is no body of this kind.
+    pub fn scope_of(&self, kind: BodyKind) -> Result<BodySet, SetupError> {
+        self.scope_where(&|body| body.kind == kind, &|| format!("acts on {}", kind.words()))
+    }
+
+    /// The bodies of the scope whose formulations take what is offered.
+    ///
+    /// # Errors
+    /// The plugin stands in a body that does not, or there is no body that does.
+    pub fn scope_offering(&self, offer: Offer) -> Result<BodySet, SetupError> {
+        self.scope_where(&|body| body.offers(offer), &|| format!("needs bodies that take {}", offer.words()))
+    }
+
+    fn scope_where(
+        &self,
+        fits: &dyn Fn(&BodyPlan) -> bool,
+        what: &dyn Fn() -> String,
+    ) -> Result<BodySet, SetupError> {
+        let fitting = BodySet::new(self.scope().iter().filter(|&id| fits(self.body(id))));
+        if !fitting.is_empty() || self.scope().is_empty() {
+            return Ok(fitting);
+        }
+        let message = match self.own_body {
+            Some(id) => {
+                let BodyPlan { name, formulation, .. } = self.body(id);
+                format!("this {}, and body `{name}` has the formulation `{formulation}`", what())
+            }
+            None => format!("this {}, and the scene has none", what()),
+        };
+        Err(SetupError::parameter("", message, "leave it out"))
+    }
+}

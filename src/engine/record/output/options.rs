@@ -1,0 +1,17 @@
+//! Where a run writes.
+
+use std::path::PathBuf;
+
+use crate::record::Existing;
+
+/// Where a run writes.
+#[derive(Clone, Debug)]
+pub struct OutputOptions {
+    /// The folder; it is made if it is not there.
+    pub folder: PathBuf,
+    /// What happens to files of an earlier run.
+    pub existing: Existing,
+    /// The run will go on from a checkpoint: its files are continued once
+    /// `Simulation::restore` has said where.
+    pub resume: bool,
+}

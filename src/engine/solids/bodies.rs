@@ -1,0 +1,317 @@
+//! The bodies of a solid formulation: each with its law, its folded terms, and the energies that they report.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::constitutive::{Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
+use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
+use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
+use super::refit::Refits;
+use super::stable_step::StepEstimate;
+use super::stretches;
+use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows};
+use crate::parallel::{Split, for_each_block};
+use crate::plugin::{ForBodies, SetupError, SimBuilder};
+use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
+use crate::world::{
+    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
+    HourglassModulus, PhaseId, PhaseView, PiolaStress,
+};
+
+/// A body of a solid formulation.
+pub struct SolidBody {
+    /// Body.
+    pub id: BodyId,
+    /// Law of its material.
+    pub law: Arc<dyn SolidLaw>,
+    /// The state columns of its law.
+    state: StateColumns,
+    /// What its stable step depends on.
+    pub estimate: StepEstimate,
+    /// Its folded terms.
+    terms: Vec<usize>,
+    /// Whether its short steps are damped.
+    damped: bool,
+    /// Factor of the stable step by the stretches of the body.
+    stretch_factor: f64,
+}
+
+/// Steps between two looks at the stretches: they change slowly against the stable step.
+const STRETCH_INTERVAL: u64 = 10;
+
+/// All bodies of a solid formulation, in the order of the scene.
+pub struct SolidBodies {
+    phase: PhaseId,
+    bodies: Vec<SolidBody>,
+    terms: Vec<Arc<FoldedTermOfBodies>>,
+    /// Columns of state beside deformation gradient and stress.
+    columns: ColumnSet,
+    /// What the last pass has found in each body.
+    found: Vec<SolidSum>,
+    sums: Vec<SolidSum>,
+}
+
+/// The part of a step that a pass belongs to.
+#[derive(Clone, Copy)]
+pub struct SolidPart<'a> {
+    /// Length of the step, s; zero before the first, and where a pass is repeated: states of laws then stay.
+    pub dt: f64,
+    /// Whether the step is one of several short ones in a long one.
+    pub is_short: bool,
+    /// Measures of deformation that outlast cuts in the neighbourhood, for formulations that cut.
+    pub refits: Option<&'a Refits>,
+}
+
+/// Fills an unused slot of the list of terms.
+struct NoTerm;
+
+impl FoldedTerm for NoTerm {
+    fn add(&self, _: &mut FoldedRows<'_>) -> FoldedEnergy {
+        FoldedEnergy::default()
+    }
+
+    fn stiffness_factor(&self) -> f64 {
+        0.0
+    }
+}
+
+impl SolidBodies {
+    /// Takes what plugins have handed in for the bodies of a formulation, which are of one phase, and gives these the columns that go with it.
+    ///
+    /// # Errors
+    /// A body whose material is not a solid, or one with too many terms.
+    pub fn new(ids: &[BodyId], sim: &mut SimBuilder<'_>) -> Result<Self, SetupError> {
+        let own = BodySet::new(ids.iter().copied());
+        let terms: Vec<ForBodies<FoldedTermOfBodies>> = sim.take_for(&own);
+        let damped: Vec<ForBodies<DampedInShortSteps>> = sim.take_for(&own);
+        damped.iter().for_each(|ForBodies { bodies, .. }| {
+            sim.add_column_to::<DampedStrain>(bodies);
+            sim.add_column_to::<DampingStress>(bodies);
+        });
+        let is_damped = |id| damped.iter().any(|damped| damped.bodies.contains(id));
+        let body = |&id: &BodyId| {
+            let body = SolidBody::new(id, sim, &terms, is_damped(id));
+            body.map_err(|error| error.of_formulation(id))
+        };
+        let bodies = ids.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+        let phase = sim.body(ids[0]).phase;
+        let mut columns = ColumnSet::default();
+        bodies.iter().for_each(|body| body.law.state(&mut columns));
+        if sim.columns(phase).get(HourglassModulus::NAME).is_some() {
+            columns.add::<HourglassModulus>().add::<HourglassMisfit>();
+        }
+        if !damped.is_empty() {
+            columns.add::<DampedStrain>().add::<DampingStress>();
+        }
+        if sim.columns(phase).get(HourglassGradient::NAME).is_some() {
+            columns.add::<HourglassGradient>();
+        }
+        let terms = terms.into_iter().map(|term| term.value).collect();
+        Ok(Self { phase, bodies, terms, columns, found: Vec::new(), sums: Vec::new() })
+    }
+
+    /// The bodies.
+    pub fn iter(&self) -> impl Iterator<Item = &SolidBody> {
+        self.bodies.iter()
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// Body `k`.
+    pub fn id(&self, k: usize) -> BodyId {
+        self.bodies[k].id
+    }
+
+    /// What the last pass has found in each body.
+    pub fn found(&self) -> &[SolidSum] {
+        &self.found
+    }
+
+    /// Whether there are folded terms.
+    pub fn has_terms(&self) -> bool {
+        !self.terms.is_empty()
+    }
+
+    /// The columns that the pass writes: deformation gradient, stress, state.
+    pub fn access(&self) -> Vec<Access> {
+        let writes = |name| Access { column: name, mode: Mode::Writes };
+        let always = [DeformationGradient::NAME, PiolaStress::NAME].map(writes);
+        always.into_iter().chain(self.columns.iter().map(|column| writes(column.name))).collect()
+    }
+
+    /// Begins a pass over all bodies.
+    pub fn begin(&mut self) {
+        self.found.clear();
+    }
+
+    /// Runs the pass over body `k`, block by block: `block` is called with the rows of the block, those
+    /// of `own`, which the formulation writes itself, and memory for a block, which holds what the last one has left.
+    pub fn run<O: Split>(
+        &mut self,
+        k: usize,
+        (view, rows): (&PhaseView<'_>, Range<usize>),
+        columns: &mut SolidColumns<'_>,
+        own: O,
+        part: SolidPart<'_>,
+        block: &(impl Fn(&Constitutive<'_>, SolidRows<'_>, O, &mut SolidBlock) -> SolidSum + Sync),
+    ) {
+        let Self { bodies, terms: all, found, sums, .. } = self;
+        let body = &bodies[k];
+        let mut terms: [&dyn FoldedTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
+        for (slot, &k) in terms.iter_mut().zip(&body.terms) {
+            *slot = &*all[k].term;
+        }
+        let SolidPart { dt, is_short, refits } = part;
+        let terms = &terms[..body.terms.len()];
+        let constitutive = Constitutive { law: &*body.law, terms, refits, dt, is_short };
+        let (mut own, first_row) = (Some(own), rows.start);
+        view.write_bytes_of(body.state.as_slice(), &mut |bytes| {
+            let Some(own) = own.take() else { return };
+            let (_, state) = StateRows::new(&body.state, bytes).split(rows.start);
+            let written = columns.rows(&rows, state.split(rows.len()).0, body.damped);
+            let all = (written, own);
+            found.push(for_each_block(all, sums, &|first, (rows, own): (SolidRows<'_>, O)| {
+                SolidBlock::with(first_row + first, |scratch| block(&constitutive, rows, own, scratch))
+            }));
+        });
+    }
+
+    /// Books what the pass has found; stops where a body has turned inside out.
+    ///
+    /// # Errors
+    /// A particle with det F <= 0 whose law has no meaning for it.
+    pub fn book(&self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for (body, sum) in self.bodies.iter().zip(&self.found) {
+            body.book(sum, &self.terms, step.ledger);
+            if sum.inverted > 0 && body.law.needs_positive_volume() {
+                let particle = sum.inverted - 1 - step.world.body(body.id).rows.start;
+                return Err(step.unstable("negative volume (det F <= 0)", body.id, particle));
+            }
+        }
+        Ok(())
+    }
+
+    /// Proposes the stable step of each body, s, which is that of its undeformed state times what its stretches make of it.
+    ///
+    /// # Errors
+    /// The phase has no deformation gradient.
+    pub fn limit(&mut self, step: &mut Step<'_>, undeformed: &[f64]) -> Result<(), StepError> {
+        let view = step.world.phase(self.phase);
+        let gradient = view.read::<DeformationGradient>()?;
+        let damage = view.read::<Damage>().ok();
+        for (own, stable_step) in self.bodies.iter_mut().zip(undeformed) {
+            let body = step.world.body(own.id);
+            if step.turn.number().is_multiple_of(STRETCH_INTERVAL) {
+                let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
+                own.refresh(&gradient[body.rows.clone()], damage);
+            }
+            let by = fmt::from_fn(|f| own.write_cause(f, &body.name));
+            step.limits.propose(stable_step * own.stretch_factor, by);
+        }
+        Ok(())
+    }
+
+    /// What a checkpoint keeps of the bodies: for [`Run::save`](crate::schedule::Run::save).
+    pub fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&self.stretch_factors()).unwrap_or_default()
+    }
+
+    /// Takes up what [`SolidBodies::save`] gave. Returns `false` where it does not fit.
+    pub fn restore(&mut self, state: &[u8]) -> bool {
+        postcard::from_bytes::<Vec<f64>>(state).is_ok_and(|factors| self.restore_stretch_factors(&factors))
+    }
+
+    /// The factors of the stable step by the stretches of each body, for those that keep more than these.
+    pub fn stretch_factors(&self) -> Vec<f64> {
+        self.bodies.iter().map(|body| body.stretch_factor).collect()
+    }
+
+    /// Takes up what [`SolidBodies::stretch_factors`] gave. Returns `false` where it does not fit.
+    pub fn restore_stretch_factors(&mut self, factors: &[f64]) -> bool {
+        self.bodies.iter_mut().zip(factors).for_each(|(body, factor)| body.stretch_factor = *factor);
+        factors.len() == self.bodies.len()
+    }
+}
+
+impl SolidBody {
+    fn new(
+        id: BodyId,
+        sim: &SimBuilder<'_>,
+        all: &[ForBodies<FoldedTermOfBodies>],
+        damped: bool,
+    ) -> Result<Self, SetupError> {
+        let body = sim.body(id);
+        let terms: Vec<usize> = (0..all.len()).filter(|&k| all[k].bodies.contains(id)).collect();
+        if terms.len() > MAX_TERMS {
+            let message =
+                format!("body `{}` has {} folded terms, more than {MAX_TERMS}", body.name, terms.len());
+            return Err(SetupError::parameter("", message, "remove plugins that add folded terms"));
+        }
+        let law = Arc::clone(body.solid_law()?);
+        let elastic = law.elastic();
+        let density = body.material.density;
+        let factor: f64 = terms.iter().map(|&k| all[k].value.term.stiffness_factor()).sum();
+        let estimate = StepEstimate {
+            wave: elastic.longitudinal_modulus() / density,
+            bond: factor * elastic.young / density,
+        };
+        let mut columns = ColumnSet::default();
+        law.state(&mut columns);
+        let state = StateColumns::new(&columns).ok_or_else(|| {
+            let message =
+                format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
+            SetupError::parameter("", message, "this is a fault of the material, not of the scene")
+        })?;
+        Ok(Self { id, law, state, estimate, terms, damped, stretch_factor: 1.0 })
+    }
+
+    fn book(&self, sum: &SolidSum, terms: &[Arc<FoldedTermOfBodies>], ledger: &mut Ledger) {
+        let strain = ledger.account("strain", AccountKind::Stored);
+        ledger.set(strain, self.id, sum.strain);
+        if self.damped {
+            let damping = ledger.account(damping::ACCOUNT, AccountKind::Dissipated);
+            ledger.add(damping, self.id, sum.damped);
+        }
+        if !self.state.as_slice().is_empty() {
+            let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
+            ledger.add(plastic, self.id, sum.plastic_work);
+        }
+        for (&k, energy) in self.terms.iter().zip(sum.terms) {
+            let FoldedTermOfBodies { account, released, .. } = &*terms[k];
+            if let Some(name) = account {
+                // Terms of one account hold its energy together.
+                let own = |(other, _): &(&usize, FoldedEnergy)| terms[**other].account.as_ref() == Some(name);
+                let all = self.terms.iter().zip(sum.terms).filter(own);
+                let stored = all.map(|(_, energy)| energy.stored).sum();
+                let account = ledger.account(name, AccountKind::Stored);
+                ledger.set(account, self.id, stored);
+            }
+            if let Some(released) = released {
+                let released = ledger.account(released, AccountKind::Dissipated);
+                ledger.add(released, self.id, energy.released);
+            }
+        }
+    }
+
+    fn refresh(&mut self, gradient: &[DeformationGradient], damage: Option<&[Damage]>) {
+        self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient, damage));
+    }
+
+    fn write_cause(&self, f: &mut fmt::Formatter<'_>, body: &str) -> fmt::Result {
+        let cause = if self.estimate.bond_limited() { "bond stiffness" } else { "wave speed" };
+        if self.stretch_factor < 0.99 {
+            write!(f, "{cause} of `{body}` at a stretch factor of {:.2}", self.stretch_factor)
+        } else {
+            write!(f, "{cause} of `{body}`")
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! A block of particles from the deformation gradient to the stress and its energies, while it is in cache.
+
+use std::cell::RefCell;
+
+use glam::DMat3;
+
+use super::corrected_stress::{CorrectedStress, CorrectedStressRows};
+use super::damping::{DampedStrain, Damping, DampingRows, DampingStress};
+use super::folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm};
+use super::refit::{self, Refits};
+use crate::materials::{SolidLaw, StateRows, StressRows};
+use crate::parallel::{BLOCK, BlockSum, Split};
+use crate::world::{
+    DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus, MissingColumn, PhaseView,
+    PiolaStress,
+};
+
+/// Largest number of folded terms on one body.
+pub(super) const MAX_TERMS: usize = 4;
+
+/// What the pass over a body learns of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SolidSum {
+    /// Strain energy, J.
+    pub strain: f64,
+    /// Plastic work of the step, J.
+    pub plastic_work: f64,
+    /// Work that damping took in the step, J.
+    pub damped: f64,
+    /// Energy of each folded term, J.
+    pub terms: [FoldedEnergy; MAX_TERMS],
+    /// Row with det F <= 0 that comes first of those that resist, counted from one; zero if there is none.
+    pub inverted: usize,
+}
+
+impl SolidSum {
+    /// All that stress and folded terms hold, J.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.terms.iter().map(|term| term.stored).sum::<f64>()
+    }
+
+    /// Adds the energies of a block, and looks for inverted particles.
+    pub fn close(&mut self, rows: &SolidRows<'_>, block: &SolidBlock) {
+        let n = rows.deformation.len();
+        for k in 0..n {
+            self.strain += block.energy[k] * block.volume[k];
+            self.plastic_work += block.plastic_work[k] * block.volume[k];
+        }
+        // What resists nothing, because it has failed, may turn inside out.
+        let mut resisting = rows.deformation.iter().zip(&block.modulus[..n]);
+        let inverted = resisting.position(|(f, modulus)| f.determinant() <= 0.0 && *modulus != 0.0);
+        self.inverted = inverted.map_or(0, |k| block.first + k + 1);
+    }
+}
+
+impl BlockSum for SolidSum {
+    fn add(&mut self, next: &Self) {
+        self.strain += next.strain;
+        self.plastic_work += next.plastic_work;
+        self.damped += next.damped;
+        for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
+            sum.stored += next.stored;
+            sum.released += next.released;
+        }
+        if self.inverted == 0 {
+            self.inverted = next.inverted;
+        }
+    }
+}
+
+/// The columns of a phase that the pass writes, borrowed.
+pub struct SolidColumns<'a> {
+    /// Deformation gradient F.
+    pub deformation: hecs::ArchetypeColumnMut<'a, DeformationGradient>,
+    /// First Piola-Kirchhoff stress P.
+    pub stress: hecs::ArchetypeColumnMut<'a, PiolaStress>,
+    modulus: Option<hecs::ArchetypeColumnMut<'a, HourglassModulus>>,
+    misfit: Option<hecs::ArchetypeColumnMut<'a, HourglassMisfit>>,
+    gradient: Option<hecs::ArchetypeColumnMut<'a, HourglassGradient>>,
+    strain: Option<hecs::ArchetypeColumnMut<'a, DampedStrain>>,
+    damping: Option<hecs::ArchetypeColumnMut<'a, DampingStress>>,
+}
+
+impl<'a> SolidColumns<'a> {
+    /// Those of a phase.
+    ///
+    /// # Errors
+    /// The formulation has not declared deformation gradient and stress.
+    pub fn of(view: &PhaseView<'a>) -> Result<Self, MissingColumn> {
+        Ok(Self {
+            deformation: view.write()?,
+            stress: view.write()?,
+            modulus: view.write().ok(),
+            misfit: view.write().ok(),
+            gradient: view.write().ok(),
+            strain: view.write().ok(),
+            damping: view.write().ok(),
+        })
+    }
+
+    /// The rows of a body, with its state.
+    pub(super) fn rows<'r>(
+        &'r mut self,
+        rows: &std::ops::Range<usize>,
+        state: StateRows<'r>,
+        is_damped: bool,
+    ) -> SolidRows<'r> {
+        SolidRows {
+            deformation: bytemuck::cast_slice_mut(&mut self.deformation[rows.clone()]),
+            stress: bytemuck::cast_slice_mut(&mut self.stress[rows.clone()]),
+            state,
+            memory: FoldedMemory {
+                modulus: self.modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
+                misfit: self.misfit.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
+                gradient: self.gradient.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
+            },
+            damping: match (&mut self.strain, &mut self.damping) {
+                (Some(strain), Some(damping)) if is_damped => {
+                    DampingRows { strain: rows_of(strain, rows), stress: rows_of(damping, rows) }
+                }
+                _ => DampingRows::default(),
+            },
+        }
+    }
+}
+
+/// The rows of a body in a column.
+fn rows_of<'a, C: crate::world::Column>(
+    column: &'a mut [C],
+    rows: &std::ops::Range<usize>,
+) -> &'a mut [C::Value] {
+    bytemuck::cast_slice_mut(&mut column[rows.clone()])
+}
+
+/// Rows of one body that the pass writes.
+pub struct SolidRows<'a> {
+    /// Deformation gradient F, to be written by the formulation.
+    pub deformation: &'a mut [DMat3],
+    /// First Piola-Kirchhoff stress P: that of the last step until the law has been called.
+    pub stress: &'a mut [DMat3],
+    state: StateRows<'a>,
+    memory: FoldedMemory<'a>,
+    damping: DampingRows<'a>,
+}
+
+impl Split for SolidRows<'_> {
+    fn rows(&self) -> usize {
+        self.deformation.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
+        let (stress, stress_rest) = self.stress.split_at_mut(at);
+        let (state, state_rest) = self.state.split(at);
+        let (memory, memory_rest) = self.memory.split(at);
+        let (damping, damping_rest) = self.damping.split(at);
+        (
+            Self { deformation, stress, state, memory, damping },
+            Self {
+                deformation: deformation_rest,
+                stress: stress_rest,
+                state: state_rest,
+                memory: memory_rest,
+                damping: damping_rest,
+            },
+        )
+    }
+}
+
+/// What is known of a block of particles on its way through the pass. The formulation fills gradient, misfit and volume.
+pub struct SolidBlock {
+    /// Row of its first particle in the phase.
+    pub first: usize,
+    /// Displacement gradient H = F - I, with all digits of a small strain.
+    pub gradient: [DMat3; BLOCK],
+    /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
+    pub misfit: [f64; BLOCK],
+    /// Reference volume V_0, m3.
+    pub volume: [f64; BLOCK],
+    /// Strain energy per reference volume, J/m3.
+    energy: [f64; BLOCK],
+    /// Young's modulus as it is now, Pa.
+    modulus: [f64; BLOCK],
+    strength: [f64; BLOCK],
+    /// Plastic work of the step per reference volume, J/m3.
+    plastic_work: [f64; BLOCK],
+    /// Stress at the end of the last step, Pa; after the law, that which makes the force where there is damping.
+    stress: [DMat3; BLOCK],
+}
+
+thread_local! {
+    /// The block that this thread works on: it stays in the first-level cache, and no block is cleared or copied.
+    static SCRATCH: RefCell<SolidBlock> = const {
+        RefCell::new(SolidBlock {
+            first: 0,
+            gradient: [DMat3::ZERO; BLOCK],
+            misfit: [0.0; BLOCK],
+            volume: [0.0; BLOCK],
+            energy: [0.0; BLOCK],
+            modulus: [0.0; BLOCK],
+            strength: [0.0; BLOCK],
+            plastic_work: [0.0; BLOCK],
+            stress: [DMat3::ZERO; BLOCK],
+        })
+    };
+}
+
+impl SolidBlock {
+    /// Lends the block of this thread, which holds what the last one has left, for the rows from `first` on.
+    #[inline]
+    pub(super) fn with<R>(first: usize, work: impl FnOnce(&mut Self) -> R) -> R {
+        SCRATCH.with_borrow_mut(|block| {
+            block.first = first;
+            work(block)
+        })
+    }
+}
+
+/// The law of a body and what goes with it in this step.
+pub struct Constitutive<'a> {
+    pub(super) law: &'a dyn SolidLaw,
+    /// Folded terms of plugins.
+    pub terms: &'a [&'a dyn FoldedTerm],
+    /// Measures of deformation that outlast cuts in the neighbourhood.
+    pub(super) refits: Option<&'a Refits>,
+    /// Length of the step, s; zero before the first.
+    pub dt: f64,
+    /// Whether the step is a part of a long one.
+    pub(super) is_short: bool,
+}
+
+impl Constitutive<'_> {
+    /// Computes the stress of a block whose deformation gradient is there, and calls `make` with what makes the force: the stress with that of damping.
+    /// A particle that `is_free`, which has no deformation gradient for want of neighbours, resists nothing.
+    pub fn stress(
+        &self,
+        rows: &mut SolidRows<'_>,
+        block: &mut SolidBlock,
+        is_free: impl Fn(usize) -> bool,
+        sum: &mut SolidSum,
+        make: impl FnOnce(&[DMat3]),
+    ) {
+        let (n, first) = (rows.deformation.len(), block.first);
+        let refits = self.refits.map_or(&[][..], |refits| refits.of_block(first, n));
+        refit::to_law(refits, first, rows.deformation, rows.stress);
+        block.stress[..n].copy_from_slice(rows.stress);
+        block.strength[..n].fill(f64::INFINITY);
+        block.plastic_work[..n].fill(0.0);
+        self.law.stress(&mut StressRows {
+            dt: self.dt,
+            deformation: rows.deformation,
+            stress_before: &block.stress[..n],
+            stress: rows.stress,
+            energy: &mut block.energy[..n],
+            modulus: &mut block.modulus[..n],
+            strength: &mut block.strength[..n],
+            plastic_work: &mut block.plastic_work[..n],
+            state: std::mem::take(&mut rows.state),
+        });
+        let gradient = &block.gradient;
+        let fitted = |k: usize| DMat3::IDENTITY + gradient[k];
+        refit::from_law(refits, first, fitted, rows.deformation, rows.stress);
+        for (k, modulus) in block.modulus[..n].iter_mut().enumerate() {
+            // Its bonds would hold it against rotation.
+            *modulus = if is_free(k) { 0.0 } else { *modulus };
+        }
+        if rows.damping.strain.is_empty() {
+            make(rows.stress);
+        } else {
+            block.stress[..n].copy_from_slice(rows.stress);
+            let damping = Damping {
+                elastic: self.law.elastic(),
+                dt: self.dt,
+                is_short: self.is_short,
+                deformation: rows.deformation,
+                gradient: &block.gradient[..n],
+                modulus: &block.modulus[..n],
+                volume: &block.volume[..n],
+            };
+            sum.damped = damping.add(std::mem::take(&mut rows.damping), &mut block.stress[..n]);
+            make(&block.stress[..n]);
+        }
+        refit::to_column(refits, first, rows.stress);
+    }
+
+    /// The rows that folded terms add to; `stress` is what the formulation has made of the stress.
+    pub fn folded<'b>(
+        &self,
+        rows: &'b mut SolidRows<'_>,
+        block: &'b SolidBlock,
+        stress: &'b mut [CorrectedStress],
+    ) -> FoldedRows<'b> {
+        let n = rows.deformation.len();
+        FoldedRows {
+            deformation: rows.deformation,
+            displacement_gradient: &block.gradient[..n],
+            modulus: &block.modulus[..n],
+            strength: &block.strength[..n],
+            memory: rows.memory.part(0..n),
+            misfit: &block.misfit[..n],
+            volume: &block.volume[..n],
+            stress: CorrectedStressRows(stress),
+        }
+    }
+
+    /// Adds all folded terms to rows, and their energies to the sum.
+    pub fn fold(&self, rows: &mut FoldedRows<'_>, sum: &mut SolidSum) {
+        for (sum, term) in sum.terms.iter_mut().zip(self.terms) {
+            let energy = term.add(rows);
+            sum.stored += energy.stored;
+            sum.released += energy.released;
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! What every formulation of solids shares. It knows no neighbour list.
+//!
+//! The data flow of a solid in a step, in the words of the files here:
+//!
+//! ```text
+//! set-up        the formulation puts its packed rows into the resources as a `SolidPhase`           (phase)
+//! Constitutive  the formulation fits F to the neighbours of a block of particles, then
+//!                 `Constitutive::stress`  F -> law -> P, damping of short steps                      (constitutive, refit, damping)
+//!                 the formulation makes what neighbours read of it: A = P M^-1                       (corrected_stress)
+//!                 `Constitutive::fold`    terms of plugins add to A and k                            (folded)
+//!                 `SolidSum::close`       energies of the block
+//!               `SolidBodies::book` and `limit`: energies, inverted particles, stable step           (bodies, stretches, stable_step)
+//! Boundary      contact adds couples on material points beside particles through `SolidPhase`        (local_motion)
+//! Rates         the formulation's own pass over pairs writes the force; pair terms add to it         (crate::pair)
+//! ```
+
+mod bodies;
+mod constitutive;
+mod corrected_stress;
+mod damping;
+mod fields;
+mod folded;
+mod local_motion;
+mod pairs;
+mod phase;
+mod refit;
+mod stable_step;
+mod stretches;
+
+pub use bodies::{SolidBodies, SolidBody, SolidPart};
+pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};
+pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
+pub(crate) use damping::DampedInShortSteps;
+pub(crate) use fields::add_fields;
+pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
+pub use local_motion::LocalMotion;
+pub use pairs::SolidPairs;
+pub use phase::SolidPhase;
+pub use refit::Refits;
+pub use stable_step::StepEstimate;
