@@ -1,7 +1,7 @@
 //! What plugins hand to the rest of the engine while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
 //! Terms are given out by body, and what nobody has taken in the end is an error.
 
-use std::any::{Any, TypeId, type_name};
+use std::any::{Any, TypeId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -16,12 +16,6 @@ pub struct ForBodies<T> {
     pub bodies: BodySet,
     /// The value; formulations of other bodies may have it, too.
     pub value: Arc<T>,
-}
-
-/// A value that concerns the whole simulation.
-struct Whole {
-    by: Option<Item>,
-    value: Box<dyn Any>,
 }
 
 /// A value for bodies.
@@ -39,28 +33,27 @@ struct Term {
 pub(crate) struct HandedIn {
     /// The plugin, condition or formulation that is being built.
     pub by: Option<Item>,
-    whole: BTreeMap<TypeId, (&'static str, Vec<Whole>)>,
+    /// Values that concern the whole simulation.
+    whole: BTreeMap<TypeId, Vec<Box<dyn Any>>>,
     terms: BTreeMap<TypeId, Vec<Term>>,
 }
 
 impl HandedIn {
     pub fn put<T: 'static>(&mut self, value: T) {
-        let (_, values) = self.whole.entry(TypeId::of::<T>()).or_insert((type_name::<T>(), Vec::new()));
-        values.push(Whole { by: self.by.clone(), value: Box::new(value) });
+        self.whole.entry(TypeId::of::<T>()).or_default().push(Box::new(value));
     }
 
     pub fn count<T: 'static>(&self) -> usize {
-        self.whole.get(&TypeId::of::<T>()).map_or(0, |(_, values)| values.len())
+        self.whole.get(&TypeId::of::<T>()).map_or(0, Vec::len)
     }
 
     pub fn take<T: 'static>(&mut self) -> Vec<T> {
-        let all = self.whole.remove(&TypeId::of::<T>()).map(|(_, values)| values).unwrap_or_default();
-        all.into_iter().filter_map(|whole| whole.value.downcast().ok()).map(|boxed| *boxed).collect()
+        let all = self.whole.remove(&TypeId::of::<T>()).unwrap_or_default();
+        all.into_iter().filter_map(|any| any.downcast().ok()).map(|boxed| *boxed).collect()
     }
 
     pub fn all<T: 'static>(&self) -> impl Iterator<Item = &T> {
-        let all = self.whole.get(&TypeId::of::<T>()).into_iter().flat_map(|(_, values)| values);
-        all.filter_map(|whole| whole.value.downcast_ref())
+        self.whole.get(&TypeId::of::<T>()).into_iter().flatten().filter_map(|any| any.downcast_ref())
     }
 
     pub fn put_for<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
@@ -103,18 +96,12 @@ impl HandedIn {
                 place(&term.by, message, "leave it out for this body, or give the body another formulation".to_owned())
             })
         });
-        let whole = self.whole.values().flat_map(|(name, values)| {
-            values.iter().map(move |whole| {
-                let help = "this is a fault of the program, not of the scene".to_owned();
-                place(&whole.by, format!("nothing has taken the `{name}` that was added"), help)
-            })
-        });
-        terms.chain(whole).collect()
+        terms.collect()
     }
 }
 
 impl super::SimBuilder<'_> {
-    /// Hands a value to whatever part of the engine takes values of its type. What nobody takes is an error of the scene.
+    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type.
     pub fn extend<T: 'static>(&mut self, value: T) {
         self.handed.put(value);
     }

@@ -1,4 +1,4 @@
-//! The particles: one hecs archetype per phase, bodies as row ranges in it.
+//! The particles: one hecs archetype per phase, in a hecs world of its own, bodies as row ranges in it.
 
 use std::ops::Range;
 
@@ -15,7 +15,6 @@ use crate::scene::Dimension;
 pub struct PhaseId(pub usize);
 
 /// The particles of one formulation.
-#[derive(Clone, Debug)]
 pub struct Phase {
     /// Name of the formulation.
     pub name: &'static str,
@@ -24,6 +23,7 @@ pub struct Phase {
     /// Number of particles.
     pub len: usize,
     archetype: usize,
+    ecs: hecs::World,
 }
 
 /// A column was asked for that the phase does not have.
@@ -38,7 +38,6 @@ pub struct MissingColumn {
 
 /// All particles of a simulation; the columns are the only particle state.
 pub struct World {
-    ecs: hecs::World,
     phases: Vec<Phase>,
     bodies: Vec<Body>,
     dimension: Dimension,
@@ -47,7 +46,7 @@ pub struct World {
 impl World {
     /// A world without particles.
     pub fn new(dimension: Dimension) -> Self {
-        Self { ecs: hecs::World::new(), phases: Vec::new(), bodies: Vec::new(), dimension }
+        Self { phases: Vec::new(), bodies: Vec::new(), dimension }
     }
 
     /// Two: plane strain in x-y; three.
@@ -61,12 +60,14 @@ impl World {
         columns.iter().for_each(|column| column.declare(&mut batch));
         let mut builder = batch.into_batch(u32::try_from(len).unwrap_or(u32::MAX));
         columns.iter().for_each(|column| column.zero(&mut builder));
-        let before = self.ecs.archetypes().len();
+        // One world a phase: two formulations with the same columns would share an archetype.
+        let mut ecs = hecs::World::new();
+        let before = ecs.archetypes().len();
         if let Ok(batch) = builder.build() {
-            self.ecs.spawn_column_batch(batch);
+            ecs.spawn_column_batch(batch);
         }
-        let archetype = if self.ecs.archetypes().len() > before { before } else { before - 1 };
-        self.phases.push(Phase { name, columns, len, archetype });
+        let archetype = if ecs.archetypes().len() > before { before } else { before - 1 };
+        self.phases.push(Phase { name, columns, len, archetype, ecs });
         PhaseId(self.phases.len() - 1)
     }
 
@@ -108,7 +109,7 @@ impl World {
     /// A view of the columns of a phase.
     pub fn phase(&self, id: PhaseId) -> PhaseView<'_> {
         let phase = &self.phases[id.0];
-        let archetype = self.ecs.archetypes().nth(phase.archetype).expect("archetypes are never removed");
+        let archetype = phase.ecs.archetypes().nth(phase.archetype).expect("archetypes are never removed");
         PhaseView { phase, archetype }
     }
 
