@@ -1,6 +1,9 @@
 //! Scene to simulation: materials, particles, plugins, systems, columns.
 
 use std::any::Any;
+use std::path::Path;
+
+use glam::DVec3;
 
 use super::memory;
 use super::names;
@@ -8,11 +11,12 @@ use super::options::BuildOptions;
 use super::overlap;
 use super::spawn;
 use crate::materials::{Law, Material};
-use crate::plugin::{BodyPlan, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::{OutputPlan, Recorder};
-use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
+use crate::rigid::Rigid;
+use crate::scene::{Body, Domain, Item, Place, Problem, Scene, SceneError, Source};
 use crate::schedule::{Resources, Schedule};
-use crate::shapes;
+use crate::shapes::{self, Site};
 use crate::simulation::{Simulation, SimulationParts};
 use crate::world::{BodyId, BodySet, ColumnSet, PhaseId};
 
@@ -140,7 +144,10 @@ fn place_bodies<'r>(
                 continue;
             }
         };
-        let filled = shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room);
+        let filled = match endless_tool(body, formulation.0.name, scene, folder) {
+            Some(sites) => Ok(sites),
+            None => shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room),
+        };
         let region = body.shape.region(scene.dimension, folder, "shape");
         let (sites, bounds) = match (filled, region) {
             (Ok(sites), Ok(region)) => (sites, region.bounds()),
@@ -195,6 +202,22 @@ fn place_bodies<'r>(
         parsed.push(formulation);
     }
     if problems.is_empty() { Ok((bodies, phases, parsed)) } else { Err(problems) }
+}
+
+/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is a tool.
+fn endless_tool(body: &Body, formulation: &str, scene: &Scene, folder: &Path) -> Option<Vec<Site>> {
+    if formulation != Rigid::NAME || !(body.spacing > 0.0 && body.spacing.is_finite()) {
+        return None;
+    }
+    let region = body.shape.region(scene.dimension, folder, "shape").ok()?;
+    if region.bounds().is_bounded() {
+        return None;
+    }
+    let surface = body.shape.surface(scene.dimension, folder, "shape").ok()?;
+    let middle = |domain: &Domain| 0.5 * (domain.min.0 + domain.max.0);
+    let nearest = surface.closest(scene.domain.as_ref().map_or(DVec3::ZERO, middle));
+    let position = nearest.point - 0.5 * body.spacing * nearest.normal;
+    Some(vec![Site { position, volume: body.spacing.powi(scene.dimension.count() as i32) }])
 }
 
 fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {

@@ -2,11 +2,15 @@
 
 use glam::DVec3;
 
-use crate::plugin::{BodyPlan, SetupError};
+use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Face, Select};
+use crate::world::BodyId;
 
 /// Volume of the particles over that of the bounding box, less one, up to which a body is a box.
 const FILLED: f64 = 1e-6;
+
+/// Largest distance of the feet of the particles of a side from the surface, over the spacing, up to which the side is flat.
+const FLAT: f64 = 0.2;
 
 /// Axis and sign of the outward normal of a face.
 pub(super) fn outward(face: Face) -> (usize, f64) {
@@ -61,6 +65,45 @@ pub(super) fn normal_of(select: &Select) -> Result<DVec3, SetupError> {
     };
     let (axis, sign) = outward(face);
     Ok(sign * DVec3::AXES[axis])
+}
+
+/// Refuses a load on a side that is not flat: the outermost layer of a disc is a few particles at its tip. The feet of the particles on the plane of
+/// the side are on the surface of the body, where it is flat, and up to a good part of the spacing away, where it is curved. Selections by
+/// `within` say themselves what they mean.
+pub(super) fn check_is_side(
+    select: &Select,
+    id: BodyId,
+    rows: &[u32],
+    sim: &SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    let Some((axis, sign)) =
+        select.face.filter(|_| select.within.is_none() && select.nearest.is_none()).map(outward)
+    else {
+        return Ok(());
+    };
+    let body = sim.body(id);
+    let Ok(region) = sim.scene().bodies[id.0].shape.region(sim.dimension(), sim.folder(), "shape") else {
+        return Ok(());
+    };
+    let plane = if sign > 0.0 { body.bounds.max[axis] } else { body.bounds.min[axis] };
+    let away = |&row: &u32| {
+        let mut foot = body.sites[row as usize - body.rows.start].position;
+        foot[axis] = plane;
+        region.distance(foot).max(0.0)
+    };
+    let farthest = rows.iter().map(away).fold(0.0, f64::max);
+    if farthest <= FLAT * body.spacing {
+        return Ok(());
+    }
+    Err(SetupError::parameter(
+        "on",
+        format!(
+            "body `{}` has no flat side there: its outermost layer is {} particles",
+            body.name,
+            rows.len()
+        ),
+        "add `within` with a shape that holds the particles to be loaded, and state the loaded `area`",
+    ))
 }
 
 /// Checks an area that the scene states.

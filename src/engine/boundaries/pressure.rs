@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::face_area::{check_area, loaded_area, normal_of};
+use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
@@ -36,6 +36,9 @@ impl Plugin for Pressure {
         let normal = normal_of(&self.on)?;
         let selection = sim.select(&self.on, "on")?;
         check_area(self.area)?;
+        if self.area.is_none() {
+            selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
+        }
         let areas = selection.parts.iter().map(|(id, rows)| match self.area {
             Some(area) => area / selection.len() as f64,
             None => loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64,

@@ -296,3 +296,22 @@ fn an_initial_displacement_stretches_a_body_before_the_first_step() {
     let energy = 0.5 * (0.5 * (lambda + 2.0 * mu) * (exx * exx + eyy * eyy) + lambda * exx * eyy);
     assert_close(account(&sim, "strain"), energy, 1e-6 * energy);
 }
+
+#[test]
+fn a_load_on_a_side_that_is_not_flat_is_an_error() {
+    let load = |shape: &str, face: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [(name: "body", material: "soft", shape: {shape}, spacing: 0.005, formulation: TotalLagrangian)],
+                conditions: [Pressure(on: Select(body: "body", face: {face}), value: 100)],
+                time: (end: 0.01))"#
+        );
+        let (scene, source) = parse(Source::new("load.ron", text)).unwrap();
+        build(&scene, &source, &Registry::standard()).err().map(|error| error.to_string())
+    };
+    let error =
+        load("Ring(center: (0, 0), inner: 0.05, outer: 0.1)", "MaxX").expect("a ring has no flat side");
+    assert!(error.contains("no flat side"), "{error}");
+    assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MaxX").is_none());
+    assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MinY").is_some());
+}

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::face_area::{check_area, loaded_area};
+use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::Field;
 use super::load::{self, DeadLoad};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
@@ -37,6 +37,9 @@ impl Plugin for Traction {
         let selection = sim.select(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
         check_area(self.area)?;
+        if self.area.is_none() {
+            selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
+        }
         let share = |(id, rows): &(crate::world::BodyId, Vec<u32>)| match self.area {
             Some(area) => vec![area / selection.len() as f64; rows.len()],
             None => vec![loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64; rows.len()],

@@ -72,6 +72,11 @@ impl Constraint {
         self.free_axes() == DVec3::ZERO && matches!(self.turning, Turning::Held | Turning::Driven(_))
     }
 
+    /// Whether it does not turn at all.
+    pub fn is_held_from_turning(&self) -> bool {
+        matches!(self.turning, Turning::Held)
+    }
+
     /// Sets the prescribed components of a velocity of the centre.
     pub fn set_velocity(
         &self,

@@ -141,6 +141,15 @@ impl Rigid {
                 "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`",
             ));
         }
+        let is_held = constraint.free_axes() == DVec3::ZERO && constraint.is_held_from_turning();
+        if !plan.bounds.is_bounded() && !is_held {
+            let message = format!("rigid body `{}` has no end, and its motion is not prescribed", plan.name);
+            return Err(SetupError::parameter(
+                format!("bodies[{}].shape", id.0),
+                message,
+                "prescribe its translation by `Fix`, `Velocity` or `Displacement`, and let it not turn",
+            ));
+        }
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing);
         let reach =

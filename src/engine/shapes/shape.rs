@@ -26,8 +26,8 @@ pub enum Shape {
         /// Radius \[m\].
         radius: f64,
     },
-    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes, selects, is a tool, but
-    /// fills no body.
+    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes, selects, is a tool (a
+    /// `Rigid` body whose motion is prescribed), but fills no body.
     HalfSpace {
         /// A point of the plane \[m\].
         point: Vec3,

@@ -1,7 +1,5 @@
 //! The state of fluids before the first step: pressure, density, and the mass that fills their place.
 
-use glam::DVec3;
-
 use super::checks;
 use super::cloud::{FlowCloud, Group};
 use super::wall::PreviousVelocity;
@@ -76,10 +74,8 @@ fn start_wall(group: &Group, world: &World) -> Result<(), MissingColumn> {
     }
     let velocity = view.read::<Velocity>()?;
     let mut previous = view.write::<PreviousVelocity>()?;
-    let mut mobility = view.write::<Mobility>()?;
     for row in group.rows.clone() {
         previous[row] = PreviousVelocity(velocity[row].0);
-        mobility[row] = Mobility(DVec3::ZERO);
     }
     Ok(())
 }

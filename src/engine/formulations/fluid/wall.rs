@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Vec3;
 use crate::schedule::{Stage, System};
-use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Pressure, Removed};
+use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Mobility, Pressure, Removed, World};
 
 crate::column! {
     /// Velocity of a wall at the middle of the step before.
@@ -69,9 +69,18 @@ impl Formulation for Wall {
                 force.0 = if *removed == Removed::NO { gravity * mass.0 } else { DVec3::ZERO };
             },
         ));
+        let walls: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
+        sim.add_setup(move |setup| walls.iter().try_for_each(|&id| hold(id, setup.world)));
         for (id, parameters) in bodies {
             sim.extend(WallBody { id, parameters });
         }
         Ok(())
     }
+}
+
+/// Takes the mobility of a wall, whether there is a fluid or not: no force moves it.
+fn hold(id: BodyId, world: &World) -> Result<(), SetupError> {
+    let (view, rows) = world.body_view(id);
+    view.write::<Mobility>().map_err(|error| SetupError::internal(&error))?[rows].fill(Mobility(DVec3::ZERO));
+    Ok(())
 }

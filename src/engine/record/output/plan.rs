@@ -67,6 +67,9 @@ impl OutputPlan {
                 Err(found) => problems.extend(found),
             }
         }
+        for warning in probes.iter().filter_map(|probe| probe.warning(sim)).collect::<Vec<_>>() {
+            sim.warn(warning);
+        }
         let plan = Self { probes, recorded, written, recorders };
         if problems.is_empty() { Ok(plan) } else { Err(problems) }
     }

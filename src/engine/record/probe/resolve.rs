@@ -106,6 +106,14 @@ impl Probe {
         Ok(Self::new(probe, gauge, sim))
     }
 
+    /// A warning of a probe that measures nothing.
+    pub fn warning(&self, sim: &SimBuilder<'_>) -> Option<String> {
+        match &self.gauge {
+            Gauge::Point(gauge) => gauge.warning(&self.name, sim.bodies()),
+            _ => None,
+        }
+    }
+
     fn new(probe: &scene::Probe, gauge: Gauge, sim: &SimBuilder<'_>) -> Self {
         Self { name: probe.name.clone(), interval: sim.scene().probe_interval(probe), gauge }
     }

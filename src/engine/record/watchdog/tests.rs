@@ -141,6 +141,16 @@ fn hourglass_energy_is_warned_of_once_for_each_body() {
 }
 
 #[test]
+fn hourglass_energy_that_is_small_beside_plastic_work_is_not_warned_of() {
+    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2),
+                              Book(account: \"plastic_work\", energy: 1.0e-1)],
+                 record: (every: 0.001), time: (end: 0.01),";
+    let mut sim = blocks(scene);
+    sim.run(|_| true).unwrap();
+    assert!(!sim.warnings().iter().any(|w| w.contains("hourglass energy")), "{:?}", sim.warnings());
+}
+
+#[test]
 fn a_balance_that_does_not_close_is_warned_of_at_the_end() {
     let scene = "conditions: [Book(account: \"made_up\", energy: 1.0e-1)], time: (end: 0.01),";
     let mut sim = blocks(scene);

@@ -71,3 +71,13 @@ fn all_faults_are_told_at_once() {
     let error = build(&scene, &source, &Registry::standard()).map(|_| ()).unwrap_err();
     assert_eq!(error.problems.len(), 2);
 }
+
+#[test]
+fn a_probe_where_nothing_is_is_warned_of_before_the_run() {
+    let warnings = |point: &str| {
+        let scene = cantilever(|text| text.replace("at: (0.04, 0.012)", &format!("at: {point}")));
+        let sim = build(&scene.0, &scene.1, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.warnings().iter().filter(|warning| warning.starts_with("probe `middle`")).count()
+    };
+    assert_eq!([warnings("(0.04, 0.012)"), warnings("(0.09, 0.012)"), warnings("(5.0, 5.0)")], [0, 0, 1]);
+}

@@ -1,0 +1,56 @@
+//! Walls in scenes without a fluid, and half-spaces as tools.
+
+use super::{centre, simulation};
+use crate::assembly::build;
+use crate::plugin::Registry;
+use crate::scene::{Source, parse};
+
+/// A block that is thrown onto something below, which does not move.
+fn thrown(tool: &str, conditions: &str) -> String {
+    format!(
+        r#"(dimension: Two, gravity: (0, -9.81),
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "block", material: "soft", shape: Box(min: (0, 0.002), max: (0.06, 0.062)), spacing: 0.01,
+                 formulation: TotalLagrangian, velocity: (0.0, -2.0)),
+                (name: "tool", material: "soft", {tool}),
+            ],
+            conditions: [{conditions}],
+            contacts: [Contact(between: ("block", "tool"), law: Penalty())],
+            time: (end: 0.02))"#
+    )
+}
+
+#[test]
+fn a_wall_without_a_fluid_stands() {
+    let tool = r#"shape: Box(min: (-0.1, -0.04), max: (0.16, 0)), spacing: 0.01, formulation: Wall"#;
+    let mut sim = simulation(&thrown(tool, ""));
+    let (before, _) = centre(&sim, 1);
+    sim.run(|_| true).unwrap();
+    let (after, velocity) = centre(&sim, 1);
+    assert!(after == before && velocity.length() == 0.0, "{before} {after} {velocity}");
+    let (block, bounced) = centre(&sim, 0);
+    assert!(block.y > 0.02 && bounced.y > 1.0, "{block} {bounced}");
+}
+
+#[test]
+fn a_half_space_is_a_tool_like_a_large_box() {
+    let fix = r#"Fix(on: Select(body: "tool"))"#;
+    let run = |tool: &str| {
+        let mut sim = simulation(&thrown(tool, fix));
+        sim.run(|_| true).unwrap();
+        centre(&sim, 0)
+    };
+    let plane = run("shape: HalfSpace(point: (0, 0), normal: (0, 1)), spacing: 0.01, formulation: Rigid()");
+    let block = run("shape: Box(min: (-0.05, -0.02), max: (0.11, 0)), spacing: 0.01, formulation: Rigid()");
+    assert!(plane.0.distance(block.0) < 1e-12 && plane.1.distance(block.1) < 1e-10, "{plane:?} {block:?}");
+    assert!(plane.1.y > 1.0, "{plane:?}");
+}
+
+#[test]
+fn a_half_space_that_nothing_holds_is_an_error() {
+    let tool = "shape: HalfSpace(point: (0, 0), normal: (0, 1)), spacing: 0.01, formulation: Rigid()";
+    let (scene, source) = parse(Source::new("tool.ron", thrown(tool, ""))).unwrap();
+    let Err(error) = build(&scene, &source, &Registry::standard()) else { panic!("it has no mass") };
+    assert!(error.to_string().contains("`tool` has no end"), "{error}");
+}
