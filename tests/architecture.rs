@@ -178,6 +178,7 @@ const LAYERS: &[&str] = &[
     "simulation",
     "record",
     "formulations",
+    "skins",
     "solids",
     "symmetry",
     "removal",

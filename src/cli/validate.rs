@@ -42,6 +42,8 @@ mod taylor;
 mod taylor_bars;
 mod taylor_plane;
 mod tensile_failure;
+mod thick_ring;
+mod touching_surfaces;
 mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;

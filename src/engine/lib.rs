@@ -35,6 +35,7 @@ pub mod scene;
 pub mod schedule;
 pub mod shapes;
 pub mod simulation;
+mod skins;
 pub mod solids;
 pub mod space;
 pub mod symmetry;

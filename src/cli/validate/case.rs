@@ -52,10 +52,12 @@ macro_rules! for_each_case {
             S4 punch::CASE;
             S21 upsetting::CASE;
             S22 bar_impact::CASE;
+            S23 thick_ring::CASE;
             C1 hertz::CASE;
             C2 incline::CASE;
             C3 restitution::CASE;
             C4 rebound::CASE;
+            C6 touching_surfaces::CASE;
             F1 hydrostatic_tank::CASE;
             F2 laminar_flows::CASE;
             F3 elliptic_drop::CASE;

@@ -20,10 +20,10 @@ pub(super) const CASE: Case = Case {
 const SOURCE: &str = "finite elements, reference.csv";
 
 fn cook_membrane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    let spacing = 44.0 / across as f64;
-    // Three columns of the clamp stand before the left edge, in step with the columns of the membrane.
-    let column = 48.0 / (48.0 / spacing).round();
-    let left = -3.0 * column;
+    // The last of the three columns of the clamp stands on the left edge; the right edge is half a spacing outside of the last column.
+    let columns = (48.0 * across as f64 / 44.0 - 0.5).round() + 0.5;
+    let spacing = 48.0 / columns;
+    let left = -2.5 * spacing;
     let corners =
         format!("[({left}, 0.0), (0.0, 0.0), (48.0, 44.0), (48.0, 60.0), (0.0, 44.0), ({left}, 44.0)]");
     let mut simulation = Template::new(

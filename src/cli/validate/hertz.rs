@@ -3,13 +3,13 @@
 use std::f64::consts::PI;
 
 use anyhow::{Context, Result};
+use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::Position;
 
 use super::case::Case;
 use super::check::{Check, Tolerance};
-use super::measure::{body, run};
+use super::measure::{MaterialPoint, body, run};
 use super::rigid::{rows, state};
 use super::template::Template;
 
@@ -96,6 +96,10 @@ fn impact(simulation: &mut Simulation, radius: f64) -> Result<Impact> {
 const RADIUS: f64 = 0.05;
 const MODULUS: f64 = 1.0e7 / (1.0 - 0.45 * 0.45);
 
+/// Points of the surface on either side of the lowest one at which the overlap is looked at, up to an angle of ARC.
+const POINTS: i32 = 400;
+const ARC: f64 = 0.3;
+
 fn cylinder(registry: &Registry, rings: usize) -> Result<Vec<Check>> {
     let spacing = RADIUS / rings as f64;
     let mut simulation = Template::new(
@@ -109,12 +113,13 @@ fn cylinder(registry: &Registry, rings: usize) -> Result<Vec<Check>> {
     let force = 0.5 * (upper.force.y - lower.force.y);
     // The pressure of Hertz has the second moment a^2/4: no single particle decides where the contact ends.
     let plane = lower.center.y + 0.005;
-    let (view, body_rows) = simulation.world().body_view(body(&simulation, "cylinder")?);
-    let position = view.read::<Position>()?;
+    let cylinder = body(&simulation, "cylinder")?;
     let (mut total, mut moment) = (0.0, 0.0);
-    for row in body_rows {
-        let x = position[row].0;
-        let push = (0.5 * spacing - (x.y - plane)).max(0.0);
+    for k in -POINTS..=POINTS {
+        let angle = ARC * f64::from(k) / f64::from(POINTS);
+        let place = RADIUS * DVec3::new(angle.sin(), -angle.cos(), 0.0);
+        let x = MaterialPoint::new(&simulation, cylinder, place)?.position(&simulation)?;
+        let push = (plane - x.y).max(0.0);
         total += push;
         moment += push * x.x * x.x;
     }

@@ -12,18 +12,6 @@ const FILLED: f64 = 1e-6;
 /// Largest distance of the feet of the particles of a side from the surface, over the spacing, up to which the side is flat.
 const FLAT: f64 = 0.2;
 
-/// Axis and sign of the outward normal of a face.
-pub(super) fn outward(face: Face) -> (usize, f64) {
-    match face {
-        Face::MinX => (0, -1.0),
-        Face::MaxX => (0, 1.0),
-        Face::MinY => (1, -1.0),
-        Face::MaxY => (1, 1.0),
-        Face::MinZ => (2, -1.0),
-        Face::MaxZ => (2, 1.0),
-    }
-}
-
 /// Area that the selected rows of a body stand for, m2 (m in two dimensions): that of the face, where it is a whole face of a
 /// body that fills its bounding box; else their volume over the thickness of the layer. The thickness of a flat face is
 /// twice the mean distance of its particles from the face, which is the distance of the layers for any lattice; without a
@@ -34,7 +22,7 @@ pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64
     }
     let sites = || rows.iter().map(|&row| &body.sites[row as usize - body.rows.start]);
     let volume: f64 = sites().map(|site| site.volume).sum();
-    let thickness = match select.face.map(outward) {
+    let thickness = match select.face.map(Face::outward) {
         Some((axis, sign)) => {
             let plane = if sign > 0.0 { body.bounds.max[axis] } else { body.bounds.min[axis] };
             let depth: f64 = sites().map(|site| site.volume * (site.position[axis] - plane).abs()).sum();
@@ -47,7 +35,7 @@ pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64
 
 /// The area of the face of a box, if the selection means all of it.
 fn whole_face(select: &Select, body: &BodyPlan) -> Option<f64> {
-    let (axis, _) = outward(select.face.filter(|_| select.within.is_none() && select.nearest.is_none())?);
+    let (axis, _) = select.face.filter(|_| select.within.is_none() && select.nearest.is_none())?.outward();
     let sides = body.bounds.extent();
     let of_box: f64 = sides.to_array().into_iter().filter(|side| *side > 0.0).product();
     let filled: f64 = body.sites.iter().map(|site| site.volume).sum();
@@ -63,7 +51,7 @@ pub(super) fn normal_of(select: &Select) -> Result<DVec3, SetupError> {
             "add a face, such as `Select(body: \"plate\", face: MaxY)`",
         ));
     };
-    let (axis, sign) = outward(face);
+    let (axis, sign) = face.outward();
     Ok(sign * DVec3::AXES[axis])
 }
 
@@ -77,7 +65,7 @@ pub(super) fn check_is_side(
     sim: &SimBuilder<'_>,
 ) -> Result<(), SetupError> {
     let Some((axis, sign)) =
-        select.face.filter(|_| select.within.is_none() && select.nearest.is_none()).map(outward)
+        select.face.filter(|_| select.within.is_none() && select.nearest.is_none()).map(Face::outward)
     else {
         return Ok(());
     };

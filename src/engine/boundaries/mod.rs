@@ -16,6 +16,7 @@ mod part;
 mod prescribed;
 mod pressure;
 mod rigid_part;
+mod skin_load;
 mod symmetry;
 #[cfg(test)]
 mod tests;

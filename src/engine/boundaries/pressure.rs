@@ -7,19 +7,23 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
+use super::skin_load::{self, Kind, skins_of};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{Step, StepError};
 use crate::world::DeformationGradient;
 
-/// Presses on a face; the force follows the face as it turns and stretches: f = -p J F^-T N A (Nanson's formula, N and A
-/// normal and area in the reference configuration). The particles of a body carry equal shares of its loaded area.
+/// Presses on a surface; the force follows it as it turns and stretches. It acts on the surface itself, a `face` or `surface` of a total-Lagrangian body whose
+/// shape is known, with the area and normal of now; else on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A
+/// normal and area in the reference configuration), in equal shares of the loaded area.
+///
+/// The bore of a ring: `Pressure(on: Select(body: "ring", surface: Inner), value: 1e6)`.
 ///
 /// A smooth start within 10 ms: `Pressure(on: Select(body: "plate", face: MaxY), value: "1e5*smoothstep(t/0.01)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pressure {
-    /// Particles; the selection must name a face.
+    /// A face, or another part of the surface.
     pub on: Select,
     /// Pressure \[Pa\], positive towards the body, a function of the reference position and time.
     pub value: Expression,
@@ -33,9 +37,16 @@ impl Plugin for Pressure {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let normal = normal_of(&self.on)?;
-        let selection = sim.select(&self.on, "on")?;
         check_area(self.area)?;
+        if self.on.surface.is_none() {
+            normal_of(&self.on)?;
+        }
+        let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
+        if let Some(skins) = skins_of(&self.on, &selection, sim)? {
+            let make = || Kind::Pressure(self.value.clone());
+            return skin_load::apply("pressure", make, (&self.on, self.area), skins, sim);
+        }
+        let normal = normal_of(&self.on)?;
         if self.area.is_none() {
             selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
         }

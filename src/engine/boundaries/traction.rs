@@ -6,22 +6,23 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::Field;
 use super::load::{self, DeadLoad};
+use super::skin_load::{self, Kind, skins_of};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
-/// Loads particles with a force per reference area that keeps its direction (a dead load). The particles of a body carry
-/// equal shares of its loaded area.
+/// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the surface itself, a `face` or `surface` of a
+/// total-Lagrangian body whose shape is known; else on the selected particles, in equal shares of the loaded area.
 ///
 /// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as `"1e5*smoothstep(t/0.01)"`,
 /// over several periods of the slowest oscillation, or use `local_damping`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
-    /// Particles, usually those of a face.
+    /// A face or another part of the surface, or particles.
     pub on: Select,
     /// Traction per axis \[Pa\], a function of the reference position and time; `None` is zero.
     pub value: PerAxis<Expression>,
-    /// Loaded area \[m2; m in two dimensions\]. Default: of a whole face of a box its area. Else the volume of the selected
+    /// Loaded area \[m2; m in two dimensions\]. Default: that of the surface. Of particles: of a whole face of a box its area. Else the volume of the selected
     /// particles over the thickness of their layer, which is twice their mean distance from the face, or the spacing where
     /// the selection names no face: the true area of a flat face on a lattice, some percent off on an irregular packing, so
     /// state it there.
@@ -34,9 +35,13 @@ impl Plugin for Traction {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let selection = sim.select(&self.on, "on")?;
-        let field = Field::new(self.value, sim)?;
         check_area(self.area)?;
+        let field = Field::new(self.value, sim)?;
+        let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
+        if let Some(skins) = skins_of(&self.on, &selection, sim)? {
+            let make = || Kind::Traction(field.clone());
+            return skin_load::apply("traction", make, (&self.on, self.area), skins, sim);
+        }
         if self.area.is_none() {
             selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
         }

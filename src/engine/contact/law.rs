@@ -4,13 +4,15 @@ use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 
 use crate::materials::ParameterError;
-use crate::scene::Dimension;
+use crate::scene::{ContactSurface, Dimension};
 
 /// Two bodies that touch, as far as a law depends on them.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactPair {
     /// Plane strain or three dimensions: in plane strain forces are per metre of thickness.
     pub dimension: Dimension,
+    /// Whether surfaces touch, or particles.
+    pub surface: ContactSurface,
     /// E*, Pa: `1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2`; infinite where neither body has a modulus.
     pub modulus: f64,
 }
@@ -59,6 +61,12 @@ impl Spring {
     pub(super) fn along(self, scale: f64) -> Self {
         let Self { force, stiffness, energy } = self;
         Self { force: scale * force, stiffness: scale * scale * stiffness, energy }
+    }
+
+    /// The spring of so many times the area.
+    pub(super) fn over(self, area: f64) -> Self {
+        let Self { force, stiffness, energy } = self;
+        Self { force: area * force, stiffness: area * stiffness, energy: area * energy }
     }
 }
 

@@ -183,6 +183,7 @@ impl ParticleContact {
                 touch: Touch { overlap: near.overlap, radius, length: reach, depth: reach },
                 normal: near.normal,
                 scale: near.scale,
+                area: 1.0,
                 arms: near.arms,
                 velocity: velocity(of, near.arms),
             };

@@ -5,12 +5,12 @@ use serde::Deserialize;
 
 use super::law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
 use crate::materials::ParameterError;
-use crate::scene::Dimension;
+use crate::scene::{ContactSurface, Dimension};
 
 /// Spring between surfaces: f = k d (1 + b (d/D)^2) with the depth d of the overlap, and D that at which the centre of a particle is at the
 /// surface, so that pressures of the order of the modulus do not push it through; between rigid bodies f = k d. The stiffness follows from
-/// the materials: in three dimensions k = 1.5 E* l, with l the distance of two particles that just touch; in two k = 1.5 E* per metre of
-/// thickness, whatever the spacing. 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+/// the materials: in three dimensions k = 2.5 E* l, with l the spacing, for every l^2 of the surface; in two k = 2.5 E* per metre of
+/// thickness for every l of it. Where particles touch, k = 1.5 E* of each. 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Penalty {
@@ -22,9 +22,12 @@ pub struct Penalty {
     pub hardening: f64,
 }
 
-/// k over E* per metre of thickness: two equal bodies that touch give way like one and a third spacings of them. With less an impact
+/// k over E* per metre of thickness where particles touch: two equal bodies give way like one and a third spacings of them. With less an impact
 /// lasts longer (S22), with more a contact that is a few particles wide becomes narrower (C1).
-const STIFFNESS: f64 = 1.5;
+const OF_PARTICLES: f64 = 1.5;
+/// The same where surfaces touch, which are not narrower for it: the interface gives way like .4 spacings of either body. With less, thin bodies that are pressed are
+/// too soft (S4), with more the steps are short.
+const OF_SURFACES: f64 = 2.5;
 
 impl Default for Penalty {
     fn default() -> Self {
@@ -44,7 +47,8 @@ impl ContactLaw for Penalty {
             ParameterError::require_positive("stiffness", stiffness)?;
             return Ok(Box::new(Hardening { constant: stiffness, per_length: 0.0, hardening }));
         }
-        let modulus = STIFFNESS * self.factor * pair.modulus_or("stiffness")?;
+        let stiffness = if pair.surface == ContactSurface::Skin { OF_SURFACES } else { OF_PARTICLES };
+        let modulus = stiffness * self.factor * pair.modulus_or("stiffness")?;
         Ok(Box::new(match pair.dimension {
             Dimension::Two => Hardening { constant: modulus, per_length: 0.0, hardening },
             Dimension::Three => Hardening { constant: 0.0, per_length: modulus, hardening },

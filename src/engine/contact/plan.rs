@@ -1,5 +1,7 @@
 //! From the contacts of a scene to the systems that make them.
 
+use std::sync::Arc;
+
 use super::images::mirrors;
 use super::law::{ContactPair, NormalForce};
 use super::members::Particles;
@@ -7,13 +9,17 @@ use super::particles::ParticleContact;
 use super::response::Interaction;
 use super::restitution::damping_ratio;
 use super::sides::{Nodes, Sides};
+use super::skin_on_tool::SkinOnTool;
+use super::skin_pair::SkinPair;
+use super::skins_of::Skins;
 use super::surface::SurfaceContact;
 use super::system;
 use super::touching::Touching;
 use crate::materials::{ElasticConstants, Law};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::rigid::sphere_of;
-use crate::scene::{Contact, Item, Problem};
+use crate::scene::{Contact, ContactSurface, Item, Problem};
+use crate::skins::Skin;
 use crate::symmetry::MirrorPlane;
 use crate::world::{BodyId, BodySet};
 
@@ -31,6 +37,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     let mut touching = Vec::new();
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
+    let (mut skins, mut warnings) = (Skins::default(), Vec::new());
     for (k, contact) in scene.contacts.iter().enumerate() {
         if let Some(problem) = named_before(&scene.contacts[..k], contact, k) {
             problems.push(problem);
@@ -43,7 +50,14 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
             );
             continue;
         }
-        match pairs_of(contact, k, &planes, sim, make) {
+        match pairs_of(
+            contact,
+            k,
+            &planes,
+            sim,
+            make,
+            &mut Surfaces { skins: &mut skins, warnings: &mut warnings },
+        ) {
             Ok(pairs) => {
                 numbers.resize(numbers.len() + pairs.len(), k);
                 touching.extend(pairs);
@@ -54,6 +68,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     if !problems.is_empty() {
         return Err(problems);
     }
+    warnings.into_iter().for_each(|warning| sim.warn(warning));
     if !touching.is_empty() {
         let bodies = BodySet::new(touching.iter().flat_map(Touching::bodies));
         system::add(sim, touching, numbers, &bodies);
@@ -71,39 +86,82 @@ fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Probl
     })
 }
 
+/// Skins that bodies touch with, and what the user is told of those that do not.
+struct Surfaces<'a> {
+    skins: &'a mut Skins,
+    warnings: &'a mut Vec<String>,
+}
+
+impl Surfaces<'_> {
+    fn of(
+        &mut self,
+        body: &BodyPlan,
+        contact: &Contact,
+        planes: &[MirrorPlane],
+        sim: &SimBuilder<'_>,
+    ) -> Option<Arc<Skin>> {
+        match self.skins.of(body, contact.surface, planes, sim) {
+            Ok(skin) => Some(skin),
+            Err(reason) => {
+                let (name, (a, b)) = (&body.name, &contact.between);
+                self.warnings.extend(reason.map(|reason| {
+                    format!(
+                        "body `{name}` touches with its particles in the contact of `{a}` and `{b}`: {reason}"
+                    )
+                }));
+                None
+            }
+        }
+    }
+}
+
 fn pairs_of(
     contact: &Contact,
     number: usize,
     planes: &[MirrorPlane],
     sim: &SimBuilder<'_>,
     make: MakeLaw<'_>,
+    surfaces: &mut Surfaces<'_>,
 ) -> Result<Vec<Touching>, Vec<Problem>> {
     let (first, second) = (find(sim, &contact.between.0), find(sim, &contact.between.1));
     let softness = |body: &BodyPlan| elastic_of(body).map_or(0.0, |e| (1.0 - e.poisson.powi(2)) / e.young);
-    let pair =
-        ContactPair { dimension: sim.dimension(), modulus: 1.0 / (softness(first) + softness(second)) };
+    let modulus = 1.0 / (softness(first) + softness(second));
     let both = [first, second].into_iter().filter_map(elastic_of).map(|elastic| elastic.poisson);
     let (count, sum) = both.fold((0.0, 0.0), |(count, sum), poisson| (count + 1.0, sum + poisson));
     let poisson = if count > 0.0 { sum / count } else { 0.0 };
-    let interaction = || -> Result<Interaction, Vec<Problem>> {
+    let interaction_of = |surface| -> Result<Interaction, Vec<Problem>> {
         Ok(Interaction {
-            law: make(&contact.law, &pair)?,
+            law: make(&contact.law, &ContactPair { dimension: sim.dimension(), surface, modulus })?,
             friction: contact.friction,
             damping_ratio: damping_ratio(contact.restitution),
             tangential: 2.0 * (1.0 - poisson) / (2.0 - poisson),
         })
     };
+    let interaction = || interaction_of(ContactSurface::Particles);
+    let of_skins = || interaction_of(ContactSurface::Skin);
     let particles = |body| Nodes::Particles(Particles::of(body, sim.dimension()));
+    let sides = |nodes, of: &BodyPlan, on: &BodyPlan| Sides {
+        first: of.id,
+        nodes,
+        second: on.id,
+        periodic: sim.periodic(),
+    };
     let on_surface = |nodes, of: &BodyPlan, on: &BodyPlan| -> Result<Touching, Vec<Problem>> {
         Ok(Touching::Surface(Box::new(SurfaceContact::new(
             interaction()?,
-            Sides { first: of.id, nodes, second: on.id, periodic: sim.periodic() },
+            sides(nodes, of, on),
             sim.gravity().length(),
         ))))
     };
     let is_sphere = |body: &BodyPlan| sphere_of(&sim.scene().bodies[body.id.0].shape).is_some();
     Ok(match (is_rigid(first), is_rigid(second)) {
         (false, false) => {
+            if first.id != second.id {
+                let mut skin = |body| surfaces.of(body, contact, planes, sim);
+                if let (Some(first), Some(second)) = (skin(first), skin(second)) {
+                    return Ok(vec![Touching::Skins(Box::new(SkinPair::new(of_skins()?, [first, second])))]);
+                }
+            }
             let mut pairs = Vec::new();
             for mirror in mirrors(planes, first.id, second.id) {
                 let mut bodies = [first, second].map(|body| Particles::of(body, sim.dimension()));
@@ -116,8 +174,17 @@ fn pairs_of(
             }
             pairs
         }
-        (false, true) => vec![on_surface(particles(first), first, second)?],
-        (true, false) => vec![on_surface(particles(second), second, first)?],
+        (false, true) | (true, false) => {
+            let (soft, tool) = if is_rigid(second) { (first, second) } else { (second, first) };
+            vec![match surfaces.of(soft, contact, planes, sim) {
+                Some(skin) => Touching::SkinOnTool(Box::new(SkinOnTool::new(
+                    of_skins()?,
+                    skin,
+                    sides(particles(soft), soft, tool),
+                ))),
+                None => on_surface(particles(soft), soft, tool)?,
+            }]
+        }
         // A sphere is one node, and touches the surface of the other exactly.
         (true, true) if is_sphere(first) => vec![on_surface(Nodes::Rigid, first, second)?],
         (true, true) if is_sphere(second) => vec![on_surface(Nodes::Rigid, second, first)?],

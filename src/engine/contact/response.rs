@@ -28,6 +28,8 @@ pub(super) struct Meeting {
     pub normal: DVec3,
     /// Overlap per way along the normal.
     pub scale: f64,
+    /// Area of the contact over that for which the law holds.
+    pub area: f64,
     /// From the particles of both sides to the point of contact, in the reference configuration, m.
     pub arms: [DVec3; 2],
     /// Velocity of the first side relative to the second at that point at mid-step, m/s.
@@ -63,8 +65,8 @@ impl Interaction {
         dt: f64,
         before: &Memory,
     ) -> Response {
-        let Meeting { touch, normal, velocity, scale, arms } = meeting;
-        let mut spring = self.law.at(touch).along(*scale);
+        let Meeting { touch, normal, velocity, scale, area, arms } = meeting;
+        let mut spring = self.law.at(touch).along(*scale).over(*area);
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
         spring.force *= share_of_step(touch, scale * approach * dt, before);

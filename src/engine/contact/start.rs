@@ -13,8 +13,10 @@ pub(super) fn refuse_bodies_within_others(
 ) {
     let mut checks = Vec::new();
     for (pair, number) in touching.iter().zip(numbers) {
-        if let Touching::Surface(contact) = pair {
-            checks.push((contact.sides.clone(), number));
+        match pair {
+            Touching::Surface(contact) => checks.push((contact.sides.clone(), number)),
+            Touching::SkinOnTool(contact) => checks.push((contact.sides.clone(), number)),
+            Touching::Particles(_) | Touching::Skins(_) => {}
         }
     }
     sim.add_setup(move |setup| checks.iter().try_for_each(|(sides, number)| check(sides, *number, setup)));

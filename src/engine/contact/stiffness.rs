@@ -9,6 +9,10 @@ const FREQUENCY_FACTOR: f64 = 0.7;
 /// Share of the distance of two particles that just touch by which they may approach in a step.
 const SWEPT_FACTOR: f64 = 0.25;
 
+/// Square of that factor over the square of the one of skins, 0.55: two fifths of the critical step of the contact of a skin alone, which is 1.33 over the
+/// root of stiffness over the mass of a layer of particles. Bodies that bounce then keep their energy to a thousandth.
+pub(super) const OF_SKIN: f64 = (FREQUENCY_FACTOR / 0.55) * (FREQUENCY_FACTOR / 0.55);
+
 /// Proposes the limits of two bodies: for contacts of a squared frequency, 1/s2, and for an approach at `speed`, m/s,
 /// of particles that touch at a distance of `reach`, m.
 pub(super) fn propose(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64, speed: f64, reach: f64) {

@@ -206,6 +206,7 @@ fn evaluate(
             touch: touch_of(nodes, i, tool, near.overlap),
             normal,
             scale: near.scale,
+            area: 1.0,
             arms: near.arms,
             velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
         };

@@ -2,11 +2,10 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::memory::{Memory, PairKey};
 use super::pace::Pace;
 use super::start;
 use super::tally::{self, Tally};
-use super::touching::Touching;
+use super::touching::{Saved, Touching};
 use crate::plugin::SimBuilder;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{
@@ -28,7 +27,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
         tallies: Vec::with_capacity(touching.len()),
         touching,
     };
-    let deforms = contacts.touching.iter().flat_map(Touching::particles).any(|particles| particles.deform);
+    let deforms = contacts.touching.iter().any(Touching::deforms);
     let shared = Arc::new(Mutex::new(contacts));
     let mut system = System::new(Stage::Boundary, CONTACT, Meet(Arc::clone(&shared)));
     if deforms {
@@ -85,15 +84,22 @@ impl Contacts {
 
     /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.
     fn add_couples(&self, step: &Step<'_>) {
-        let deforms = |touching: &&Touching| touching.particles().any(|particles| particles.deform);
-        let mut deforming = self.touching.iter().filter(deforms).peekable();
+        let mut deforming = self.touching.iter().filter(|touching| touching.deforms()).peekable();
         if deforming.peek().is_none() {
             return;
         }
-        for (body, touched) in deforming.flat_map(Touching::touched) {
-            let Body { phase, rows, .. } = step.world.body(body);
-            if let Some(mut solid) = step.resources.solid_mut(*phase) {
-                touched.add_couples(&mut *solid, rows.start);
+        for touching in deforming {
+            for (body, touched) in touching.touched() {
+                let Body { phase, rows, .. } = step.world.body(body);
+                if let Some(mut solid) = step.resources.solid_mut(*phase) {
+                    touched.add_couples(&mut *solid, rows.start);
+                }
+            }
+            for patch in touching.patches() {
+                let Body { phase, rows, .. } = step.world.body(patch.skin.body);
+                if let Some(mut solid) = step.resources.solid_mut(*phase) {
+                    patch.add_couples(&mut *solid, rows.start);
+                }
             }
         }
         for phase in step.world.phases() {
@@ -109,6 +115,10 @@ impl Contacts {
             let (view, rows) = step.world.body_view(body);
             touched.add_forces(&mut view.write::<Force>()?[rows]);
         }
+        for patch in self.touching.iter().flat_map(Touching::patches) {
+            let (view, rows) = step.world.body_view(patch.skin.body);
+            patch.add_forces(&mut view.write::<Force>()?[rows]);
+        }
         Ok(())
     }
 }
@@ -123,21 +133,14 @@ impl Run for Meet {
 
     fn save(&self) -> Vec<u8> {
         let contacts = lock(&self.0);
-        let entries: Vec<_> = contacts.touching.iter().map(|pair| pair.memories().entries()).collect();
-        postcard::to_stdvec(&entries).unwrap_or_default()
+        let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
+        postcard::to_stdvec(&saved).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok(entries) = postcard::from_bytes::<Vec<Vec<(PairKey, Memory)>>>(state) else { return false };
+        let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
         let mut contacts = lock(&self.0);
-        if entries.len() != contacts.touching.len() {
-            return false;
-        }
-        contacts
-            .touching
-            .iter_mut()
-            .zip(entries)
-            .for_each(|(pair, entries)| pair.memories_mut().set(entries));
-        true
+        saved.len() == contacts.touching.len()
+            && contacts.touching.iter_mut().zip(saved).all(|(pair, saved)| pair.restore(saved))
     }
 }

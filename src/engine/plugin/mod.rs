@@ -2,6 +2,7 @@
 
 mod builder;
 mod error;
+mod facet_selection;
 mod handed;
 mod offers;
 mod plan;
@@ -12,6 +13,7 @@ mod traits;
 
 pub use builder::SimBuilder;
 pub use error::SetupError;
+pub(crate) use facet_selection::facets_of;
 pub use handed::ForBodies;
 pub use offers::{BodyKind, Offer};
 pub use plan::BodyPlan;

@@ -48,6 +48,11 @@ pub(super) fn resolve(
         let help = "the faces are MinX, MaxX, MinY and MaxY";
         return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
     }
+    if select.surface.is_some() {
+        let help =
+            "select particles by `within`, `face` or `nearest`; `surface` is for `Traction` and `Pressure`";
+        return Err(SetupError::parameter(path("surface"), "a surface has no particles of its own", help));
+    }
     let within = match &select.within {
         Some(shape) => Some(shape.region(dimension, folder, &path("within")).map_err(|error| {
             SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")

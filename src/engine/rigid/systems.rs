@@ -275,7 +275,9 @@ fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), S
 fn propose(body: &RigidBody, end: f64, step: &mut Step<'_>) {
     let spacing = step.world.body(body.id).spacing;
     let speed = body.state.velocity.length() / spacing + body.state.angular_velocity.length();
-    let acceleration = (body.state.force / body.mass).length() / spacing;
+    // Forces do not accelerate a body whose motion is prescribed.
+    let pulled = if body.is_driven() { DVec3::ZERO } else { body.state.force };
+    let acceleration = (pulled / body.mass).length() / spacing;
     let rate = (speed / MOTION_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
     let name = &step.world.body(body.id).name;
     step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));

@@ -21,6 +21,20 @@ pub struct Contact {
     /// take along.
     #[serde(default = "elastic")]
     pub restitution: f64,
+    /// With what deformable bodies touch.
+    #[serde(default)]
+    pub surface: ContactSurface,
+}
+
+/// With what deformable bodies touch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum ContactSurface {
+    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, bodies that may fail, those that
+    /// symmetry planes cut and those of periodic domains, contact of a body with itself and with a `Wall` fall back to `Particles`.
+    #[default]
+    Skin,
+    /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.
+    Particles,
 }
 
 const fn elastic() -> f64 {

@@ -29,7 +29,7 @@ mod tree;
 
 pub use crate::space::{Dimension, Vec3};
 pub use body::Body;
-pub use contact::Contact;
+pub use contact::{Contact, ContactSurface};
 pub use description::Scene;
 pub use domain::{Axis, Domain, Outside};
 pub use expression::{Expression, ExpressionError};
@@ -41,7 +41,7 @@ pub use probe::{Probe, Quantity};
 pub use problem::{Place, Problem, SceneError};
 pub use record::Record;
 pub use reference::{Parameter, TypeDoc, parameters, schema_markdown, type_docs};
-pub use select::{Face, Select};
+pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
 pub use time::{Step, Time};
 

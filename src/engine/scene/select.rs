@@ -22,6 +22,25 @@ pub struct Select {
     /// The one particle, of those that meet the other criteria, that is nearest to this point \[m\].
     #[serde(default)]
     pub nearest: Option<Vec3>,
+    /// Of loads: that part of the surface of the body.
+    #[serde(default)]
+    pub surface: Option<SurfacePart>,
+}
+
+/// A part of the surface of a body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum SurfacePart {
+    /// All of it.
+    All,
+    /// What looks away from the body.
+    Outer,
+    /// What looks at the body itself: holes, bores, notches.
+    Inner,
+    /// What lies on the surface of this shape too, such as that of the cylinder that a hole was cut with.
+    Of(Shape),
+    /// What faces this direction, to 45 degrees.
+    Facing(Vec3),
 }
 
 /// A side of a body along a coordinate axis.
@@ -39,4 +58,18 @@ pub enum Face {
     MinZ,
     /// The side of largest z.
     MaxZ,
+}
+
+impl Face {
+    /// Axis and sign of the outward normal.
+    pub const fn outward(self) -> (usize, f64) {
+        match self {
+            Self::MinX => (0, -1.0),
+            Self::MaxX => (0, 1.0),
+            Self::MinY => (1, -1.0),
+            Self::MaxY => (1, 1.0),
+            Self::MinZ => (2, -1.0),
+            Self::MaxZ => (2, 1.0),
+        }
+    }
 }

@@ -8,6 +8,7 @@ mod check;
 mod concentric;
 mod cylinder;
 mod error;
+mod facets;
 mod fill;
 mod half_space;
 mod lattice;
@@ -29,6 +30,7 @@ mod voronoi;
 
 pub use concentric::Rings;
 pub use error::{FillError, FillErrorKind};
+pub use facets::{Facets, directed_area};
 pub use fill::{Site, fill};
 pub use lattice::Lattice;
 pub use mesh::MeshFault;

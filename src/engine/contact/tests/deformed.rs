@@ -119,9 +119,9 @@ fn least_stretch(sim: &Simulation) -> f64 {
 #[test]
 fn a_crash_of_two_blocks_keeps_energy_momentum_and_angular_momentum() {
     for (dimension, contact) in [
-        ("Two", "law: Penalty()"),
-        ("Two", "law: Penalty(), friction: 0.4, restitution: 0.5"),
-        ("Three", "law: Penalty(), friction: 0.4, restitution: 0.5"),
+        ("Two", "law: Penalty(), surface: Particles"),
+        ("Two", "law: Penalty(), surface: Particles, friction: 0.4, restitution: 0.5"),
+        ("Three", "law: Penalty(), surface: Particles, friction: 0.4, restitution: 0.5"),
     ] {
         let mut sim = crash(dimension, contact, 0.5);
         sim.start().unwrap();
@@ -145,7 +145,7 @@ fn a_crash_of_two_blocks_keeps_energy_momentum_and_angular_momentum() {
 #[test]
 fn what_the_books_of_a_crash_miss_is_the_error_of_the_leapfrog() {
     let error = |factor: f64| {
-        let mut sim = crash("Two", "law: Penalty()", factor);
+        let mut sim = crash("Two", "law: Penalty(), surface: Particles", factor);
         sim.run(|_| true).unwrap();
         sim.ledger().relative_error().abs()
     };
@@ -164,7 +164,7 @@ fn a_block_bounces_off_a_turned_plane_without_loss() {
                 (name: "table", material: "soft", shape: Box(min: (-0.5, -0.5), max: (0.5, 0)), spacing: 0.25,
                  formulation: Rigid(), velocity: (0.0, 1.0)),
             ],
-            contacts: [Contact(between: ("block", "table"), law: Penalty(), friction: 0.3, restitution: 0.7)],
+            contacts: [Contact(between: ("block", "table"), law: Penalty(), surface: Particles, friction: 0.3, restitution: 0.7)],
             time: (end: 0.012))"#,
     );
     sim.start().unwrap();
@@ -191,7 +191,7 @@ fn a_block_that_is_pressed_against_a_corner_or_a_ball_gets_back_what_it_gave() {
                          formulation: TotalLagrangian, velocity: (0.5, -9.0)),
                         (name: "tool", material: "soft", shape: {shape}, spacing: 0.01, formulation: Rigid(spin: (0, 0, {turn:?}))),
                     ],
-                    contacts: [Contact(between: ("block", "tool"), law: Penalty(factor: 2))],
+                    contacts: [Contact(between: ("block", "tool"), law: Penalty(factor: 2), surface: Particles)],
                     time: (end: 0.012, step: Adaptive(factor: {factor})))"#
             ));
             sim.start().unwrap();

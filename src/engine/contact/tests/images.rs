@@ -17,7 +17,7 @@ fn bodies_meet_across_a_periodic_side() {
                     (name: "right", material: "soft", shape: Box(min: (0.155, 0), max: (0.195, 0.04)), spacing: 0.01,
                      formulation: {formulation}, velocity: (1, 0.2)),
                 ],
-                contacts: [Contact(between: ("left", "right"), law: Penalty(), friction: 0.2)],
+                contacts: [Contact(between: ("left", "right"), law: Penalty(), surface: Particles, friction: 0.2)],
                 time: (end: 0.02, step: Adaptive(factor: 0.25)))"#
         ));
         sim.start().unwrap();
@@ -63,7 +63,7 @@ fn half_a_fork_that_closes_on_its_own_image_is_half_of_the_whole() {
                 shape: Difference(Box(min: (0, 0), max: (0.2, {height})), Box(min: (0.04, 0.04), max: (0.21, 0.06))))],
             conditions: [{conditions}
                 Velocity(on: Select(within: Box(min: (0.16, 0.0), max: (0.21, 0.01))), value: (None, "1.5*smoothstep(t/0.005)"))],
-            contacts: [Contact(between: ("fork", "fork"), law: Penalty(), restitution: 0.8)],
+            contacts: [Contact(between: ("fork", "fork"), law: Penalty(), surface: Particles, restitution: 0.8)],
             time: (end: 0.012, step: Fixed(5e-6)))"#
         ))
     };
@@ -93,7 +93,7 @@ fn half_of_two_blocks_that_meet_is_half_of_the_whole() {
                  formulation: TotalLagrangian, velocity: (-1, 0)),
             ],
             conditions: [{conditions} InitialVelocity(on: Select(body: "left"), value: ("1 + 200*(y - 0.05)^2", "(0.05 - y)*20"))],
-            contacts: [Contact(between: ("left", "right"), law: Penalty(), friction: 0.3)],
+            contacts: [Contact(between: ("left", "right"), law: Penalty(), surface: Particles, friction: 0.3)],
             time: (end: 0.008, step: Fixed(5e-6)))"#
         ))
     };

@@ -1,12 +1,12 @@
 //! The laws as functions: force, stiffness and energy fit each other.
 
 use crate::contact::{ContactLaw, ContactPair, Hertz, NormalForce, Penalty, PlaneForce, Touch};
-use crate::scene::Dimension;
+use crate::scene::{ContactSurface, Dimension};
 
 const RADIUS: f64 = 0.01;
 
 fn laws() -> Vec<Box<dyn NormalForce>> {
-    let pair = |dimension| ContactPair { dimension, modulus: 2.3e5 };
+    let pair = |dimension| ContactPair { dimension, surface: ContactSurface::Particles, modulus: 2.3e5 };
     let (two, three) = (pair(Dimension::Two), pair(Dimension::Three));
     vec![
         Penalty::default().build(&two).unwrap(),
@@ -39,7 +39,7 @@ fn force_is_the_derivative_of_energy_and_stiffness_that_of_force() {
 
 #[test]
 fn without_hardening_the_penalty_is_linear() {
-    let pair = ContactPair { dimension: Dimension::Three, modulus: 1.0 };
+    let pair = ContactPair { dimension: Dimension::Three, surface: ContactSurface::Particles, modulus: 1.0 };
     let law = Penalty { stiffness: Some(3.0e3), hardening: 0.0, ..Penalty::default() }.build(&pair).unwrap();
     for d in [1e-5, 4e-3, 9e-3] {
         assert!((law.at(&touch(d)).force - 3.0e3 * d).abs() < 1e-12 * d);
@@ -64,7 +64,7 @@ fn the_stiffness_of_an_impact_is_that_where_the_spring_has_all_energy() {
 
 #[test]
 fn parameters_out_of_range_are_refused() {
-    let pair = ContactPair { dimension: Dimension::Three, modulus: 1.0 };
+    let pair = ContactPair { dimension: Dimension::Three, surface: ContactSurface::Particles, modulus: 1.0 };
     assert!(Penalty { stiffness: Some(0.0), ..Penalty::default() }.build(&pair).is_err());
     assert!(Penalty { factor: -1.0, ..Penalty::default() }.build(&pair).is_err());
     assert!(Penalty { hardening: -1.0, ..Penalty::default() }.build(&pair).is_err());

@@ -6,6 +6,7 @@ mod laws;
 mod long;
 mod particles;
 mod rigid;
+mod skins;
 mod walls;
 
 use glam::DVec3;

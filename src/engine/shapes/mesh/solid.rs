@@ -43,6 +43,11 @@ impl MeshSolid {
         let edges = sharp_edges(&triangles, &neighbors, &normals);
         Ok(Self { triangles, normals, tree, edges, bounds, volume: volume.abs() })
     }
+
+    /// Vertices \[m\], and those of each triangle, outward.
+    pub fn into_triangles(self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        (self.triangles.points, self.triangles.corners)
+    }
 }
 
 /// The volume of the tetrahedra between the triangles and a point near them, positive if they face away from the inside \[m³\].

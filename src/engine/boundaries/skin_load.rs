@@ -1,0 +1,224 @@
+//! Tractions and pressures on the surface of a body, which its skin hands on to the particles.
+//!
+//! The work of a step is that of the mean of the forces at its two ends on the way of the vertices.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::DVec3;
+
+use super::field::Field;
+use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
+use crate::scene::{Expression, Select};
+use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::shapes::directed_area;
+use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
+use crate::world::{
+    BodySet, Column, ColumnSet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
+};
+
+/// What gives the force on a facet.
+pub(super) enum Kind {
+    /// A force per area of the reference configuration.
+    Traction(Field),
+    /// Against the normal, per area of now.
+    Pressure(Expression),
+}
+
+/// A load on facets of the skin of a body.
+struct SkinLoad {
+    label: &'static str,
+    kind: Kind,
+    patch: Patch,
+    /// Facets, with their middles in the reference configuration, m, and their areas there, m2; stated areas come in as a factor.
+    facets: Vec<(u32, DVec3, f64)>,
+    factor: f64,
+    /// Forces on the vertices at the end of the last step, N.
+    last: Vec<DVec3>,
+}
+
+/// The skins of the bodies of a selection; none if the load has to act on particles.
+pub(super) fn skins_of(
+    select: &Select,
+    selection: &Selection,
+    sim: &SimBuilder<'_>,
+) -> Result<Option<Vec<Arc<Skin>>>, SetupError> {
+    let skins = selection.parts.iter().map(|(id, _)| skin_of(select, sim.body(*id), sim));
+    let skins: Option<Vec<_>> = skins.collect();
+    if skins.is_none() && select.surface.is_some() {
+        let message = "the surface of a selected body is not known, or is not that of a total-Lagrangian solid without damage";
+        return Err(SetupError::parameter("on.surface", message, "select particles of a `face` instead"));
+    }
+    // A face of a shape without one: the load on particles says what is wrong.
+    let has_any = |skins: &Vec<Arc<Skin>>| -> Result<bool, SetupError> {
+        for skin in skins {
+            if !facets_of(select, skin.body, &skin.facets, sim)?.is_empty() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    };
+    match skins {
+        Some(skins) if select.surface.is_some() || has_any(&skins)? => Ok(Some(skins)),
+        _ => Ok(None),
+    }
+}
+
+/// The skin of a body on which a load acts; none if the load has to act on particles.
+fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc<Skin>> {
+    let mut state = ColumnSet::default();
+    body.solid_law().ok()?.state(&mut state);
+    let is_whole = body.offers(Offer::DeformedContact) && state.get(Damage::NAME).is_none();
+    let is_surface = (select.face.is_some() || select.surface.is_some()) && select.nearest.is_none();
+    // The vertices of a skin at a symmetry plane are carried from one side alone: a uniform load would not stay uniform.
+    let is_cut =
+        select.surface.is_none() && sim.scene().conditions.iter().any(|item| item.name() == "Symmetry");
+    if !is_whole || !is_surface || is_cut {
+        return None;
+    }
+    let shape = &sim.scene().bodies[body.id.0].shape;
+    Skin::of(body, shape, sim.dimension(), sim.folder()).map(Arc::new)
+}
+
+/// Adds a load on the skins of bodies; `area` is what the scene says of the loaded area.
+pub(super) fn apply(
+    label: &'static str,
+    make: impl Fn() -> Kind,
+    (select, area): (&Select, Option<f64>),
+    skins: Vec<Arc<Skin>>,
+    sim: &mut SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    let mut loads = Vec::new();
+    let mut total = 0.0;
+    for skin in skins {
+        let chosen = facets_of(select, skin.body, &skin.facets, sim)?;
+        let of = |&facet: &u32| {
+            let measure = skin.measure[facet as usize];
+            (facet, skin.facets.center(facet as usize), measure)
+        };
+        let facets: Vec<_> = chosen.iter().map(of).collect();
+        total += facets.iter().map(|facet| facet.2).sum::<f64>();
+        if facets.is_empty() {
+            continue;
+        }
+        let mut patch = Patch::new(skin);
+        patch.select(chosen);
+        loads.push((facets, patch));
+    }
+    if loads.is_empty() {
+        let help = "name a side that the body has, or a larger `within`";
+        return Err(SetupError::parameter("on", "no part of the surface is selected", help));
+    }
+    let factor = area.map_or(1.0, |area| area / total);
+    let bodies = BodySet::new(loads.iter().map(|(_, patch)| patch.skin.body));
+    let phases = sim.phases_of(&bodies);
+    let loads = loads.into_iter().map(|(facets, patch)| SkinLoad {
+        label,
+        kind: make(),
+        patch,
+        facets,
+        factor,
+        last: Vec::new(),
+    });
+    let shared = Arc::new(Mutex::new(loads.collect::<Vec<_>>()));
+    let make = System::new(Stage::Boundary, label, Make(Arc::clone(&shared)));
+    sim.add_system(
+        make.on_phases(phases.clone())
+            .reads::<Position>()
+            .reads::<Velocity>()
+            .reads::<Mobility>()
+            .reads::<Removed>()
+            .reads::<DeformationGradient>()
+            .touches("corrected_stress", Mode::Adds),
+    );
+    let push = move |step: &mut Step<'_>| lock(&shared).iter().try_for_each(|load| load.push(step));
+    sim.add_system(System::new(Stage::External, label, push).on_phases(phases).adds::<Force>());
+    Ok(())
+}
+
+type Shared = Arc<Mutex<Vec<SkinLoad>>>;
+
+fn lock(loads: &Shared) -> MutexGuard<'_, Vec<SkinLoad>> {
+    loads.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The system that works out the forces.
+struct Make(Shared);
+
+impl Run for Make {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut loads = lock(&self.0);
+        loads.iter_mut().try_for_each(|load| load.make(step))?;
+        for phase in step.world.phases() {
+            if let Some(mut solid) = step.resources.solid_mut(phase) {
+                solid.renew_ghosts();
+            }
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let saved: Vec<Saved> =
+            lock(&self.0).iter().map(|load| (load.last.clone(), load.patch.saved())).collect();
+        postcard::to_stdvec(&saved).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
+        let mut loads = lock(&self.0);
+        let fits = saved.len() == loads.len();
+        for (load, (last, places)) in loads.iter_mut().zip(saved) {
+            let facets: Vec<u32> = load.facets.iter().map(|facet| facet.0).collect();
+            load.patch.restore(&places);
+            load.patch.select(facets);
+            load.last = last;
+        }
+        fits
+    }
+}
+
+/// Forces at the end of the last step, and where the vertices were.
+type Saved = (Vec<DVec3>, Vec<(u32, Last)>);
+
+impl SkinLoad {
+    /// The forces at the end of the step, and their work.
+    fn make(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let Self { label, kind, patch, facets, factor, last } = self;
+        let skin = Arc::clone(&patch.skin);
+        let columns = SkinColumns::new(&skin, step.world)?;
+        patch.update(&columns.view(), step.clock.dt, Wanted::Places);
+        let (axes, t) = (skin.facets.axes, step.clock.end());
+        for &(facet, middle, area) in &*facets {
+            let corners = patch.corners(facet);
+            if !corners.iter().all(|corner| corner.is_there) {
+                continue;
+            }
+            let force = *factor
+                * match kind {
+                    Kind::Traction(field) => area * field.at(middle, t),
+                    Kind::Pressure(value) => {
+                        -value.eval(middle, t) * directed_area(axes, &corners.map(|corner| corner.place))
+                    }
+                };
+            if !force.is_finite() {
+                let message =
+                    format!("the load at the reference position {middle} and time {t:.6e} s is {force} N");
+                return Err(StepError::System { system: (*label).to_owned(), message });
+            }
+            (0..axes).for_each(|k| patch.push_corner(facet, k, force / axes as f64));
+        }
+        let account = step.ledger.account(label, AccountKind::Supplied);
+        step.ledger.add(account, skin.body, patch.work(last, step.clock.dt));
+        patch.hand_on();
+        let body = step.world.body(skin.body);
+        if let Some(mut solid) = step.resources.solid_mut(body.phase) {
+            patch.add_couples(&mut *solid, body.rows.start);
+        }
+        Ok(())
+    }
+
+    fn push(&self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let (view, rows) = step.world.body_view(self.patch.skin.body);
+        self.patch.add_forces(&mut view.write::<Force>()?[rows]);
+        Ok(())
+    }
+}

@@ -1,0 +1,284 @@
+//! Contact of the skins of two deformable bodies.
+//!
+//! Points of either skin are tested against the facets of the other one, and the integral is shared out: a point counts by
+//!
+//! ```text
+//! w = (1 + c - c')/2,       c at the point, c' at its foot,      c = 1 at corners, 0 elsewhere, linear in between
+//! ```
+//!
+//! so that flat sides share it evenly, and a corner is always the one that is tested. The overlap is the distance of the point from the facets, radial at
+//! notches. The force follows from the energy, with the change of w as the foot moves, and acts along the line between point and foot. Friction acts on both
+//! bodies at the point, which the material of the other one reaches by its deformation gradient at the foot.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::law::Touch;
+use super::meetings::Meetings;
+use super::memory::{Memory, PairKey};
+use super::pace::Pace;
+use super::response::{Interaction, Meeting};
+use super::skin_between::NearSkins;
+use super::skin_foot::{Foot, foot, slopes};
+use super::stiffness;
+use super::tally::Tally;
+use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::schedule::{Step, StepError};
+use crate::skins::{Patch, Rule, Skin, SkinColumns, Wanted};
+
+/// How deep a point may be below the surface of the other body, over the mean spacing.
+const DEPTH: f64 = 0.5;
+/// Cosine between the normals of a point and its foot above which they do not face each other.
+const FACING: f64 = -0.2;
+/// Factor on the squared frequency of two skins: a particle at a corner is pressed from two sides.
+const CORNERS: f64 = 2.0;
+
+/// Contact of two skins.
+pub(super) struct SkinPair {
+    interaction: Interaction,
+    /// Both skins.
+    pub patches: [Patch; 2],
+    rule: Rule,
+    near: NearSkins,
+    /// The points of each side against the facets of the other.
+    pub passes: [Meetings<Meet, Push, ()>; 2],
+}
+
+/// A point that touches.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Meet {
+    x: DVec3,
+    foot: Foot,
+    /// Share of the integral.
+    weight: f64,
+}
+
+/// What a point does.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Push {
+    /// Force on the point, N, and how much of it is across the normal.
+    force: DVec3,
+    across: DVec3,
+    /// From the foot to the point in the reference configuration of the other body, m.
+    arm: DVec3,
+    /// Energy of the law over the weight, J, where the weight changes as the foot moves.
+    energy: f64,
+    /// Stiffness over the area, N/m3 (N/m2 in two dimensions).
+    stiffness: f64,
+}
+
+/// What is the same for all points.
+struct Side<'a> {
+    own: &'a Patch,
+    other: &'a Patch,
+    rule: &'a Rule,
+    /// Length for which the law holds, m.
+    length: f64,
+}
+
+impl SkinPair {
+    /// Contact of two skins.
+    pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2]) -> Self {
+        let rule = Rule::exact(skins[0].facets.axes);
+        let (near, patches) = (NearSkins::default(), skins.map(Patch::new));
+        Self { interaction, patches, rule, near, passes: [Meetings::default(), Meetings::default()] }
+    }
+
+    /// Works out the forces of all points that touch.
+    pub fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
+        let dt = step.clock.dt;
+        let skins = [0, 1].map(|k| Arc::clone(&self.patches[k].skin));
+        let first = SkinColumns::new(&skins[0], step.world)?;
+        let second = SkinColumns::new(&skins[1], step.world)?;
+        let views = [first.view(), second.view()];
+        let speed = paces[0].speed + paces[1].speed;
+        if self.near.is_old(speed, dt) {
+            self.near.find([&skins[0], &skins[1]], &views, self.rule.len()).map_err(|error| {
+                StepError::System { system: super::CONTACT.to_owned(), message: error.to_string() }
+            })?;
+            for (patch, facets) in self.patches.iter_mut().zip(&self.near.facets) {
+                patch.select(facets.iter().copied());
+            }
+        }
+        let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Gradients };
+        self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
+        let mut tally = Tally::default();
+        let mut stiffest = Largest::default();
+        for side in 0..2 {
+            tally.add(&self.evaluate(side, dt));
+            stiffest.add(&self.push(side));
+        }
+        self.patches.iter_mut().for_each(Patch::hand_on);
+        let squared = CORNERS * stiffness::OF_SKIN * stiffest.0 * (skins[0].lightness + skins[1].lightness);
+        let reach = skins[0].spacing.min(skins[1].spacing);
+        stiffness::propose(step, (skins[0].body, skins[1].body), squared, speed, reach);
+        Ok(tally)
+    }
+
+    /// What the points of one side do.
+    fn evaluate(&mut self, side: usize, dt: f64) -> Tally {
+        let Self { interaction, patches, rule, near, passes } = self;
+        let length = 0.5 * (patches[0].skin.spacing + patches[1].skin.spacing);
+        let side_of = Side { own: &patches[side], other: &patches[1 - side], rule, length };
+        let at = &side_of;
+        passes[side].find(&near.candidates[side], |(point, _), ()| {
+            let found = at.meet(point, near.facets_near(side, point / at.rule.len() as u32))?;
+            (found.weight > 0.0).then_some(found)
+        });
+        let axes = at.own.skin.facets.axes;
+        let usual = length.powi(axes as i32 - 1);
+        let respond = |(point, _): PairKey, meet: &Meet, before: &Memory, tally: &mut Tally| {
+            let Meet { x, foot, weight } = *meet;
+            let (velocity, arm, mobility) = at.motion(point, meet);
+            if !before.is_elastic() {
+                tally.losses.add_work(1.0, before, velocity, dt);
+            }
+            let area = at.area(point);
+            let touch = Touch { overlap: -foot.distance, radius: 0.5 * length, length, depth: length };
+            let meeting = Meeting {
+                touch,
+                normal: foot.normal,
+                scale: 1.0,
+                area: weight * area / usual,
+                arms: [x - at.place(&foot), DVec3::ZERO],
+                velocity,
+            };
+            let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
+            let response = interaction.respond(&meeting, inverse_mass, dt, before);
+            tally.losses.add_work(1.0, &response.memory, velocity, dt);
+            tally.losses.keep(1.0, before, &response.memory);
+            tally.stored += response.spring.energy + response.memory.energy();
+            let across = response.force - response.force.dot(foot.normal) * foot.normal;
+            let stiffness = response.spring.stiffness / area;
+            let energy = response.spring.energy / weight;
+            (response.memory, Push { force: response.force, across, arm, energy, stiffness })
+        };
+        let end = |(point, _): PairKey, memory: &Memory, tally: &mut Tally| {
+            if !memory.is_elastic() {
+                let meet = at.nearest(point, near.facets_near(side, point / at.rule.len() as u32));
+                let velocity = meet.map_or(DVec3::ZERO, |meet| at.motion(point, &meet).0);
+                tally.losses.add_work(1.0, memory, velocity, dt);
+            }
+            tally.losses.keep(1.0, memory, &Memory::default());
+        };
+        passes[side].respond(respond, end)
+    }
+
+    /// Pushes the vertices of both skins; returns the largest stiffness over an area.
+    fn push(&mut self, side: usize) -> Largest {
+        let Self { patches, rule, passes, .. } = self;
+        let count = rule.len();
+        let [first, second] = patches;
+        let (own, other) = if side == 0 { (first, second) } else { (second, first) };
+        let pass = &passes[side];
+        for (((point, _), meet), push) in pass.met().iter().zip(pass.pushes()) {
+            let (facet, shares) = (point / count as u32, rule.shares(*point as usize % count));
+            let Foot { facet: there, shares: below, .. } = meet.foot;
+            own.push(facet, shares, push.force, None);
+            let f = -push.across;
+            let couple = DMat3::from_cols(f * push.arm.x, f * push.arm.y, f * push.arm.z);
+            other.push(there, below, -push.force, (f != DVec3::ZERO).then_some(&couple));
+            shift_foot(own, other, (facet, shares), meet, push.energy);
+        }
+        sum_over_blocks(pass.pushes(), &|_, pushes: &[Push]| {
+            Largest::of(pushes.iter().map(|push| push.stiffness))
+        })
+    }
+}
+
+/// The force of the change of the weight as the foot moves: dw = -dc'/2, with c' linear on the facet of the foot.
+fn shift_foot(
+    own: &mut Patch,
+    other: &mut Patch,
+    (facet, shares): (u32, [f64; 3]),
+    meet: &Meet,
+    energy: f64,
+) {
+    let Foot { facet: there, shares: below, normal, distance } = meet.foot;
+    let skin = Arc::clone(&other.skin);
+    let axes = skin.facets.axes;
+    let vertices = skin.facets.corners[there as usize];
+    let corner = vertices.map(|vertex| skin.corner[vertex as usize]);
+    let is_inside = below[..axes].iter().all(|share| *share > 0.0);
+    if !is_inside || corner[..axes].iter().all(|c| *c == corner[0]) {
+        return;
+    }
+    let places = other.corners(there).map(|corner| corner.place);
+    let (slope, of_shares) = slopes(axes, &places, corner);
+    let half = 0.5 * energy;
+    own.push(facet, shares, half * slope, None);
+    for k in 0..axes {
+        let force = half * (distance * slope.dot(of_shares[k]) * normal - below[k] * slope);
+        other.push_corner(there, k, force);
+    }
+}
+
+impl Side<'_> {
+    fn corners(&self, point: u32) -> (u32, [f64; 3]) {
+        let count = self.rule.len();
+        (point / count as u32, self.rule.shares(point as usize % count))
+    }
+
+    /// The length (area) of a point in the reference configuration, m (m2).
+    fn area(&self, point: u32) -> f64 {
+        self.own.skin.measure[self.corners(point).0 as usize] / self.rule.len() as f64
+    }
+
+    /// Where a foot is, m.
+    fn place(&self, foot: &Foot) -> DVec3 {
+        let corners = self.other.corners(foot.facet);
+        (0..3).map(|k| foot.shares[k] * corners[k].place).sum()
+    }
+
+    /// The point of the other skin nearest to a point of this one, on either side.
+    fn nearest(&self, point: u32, facets: &[u32]) -> Option<Meet> {
+        let (facet, shares) = self.corners(point);
+        let corners = self.own.corners(facet);
+        let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
+        let foot = foot(self.other, facets, x, DEPTH * self.length)?;
+        Some(Meet { x, foot, weight: 0.0 })
+    }
+
+    /// A point that touches.
+    fn meet(&self, point: u32, facets: &[u32]) -> Option<Meet> {
+        let (facet, shares) = self.corners(point);
+        let corners = self.own.corners(facet);
+        let Meet { x, foot, .. } = self.nearest(point, facets).filter(|meet| meet.foot.distance < 0.0)?;
+        let ends = corners.map(|corner| corner.place);
+        let axes = self.own.skin.facets.axes;
+        let normal = crate::shapes::directed_area(axes, &ends).normalize_or_zero();
+        let there = self.other.corners(foot.facet);
+        let is_there = corners.iter().chain(&there).all(|corner| corner.is_there);
+        let corner = |patch: &Patch, facet: u32, shares: [f64; 3]| -> f64 {
+            let vertices = patch.skin.facets.corners[facet as usize];
+            (0..3).map(|k| shares[k] * patch.skin.corner[vertices[k] as usize]).sum()
+        };
+        let own = corner(self.own, facet, shares);
+        if normal.dot(foot.normal) > FACING || !is_there {
+            return None;
+        }
+        let weight = 0.5 * (1.0 + own - corner(self.other, foot.facet, foot.shares));
+        Some(Meet { x, foot, weight })
+    }
+
+    /// Velocity of a point, m/s.
+    fn velocity(&self, point: u32) -> DVec3 {
+        let (facet, shares) = self.corners(point);
+        let corners = self.own.corners(facet);
+        (0..3).map(|k| shares[k] * corners[k].velocity).sum()
+    }
+
+    /// Velocity of a point relative to the material of the other body there, m/s, how that is reached from the foot in the reference configuration, m, and
+    /// how much a traction moves both, m2/kg.
+    fn motion(&self, point: u32, meet: &Meet) -> (DVec3, DVec3, DVec3) {
+        let (facet, shares) = self.corners(point);
+        let (own, other) = (self.own.corners(facet), self.other.corners(meet.foot.facet));
+        let below = meet.foot.shares;
+        let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
+        let arm = gradient.inverse() * (meet.x - self.place(&meet.foot));
+        let there: DVec3 = (0..3).map(|k| below[k] * (other[k].velocity + other[k].rate * arm)).sum();
+        let mobility = (0..3).map(|k| shares[k] * own[k].mobility + below[k] * other[k].mobility).sum();
+        (self.velocity(point) - there, arm, mobility)
+    }
+}

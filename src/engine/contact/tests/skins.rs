@@ -1,0 +1,123 @@
+//! Bodies that touch with their skins: no tangential force without friction, Coulomb's with it, and exact restarts.
+
+use super::{angular_momentum, centre, momentum, simulation};
+use crate::scene::Source;
+use crate::simulation::{Checkpoint, Simulation};
+
+/// A block that is thrown at an angle onto a longer one, both free.
+fn thrown(dimension: &str, (along, down): (f64, f64), contact: &str, end: f64) -> Simulation {
+    let (low, high, z) = if dimension == "Two" {
+        ("min: (0, 0), max: (0.2, 0.08)", "min: (0.043, 0.0801), max: (0.103, 0.1401)", "")
+    } else {
+        (
+            "min: (0, 0, 0), max: (0.2, 0.08, 0.08)",
+            "min: (0.043, 0.0801, 0.02), max: (0.103, 0.1401, 0.06)",
+            ", 0.0",
+        )
+    };
+    simulation(&format!(
+        r#"(dimension: {dimension},
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "low", material: "soft", shape: Box({low}), spacing: 0.01, formulation: TotalLagrangian),
+                (name: "high", material: "soft", shape: Box({high}), spacing: 0.01, formulation: TotalLagrangian,
+                 velocity: ({along:?}, {down:?}{z})),
+            ],
+            contacts: [Contact(between: ("low", "high"), law: Penalty(), {contact})],
+            time: (end: {end:?}))"#
+    ))
+}
+
+/// Impulse across and along the normal on the lower block.
+fn impulses(sim: &mut Simulation) -> (f64, f64) {
+    sim.run(|_| true).unwrap();
+    let (_, velocity) = centre(sim, 0);
+    (velocity.x, -velocity.y)
+}
+
+#[test]
+fn blocks_that_slide_without_friction_feel_no_tangential_force() {
+    for dimension in ["Two", "Three"] {
+        let (across, along) = impulses(&mut thrown(dimension, (2.0, -0.5), "friction: 0.0", 0.02));
+        assert!(along > 0.0 && across.abs() < 0.01 * along, "{dimension}: {across} {along}");
+        let bumps = "friction: 0.0, surface: Particles";
+        let (across, along) = impulses(&mut thrown(dimension, (2.0, -0.5), bumps, 0.02));
+        assert!(across.abs() > 0.02 * along, "{dimension}: rows of bumps: {across} {along}");
+    }
+}
+
+#[test]
+fn blocks_that_slide_with_friction_feel_the_coefficient() {
+    for dimension in ["Two", "Three"] {
+        let mut sim = thrown(dimension, (1.0, -0.2), "friction: 0.1", 0.02);
+        sim.start().unwrap();
+        let before = momentum(&sim);
+        let (across, along) = impulses(&mut sim);
+        assert!((across / along - 0.1).abs() < 0.002, "{dimension}: {across} {along}");
+        assert!((momentum(&sim) - before).length() < 1e-12 * before.length());
+        assert!(sim.ledger().relative_error().abs() < 1e-3, "{}", sim.ledger().relative_error());
+    }
+}
+
+#[test]
+fn skins_go_on_exactly_after_a_restart() {
+    let make = || thrown("Two", (3.0, -2.0), "friction: 0.3, restitution: 0.8", 0.01);
+    let mut whole = make();
+    whole.run(|_| true).unwrap();
+    let mut first = make();
+    first.run(|sim| sim.clock().time < 0.003).unwrap();
+    let mut second = make();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.mlc");
+    first.save(&path, &Source::new("contact.ron", "")).unwrap();
+    second.restore(&Checkpoint::read(&path).unwrap()).unwrap();
+    second.run(|_| true).unwrap();
+    assert_eq!(whole.state_hash(), second.state_hash());
+}
+
+#[test]
+fn a_crash_of_two_skins_keeps_momentum_and_angular_momentum() {
+    for (dimension, contact) in [
+        ("Two", "friction: 0.0"),
+        ("Two", "friction: 0.4, restitution: 0.5"),
+        ("Three", "friction: 0.4, restitution: 0.5"),
+    ] {
+        let mut sim = thrown(dimension, (3.0, -4.0), contact, 0.008);
+        sim.start().unwrap();
+        let (p, l) = (momentum(&sim), angular_momentum(&sim));
+        sim.run(|_| true).unwrap();
+        let (q, m) = (momentum(&sim), angular_momentum(&sim));
+        assert!((q - p).length() < 1e-12 * p.length(), "{dimension} {contact}: {p} {q}");
+        assert!((m - l).length() < 1e-10 * l.length(), "{dimension} {contact}: {l} {m}");
+        let error = sim.ledger().relative_error().abs();
+        assert!(error < 1e-2, "{dimension} {contact}: {error}");
+    }
+}
+
+#[test]
+fn a_skin_bounces_off_planes_corners_and_balls_without_loss() {
+    for shape in [
+        "Box(min: (-0.09, -0.05), max: (0.01, 0.05))",
+        "Sphere(center: (0, -0.02), radius: 0.06)",
+        "HalfSpace(point: (0, 0.05), normal: (0.1, 1))",
+    ] {
+        let error = |factor: f64| {
+            let mut sim = simulation(&format!(
+                r#"(dimension: Two,
+                    materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                    bodies: [
+                        (name: "block", material: "soft", shape: Box(min: (-0.037, 0.072), max: (0.043, 0.132)), spacing: 0.01,
+                         formulation: TotalLagrangian, velocity: (0.5, -9.0)),
+                        (name: "tool", material: "soft", shape: {shape}, spacing: 0.01, formulation: Rigid()),
+                    ],
+                    conditions: [Fix(on: Select(body: "tool"))],
+                    contacts: [Contact(between: ("block", "tool"), law: Penalty())],
+                    time: (end: 0.012, step: Adaptive(factor: {factor})))"#
+            ));
+            sim.run(|_| true).unwrap();
+            sim.ledger().relative_error().abs()
+        };
+        let (coarse, fine) = (error(1.0), error(0.125));
+        assert!(coarse < 3e-3 && fine < 0.5 * coarse, "{shape}: {coarse} {fine}");
+    }
+}

@@ -1,0 +1,102 @@
+//! What a skin reads of its particles.
+
+use glam::{DMat3, DVec3};
+use hecs::ArchetypeColumn;
+
+use super::carriers::Carrier;
+use super::skin::Skin;
+use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};
+
+/// The columns of the particles of a body in this step.
+pub(crate) struct SkinColumns<'a> {
+    skin: &'a Skin,
+    first_row: usize,
+    position: ArchetypeColumn<'a, Position>,
+    velocity: ArchetypeColumn<'a, Velocity>,
+    mobility: ArchetypeColumn<'a, Mobility>,
+    removed: ArchetypeColumn<'a, Removed>,
+    gradient: ArchetypeColumn<'a, DeformationGradient>,
+}
+
+impl<'a> SkinColumns<'a> {
+    /// Those of the body of a skin.
+    pub fn new(skin: &'a Skin, world: &'a World) -> Result<Self, MissingColumn> {
+        let (view, rows) = world.body_view(skin.body);
+        Ok(Self {
+            skin,
+            first_row: rows.start,
+            position: view.read()?,
+            velocity: view.read()?,
+            mobility: view.read()?,
+            removed: view.read()?,
+            gradient: view.read()?,
+        })
+    }
+
+    /// The same, to be read by many.
+    pub fn view(&self) -> SkinView<'_> {
+        SkinView {
+            skin: self.skin,
+            first_row: self.first_row,
+            position: &self.position,
+            velocity: &self.velocity,
+            mobility: &self.mobility,
+            removed: &self.removed,
+            gradient: &self.gradient,
+        }
+    }
+}
+
+/// The particles of a skin in this step.
+#[derive(Clone, Copy)]
+pub(crate) struct SkinView<'a> {
+    skin: &'a Skin,
+    first_row: usize,
+    position: &'a [Position],
+    velocity: &'a [Velocity],
+    mobility: &'a [Mobility],
+    removed: &'a [Removed],
+    gradient: &'a [DeformationGradient],
+}
+
+impl SkinView<'_> {
+    fn mean<T: std::ops::Add<Output = T>>(
+        &self,
+        vertex: u32,
+        zero: T,
+        of: impl Fn(&Carrier, usize) -> T,
+    ) -> T {
+        let carriers = self.skin.carriers(vertex).iter();
+        carriers.fold(zero, |sum, carrier| sum + of(carrier, self.first_row + carrier.particle as usize))
+    }
+
+    /// Where a vertex is, m.
+    pub fn place(&self, vertex: u32) -> DVec3 {
+        self.mean(vertex, DVec3::ZERO, |carrier, row| {
+            carrier.weight * (self.position[row].0 + self.gradient[row].0 * carrier.arm)
+        })
+    }
+
+    /// Mean velocity of the particles that carry a vertex, m/s.
+    pub fn velocity(&self, vertex: u32) -> DVec3 {
+        self.mean(vertex, DVec3::ZERO, |carrier, row| carrier.weight * self.velocity[row].0)
+    }
+
+    /// Mean deformation gradient at a vertex.
+    pub fn gradient(&self, vertex: u32) -> DMat3 {
+        self.mean(vertex, DMat3::ZERO, |carrier, row| self.gradient[row].0 * carrier.weight)
+    }
+
+    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).
+    pub fn mobility(&self, vertex: u32) -> DVec3 {
+        self.mean(vertex, DVec3::ZERO, |carrier, row| {
+            self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize])
+        })
+    }
+
+    /// Whether no carrier of a vertex has been removed.
+    pub fn is_there(&self, vertex: u32) -> bool {
+        let mut carriers = self.skin.carriers(vertex).iter();
+        carriers.all(|carrier| self.removed[self.first_row + carrier.particle as usize] == Removed::NO)
+    }
+}

@@ -1,0 +1,27 @@
+//! Skins: the surface of a body, meshed once and carried along by its particles.
+//!
+//! The surface is that of the shape, in facets: segments of half a spacing in two dimensions, triangles of about a spacing in three. A vertex at X in the
+//! reference configuration is at
+//!
+//! ```text
+//! x = sum_j s_j [x_j + F_j (X - X_j)],      s_j ~ (1 - |X - X_j|/R)^3,  sum s_j = 1
+//! ```
+//!
+//! the Shepard mean of the linear fields of the particles near it, with R = 2.1 spacings: linearly exact, without matrices. The weights are made
+//! once. A force f on a vertex goes back by the exact transpose: s_j f on the particles, and s_j f (x) (X - X_j) as couples that the pass of the
+//! internal force spreads. So momentum, angular momentum and energy of what acts through a skin are exact by construction.
+//!
+//! A skin knows positions and deformation gradients of its particles, and nothing else of their formulation.
+
+mod carriers;
+mod columns;
+mod patch;
+mod rule;
+mod skin;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use columns::{SkinColumns, SkinView};
+pub(crate) use patch::{Last, Patch, Wanted};
+pub(crate) use rule::Rule;
+pub(crate) use skin::Skin;

@@ -1,0 +1,286 @@
+//! The part of a skin that something acts on in a step: where its vertices are, and the forces on them.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::columns::SkinView;
+use super::skin::Skin;
+use crate::parallel::{Picked, for_each_block, sum_over_blocks};
+use crate::solids::SolidPhase;
+use crate::world::Force;
+
+/// In the place of a number for vertices that are not in the patch.
+const NONE: u32 = u32::MAX;
+
+/// Where a vertex was in the last step, m, and the deformation gradient there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Last {
+    place: DVec3,
+    gradient: DMat3,
+}
+
+impl Last {
+    const UNKNOWN: Self = Self { place: DVec3::NAN, gradient: DMat3::NAN };
+}
+
+/// A vertex of the patch in this step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Vertex {
+    /// Where it is, m.
+    pub place: DVec3,
+    /// Its velocity at mid-step, m/s.
+    pub velocity: DVec3,
+    /// Deformation gradient, and its rate at mid-step, 1/s; if asked for.
+    pub gradient: DMat3,
+    pub rate: DMat3,
+    /// How much a traction moves the layer of particles there along each axis, m2/kg; if asked for.
+    pub mobility: DVec3,
+    /// Whether all that carries it is there.
+    pub is_there: bool,
+}
+
+/// What is to be worked out beside places and velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Places,
+    Mobility,
+    Gradients,
+}
+
+/// A vertex by which a force reaches a particle.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    arm: DVec3,
+    weight: f64,
+    particle: u32,
+    /// Number of the vertex in the patch.
+    vertex: u32,
+}
+
+/// A part of a skin.
+pub(crate) struct Patch {
+    /// The skin.
+    pub skin: Arc<Skin>,
+    facets: Vec<u32>,
+    vertices: Vec<u32>,
+    /// Those of the selection before.
+    old: Vec<u32>,
+    /// Number in the patch of every vertex of the skin.
+    numbers: Vec<u32>,
+    /// Of every vertex of the skin.
+    last: Vec<Last>,
+    now: Vec<Vertex>,
+    forces: Vec<DVec3>,
+    couples: Vec<DMat3>,
+    particles: Vec<u32>,
+    starts: Vec<u32>,
+    ends: Vec<End>,
+    on_particles: Vec<(DVec3, DMat3)>,
+    /// The couples alone, as the pass of the internal force takes them.
+    couples_on_particles: Vec<DMat3>,
+}
+
+impl Patch {
+    /// An empty one, with room for all of the skin.
+    pub fn new(skin: Arc<Skin>) -> Self {
+        let (vertices, carriers) = (skin.vertices(), skin.carrier_count());
+        let particles = carriers.min(skin.layer.len());
+        Self {
+            facets: Vec::with_capacity(skin.facets.corners.len()),
+            vertices: Vec::with_capacity(vertices * skin.facets.axes * 3),
+            old: Vec::with_capacity(vertices * skin.facets.axes * 3),
+            numbers: vec![NONE; vertices],
+            last: vec![Last::UNKNOWN; vertices],
+            now: Vec::with_capacity(vertices),
+            forces: Vec::with_capacity(vertices),
+            couples: Vec::with_capacity(vertices),
+            particles: Vec::with_capacity(particles),
+            starts: Vec::with_capacity(particles + 1),
+            ends: Vec::with_capacity(carriers),
+            on_particles: Vec::with_capacity(particles),
+            couples_on_particles: Vec::with_capacity(particles),
+            skin,
+        }
+    }
+
+    /// Makes these facets, ascending, the patch.
+    pub fn select(&mut self, facets: impl IntoIterator<Item = u32>) {
+        let skin = Arc::clone(&self.skin);
+        self.facets.clear();
+        self.facets.extend(facets);
+        std::mem::swap(&mut self.vertices, &mut self.old);
+        self.old.iter().for_each(|&vertex| self.numbers[vertex as usize] = NONE);
+        self.vertices.clear();
+        self.vertices.extend(self.facets.iter().flat_map(|&facet| skin.corners_of(facet)));
+        self.vertices.sort_unstable();
+        self.vertices.dedup();
+        for (number, &vertex) in (0..).zip(&self.vertices) {
+            self.numbers[vertex as usize] = number;
+        }
+        for vertex in self.old.iter().map(|&vertex| vertex as usize) {
+            if self.numbers[vertex] == NONE {
+                self.last[vertex] = Last::UNKNOWN;
+            }
+        }
+        let count = self.vertices.len();
+        self.now.resize(count, Vertex::default());
+        self.forces.resize(count, DVec3::ZERO);
+        self.couples.resize(count, DMat3::ZERO);
+        self.find_particles(&skin);
+    }
+
+    /// The particles that carry the vertices, each with its vertices, both ascending.
+    fn find_particles(&mut self, skin: &Skin) {
+        let Self { vertices, particles, starts, ends, .. } = self;
+        ends.clear();
+        for (number, &vertex) in (0..).zip(&*vertices) {
+            ends.extend(skin.carriers(vertex).iter().map(|carrier| End {
+                arm: carrier.arm,
+                weight: carrier.weight,
+                particle: carrier.particle,
+                vertex: number,
+            }));
+        }
+        ends.sort_unstable_by_key(|end| (end.particle, end.vertex));
+        particles.clear();
+        starts.clear();
+        for (number, end) in (0..).zip(&*ends) {
+            if particles.last() != Some(&end.particle) {
+                particles.push(end.particle);
+                starts.push(number);
+            }
+        }
+        starts.push(ends.len() as u32);
+        self.on_particles.resize(self.particles.len(), Default::default());
+        self.couples_on_particles.resize(self.particles.len(), DMat3::ZERO);
+    }
+
+    /// Works out where the vertices are and how they move, and takes the forces off them. `dt` is the length of the step, s.
+    pub fn update(&mut self, view: &SkinView<'_>, dt: f64, wanted: Wanted) {
+        self.forces.fill(DVec3::ZERO);
+        self.couples.fill(DMat3::ZERO);
+        let Self { vertices, last, now, .. } = self;
+        let rows = (Picked::new(vertices, last), &mut now[..]);
+        type Rows<'a> = (Picked<'a, Last>, &'a mut [Vertex]);
+        for_each_block(rows, &mut Vec::new(), &|_, (mut last, now): Rows<'_>| {
+            for (k, now) in now.iter_mut().enumerate() {
+                let vertex = last.number(k) as u32;
+                let last = last.row(k);
+                let place = view.place(vertex);
+                let is_new = last.place.is_nan();
+                let change = |new: DVec3| if dt > 0.0 { (new - last.place) / dt } else { DVec3::ZERO };
+                let velocity = if is_new { view.velocity(vertex) } else { change(place) };
+                let (mut gradient, mut rate) = (DMat3::IDENTITY, DMat3::ZERO);
+                if wanted == Wanted::Gradients {
+                    gradient = view.gradient(vertex);
+                    if dt > 0.0 && !is_new {
+                        rate = (gradient - last.gradient) * (1.0 / dt);
+                    }
+                }
+                let mobility = if wanted == Wanted::Places { DVec3::ZERO } else { view.mobility(vertex) };
+                *last = Last { place, gradient };
+                *now = Vertex { place, velocity, gradient, rate, mobility, is_there: view.is_there(vertex) };
+            }
+        });
+    }
+
+    /// A vertex of the skin that belongs to the patch.
+    pub fn vertex(&self, vertex: u32) -> &Vertex {
+        &self.now[self.numbers[vertex as usize] as usize]
+    }
+
+    /// The vertices of a facet of the patch; segments have two, and the last one twice.
+    pub fn corners(&self, facet: u32) -> [&Vertex; 3] {
+        self.skin.facets.corners[facet as usize].map(|vertex| self.vertex(vertex))
+    }
+
+    /// Pushes the point of a facet with these shares of its vertices by a force, N, and a couple, N m, f (x) A of the reference configuration.
+    pub fn push(&mut self, facet: u32, shares: [f64; 3], force: DVec3, couple: Option<&DMat3>) {
+        let corners = self.skin.facets.corners[facet as usize];
+        for (&vertex, share) in corners[..self.skin.facets.axes].iter().zip(shares) {
+            let number = self.numbers[vertex as usize] as usize;
+            self.forces[number] += share * force;
+            if let Some(couple) = couple {
+                self.couples[number] += *couple * share;
+            }
+        }
+    }
+
+    /// Pushes one vertex of a facet by a force, N.
+    pub fn push_corner(&mut self, facet: u32, corner: usize, force: DVec3) {
+        let vertex = self.skin.facets.corners[facet as usize][corner];
+        self.forces[self.numbers[vertex as usize] as usize] += force;
+    }
+
+    /// The work of the mean of the forces on the vertices at the end of the last step, N, and of those at the end of this one, J; `last` becomes the latter.
+    pub fn work(&self, last: &mut Vec<DVec3>, dt: f64) -> f64 {
+        if last.len() != self.forces.len() {
+            last.clone_from(&self.forces);
+        }
+        let ways = self.now.iter().zip(last.iter().zip(&self.forces));
+        let power: f64 = ways.map(|(now, (last, force))| 0.5 * (*last + *force).dot(now.velocity)).sum();
+        last.copy_from_slice(&self.forces);
+        power * dt
+    }
+
+    /// Hands the forces on the vertices on to the particles.
+    pub fn hand_on(&mut self) {
+        let Self { forces, couples, starts, ends, on_particles, couples_on_particles, .. } = self;
+        let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
+        type Rows<'a> = (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]);
+        for_each_block(rows, &mut Vec::new(), &|first, (on, alone): Rows<'_>| {
+            for (k, (on, alone)) in on.iter_mut().zip(alone).enumerate() {
+                let ends = &ends[starts[first + k] as usize..starts[first + k + 1] as usize];
+                let (mut force, mut couple) = (DVec3::ZERO, DMat3::ZERO);
+                for end in ends {
+                    let f = end.weight * forces[end.vertex as usize];
+                    force += f;
+                    couple += couples[end.vertex as usize] * end.weight;
+                    couple += DMat3::from_cols(f * end.arm.x, f * end.arm.y, f * end.arm.z);
+                }
+                (*on, *alone) = ((force, couple), couple);
+            }
+        });
+    }
+
+    /// The couples on the particles of the patch.
+    #[cfg(test)]
+    pub fn couples(&self) -> &[DMat3] {
+        &self.couples_on_particles
+    }
+
+    /// Adds the couples to the stress of the particles; `first` is the first row of the body.
+    pub fn add_couples(&self, solid: &mut dyn SolidPhase, first: usize) {
+        solid.add_couples(first, &self.particles, &self.couples_on_particles);
+    }
+
+    /// Adds the forces on the particles of the body.
+    pub fn add_forces(&self, force: &mut [Force]) {
+        let rows = (Picked::new(&self.particles, force), &self.on_particles[..]);
+        type Rows<'a> = (Picked<'a, Force>, &'a [(DVec3, DMat3)]);
+        sum_over_blocks(rows, &|_, (mut rows, on): Rows<'_>| {
+            for (k, (push, _)) in on.iter().enumerate().filter(|(_, on)| on.0 != DVec3::ZERO) {
+                rows.row(k).0 += *push;
+            }
+        });
+    }
+
+    /// Where the vertices were in the last step.
+    pub fn saved(&self) -> Vec<(u32, Last)> {
+        self.vertices.iter().map(|&vertex| (vertex, self.last[vertex as usize])).collect()
+    }
+
+    /// Takes up what was saved; the next selection keeps it.
+    pub fn restore(&mut self, saved: &[(u32, Last)]) {
+        if self.vertices.is_empty() {
+            self.vertices.extend(saved.iter().map(|entry| entry.0));
+        }
+        for &(vertex, last) in saved {
+            if let Some(own) = self.last.get_mut(vertex as usize) {
+                *own = last;
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The skin of a body in the reference configuration.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::carriers::{Carrier, carriers};
+use crate::plugin::BodyPlan;
+use crate::scene::Dimension;
+use crate::shapes::{Facets, Shape};
+use crate::world::BodyId;
+
+/// Length of facets over the spacing.
+const LENGTH: [f64; 2] = [0.5, 1.0];
+/// Cosine of the turn of the normal above which a vertex is a corner.
+const CORNER: f64 = 0.82;
+
+/// The surface of a body, and what carries it.
+#[derive(Debug)]
+pub(crate) struct Skin {
+    /// Its body.
+    pub body: BodyId,
+    /// Distance of particles of the body, m.
+    pub spacing: f64,
+    /// The surface in the reference configuration.
+    pub facets: Facets,
+    /// Length (area) of every facet there, m (m2).
+    pub measure: Vec<f64>,
+    /// Of every vertex, how much of it is at a corner: 1 at corners and the ends of facets beside them, else 0.
+    pub corner: Vec<f64>,
+    /// The facets at every vertex, and where those of each begin.
+    pub(super) facet_starts: Vec<u32>,
+    pub(super) facets_at: Vec<u32>,
+    pub(super) starts: Vec<u32>,
+    pub(super) carriers: Vec<Carrier>,
+    /// Largest of the particles' lengths (areas) in a layer over their masses, m2/kg (m/kg in two dimensions).
+    pub lightness: f64,
+    /// Of every particle the length (area) for which it stands in a layer, m (m2).
+    pub(super) layer: Vec<f64>,
+}
+
+impl Skin {
+    /// The skin of a body; none where its surface is not known, or where it is too thin to carry one.
+    pub fn of(body: &BodyPlan, shape: &Shape, dimension: Dimension, folder: &Path) -> Option<Self> {
+        let axes = dimension.count();
+        let facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;
+        let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let (starts, carriers) = carriers(&facets.points, &particles, body.spacing).ok()??;
+        let normals: Vec<(DVec3, f64)> =
+            (0..facets.corners.len()).map(|facet| facets.normal_and_measure(facet)).collect();
+        let (facet_starts, facets_at) = facets_at_vertices(&facets);
+        let measure = normals.iter().map(|normal| normal.1).collect();
+        let power = (axes as f64 - 1.0) / axes as f64;
+        let layer: Vec<f64> = body.sites.iter().map(|site| site.volume.powf(power)).collect();
+        let mass = body.sites.iter().map(|site| body.material.density * site.volume);
+        let lightness = layer.iter().zip(mass).map(|(layer, mass)| layer / mass).fold(0.0, f64::max);
+        let mut skin = Self {
+            body: body.id,
+            spacing: body.spacing,
+            corner: Vec::new(),
+            facets,
+            measure,
+            facet_starts,
+            facets_at,
+            starts,
+            carriers,
+            lightness,
+            layer,
+        };
+        skin.corner = skin.corners(&normals);
+        Some(skin)
+    }
+
+    /// Number of vertices.
+    pub fn vertices(&self) -> usize {
+        self.facets.points.len()
+    }
+
+    /// The facets that meet at a vertex.
+    pub fn facets_at(&self, vertex: u32) -> &[u32] {
+        let k = vertex as usize;
+        &self.facets_at[self.facet_starts[k] as usize..self.facet_starts[k + 1] as usize]
+    }
+
+    pub(super) fn carriers(&self, vertex: u32) -> &[Carrier] {
+        let k = vertex as usize;
+        &self.carriers[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+
+    /// Number of all carriers of all vertices.
+    pub(super) fn carrier_count(&self) -> usize {
+        self.carriers.len()
+    }
+
+    /// The vertices of a facet: two or three.
+    pub fn corners_of(&self, facet: u32) -> &[u32] {
+        &self.facets.corners[facet as usize][..self.facets.axes]
+    }
+
+    /// The facets at a corner and their other vertices.
+    fn corners(&self, normals: &[(DVec3, f64)]) -> Vec<f64> {
+        let normal = |facet: &u32| normals[*facet as usize].0;
+        let turns = |vertex: u32| {
+            let facets = self.facets_at(vertex);
+            facets.iter().any(|a| facets.iter().any(|b| normal(a).dot(normal(b)) < CORNER))
+        };
+        let is_corner: Vec<bool> = (0..self.vertices() as u32).map(turns).collect();
+        let mut corner = vec![0.0; self.vertices()];
+        for facet in 0..self.facets.corners.len() as u32 {
+            let vertices = self.corners_of(facet);
+            if vertices.iter().any(|&vertex| is_corner[vertex as usize]) {
+                vertices.iter().for_each(|&vertex| corner[vertex as usize] = 1.0);
+            }
+        }
+        corner
+    }
+}
+
+fn facets_at_vertices(facets: &Facets) -> (Vec<u32>, Vec<u32>) {
+    let mut of_vertex: Vec<Vec<u32>> = vec![Vec::new(); facets.points.len()];
+    for (facet, corners) in (0..).zip(&facets.corners) {
+        corners[..facets.axes].iter().for_each(|&vertex| of_vertex[vertex as usize].push(facet));
+    }
+    let (mut starts, mut all) = (vec![0], Vec::new());
+    for facets in of_vertex {
+        all.extend(facets);
+        starts.push(all.len() as u32);
+    }
+    (starts, all)
+}

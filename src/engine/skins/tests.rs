@@ -1,0 +1,141 @@
+//! Skins: exact for affine motions, and forces that go back by the transpose.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::{Patch, Rule, Skin, SkinColumns, Wanted};
+use crate::assembly::build;
+use crate::plugin::Registry;
+use crate::scene::{Source, parse};
+use crate::simulation::Simulation;
+use crate::world::{BodyId, DeformationGradient, Force, Position};
+
+fn simulation(dimension: &str, shape: &str) -> Simulation {
+    let text = format!(
+        r#"(dimension: {dimension},
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "body", material: "soft", shape: {shape}, spacing: 0.01, formulation: TotalLagrangian)],
+            time: (end: 0.01))"#
+    );
+    let (scene, source) = parse(Source::new("skin.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The skin of the body of a simulation, whose particles stand where those of the scene do.
+fn skin(sim: &Simulation, dimension: &str, shape: &str) -> Skin {
+    use crate::plugin::BodyPlan;
+    use crate::scene::Dimension;
+    use crate::shapes::{Lattice, Shape, fill};
+    let axes = if dimension == "Two" { Dimension::Two } else { Dimension::Three };
+    let shape: Shape = ron::from_str(shape).unwrap();
+    let folder = std::path::Path::new(".");
+    let sites = fill(&shape, Lattice::default(), 0.01, axes, folder, 1_000_000).unwrap();
+    let body = sim.world().body(BodyId(0));
+    let plan = BodyPlan {
+        id: BodyId(0),
+        name: body.name.clone(),
+        phase: body.phase,
+        formulation: "TotalLagrangian",
+        rows: body.rows.clone(),
+        spacing: 0.01,
+        material_name: String::new(),
+        material: crate::materials::Material::nothing(),
+        sites,
+        bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
+        velocity: None,
+        kind: crate::plugin::BodyKind::Solid,
+        offers: &[],
+        support: None,
+    };
+    Skin::of(&plan, &shape, axes, folder).unwrap_or_else(|| panic!("no skin"))
+}
+
+const SHAPES: [(&str, &str); 3] = [
+    ("Two", "Box(min: (0, 0), max: (0.1, 0.05))"),
+    ("Two", "Sphere(center: (0.02, 0.01), radius: 0.05)"),
+    ("Three", "Cylinder(from: (0, 0, 0), to: (0, 0, 0.08), radius: 0.04)"),
+];
+
+#[test]
+fn vertices_follow_an_affine_motion_exactly() {
+    for (dimension, shape) in SHAPES {
+        let sim = simulation(dimension, shape);
+        let skin = skin(&sim, dimension, shape);
+        let mut f = DMat3::from_cols_array(&[1.3, 0.2, 0.0, -0.1, 0.8, 0.0, 0.0, 0.0, 1.0]);
+        let shift = DVec3::new(0.3, -0.2, 0.0);
+        if dimension == "Three" {
+            f.z_axis = DVec3::new(0.2, 0.1, 1.1);
+        }
+        {
+            let (view, rows) = sim.world().body_view(BodyId(0));
+            let mut x = view.write::<Position>().unwrap();
+            let mut gradient = view.write::<DeformationGradient>().unwrap();
+            for row in rows {
+                x[row].0 = f * x[row].0 + shift;
+                gradient[row].0 = f;
+            }
+        }
+        let columns = SkinColumns::new(&skin, sim.world()).unwrap();
+        let view = columns.view();
+        for (vertex, reference) in (0..).zip(&skin.facets.points) {
+            let expected = f * *reference + shift;
+            assert!(view.place(vertex).distance(expected) < 1e-14, "{shape} {reference}");
+        }
+    }
+}
+
+#[test]
+fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
+    for (dimension, shape) in SHAPES {
+        let sim = simulation(dimension, shape);
+        let skin = Arc::new(skin(&sim, dimension, shape));
+        let mut patch = Patch::new(Arc::clone(&skin));
+        patch.select(0..skin.facets.corners.len() as u32);
+        let columns = SkinColumns::new(&skin, sim.world()).unwrap();
+        patch.update(&columns.view(), 0.0, Wanted::Places);
+        let rule = Rule::exact(skin.facets.axes);
+        let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
+        for facet in 0..skin.facets.corners.len() as u32 {
+            for point in 0..rule.len() {
+                let shares = rule.shares(point);
+                let corners = patch.corners(facet);
+                let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
+                let f = DVec3::new(1.0, f64::from(facet % 7) - 3.0, 0.0);
+                (force, moment) = (force + f, moment + x.cross(f));
+                patch.push(facet, shares, f, None);
+            }
+        }
+        patch.hand_on();
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let mut on_particles = vec![Force(DVec3::ZERO); rows.len()];
+        patch.add_forces(&mut on_particles);
+        let x = view.read::<Position>().unwrap();
+        let sum: DVec3 = on_particles.iter().map(|force| force.0).sum();
+        let mut turn: DVec3 = rows.clone().map(|row| x[row].0.cross(on_particles[row].0)).sum();
+        // At F = I the moment of a couple f (x) A is A x f.
+        for couple in patch.couples() {
+            turn +=
+                DVec3::X.cross(couple.x_axis) + DVec3::Y.cross(couple.y_axis) + DVec3::Z.cross(couple.z_axis);
+        }
+        assert!(sum.distance(force) < 1e-12 * force.length(), "{shape}: {sum} {force}");
+        assert!(turn.distance(moment) < 1e-10 * force.length(), "{shape}: {turn} {moment}");
+    }
+}
+
+#[test]
+fn rules_are_exact_for_what_they_are_made_for() {
+    for rule in [Rule::exact(2), Rule::fine(2, 8), Rule::exact(3), Rule::fine(3, 2), Rule::fine(3, 4)] {
+        let count = rule.len() as f64;
+        let mean: f64 = (0..rule.len()).map(|k| rule.shares(k)[1]).sum::<f64>() / count;
+        let ends: f64 = (0..rule.len()).map(|k| rule.shares(k).iter().sum::<f64>()).sum();
+        assert!((ends - count).abs() < 1e-12);
+        let axes = if rule.shares(0)[2] == 0.0 { 2.0 } else { 3.0 };
+        assert!((mean - 1.0 / axes).abs() < 1e-12, "{mean}");
+    }
+    for (axes, square) in [(2, 1.0 / 3.0), (3, 1.0 / 6.0)] {
+        let rule = Rule::exact(axes);
+        let mean = (0..rule.len()).map(|k| rule.shares(k)[1].powi(2)).sum::<f64>() / rule.len() as f64;
+        assert!((mean - square).abs() < 1e-12, "{axes}: {mean}");
+    }
+}
