@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::compression::Compressed;
 use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
@@ -84,16 +83,6 @@ impl Group {
             Role::Boundary(_) => None,
         }
     }
-
-    /// Whether it bounds the fluid and can pull at it.
-    pub(super) fn pulls(&self) -> bool {
-        matches!(&self.role, Role::Boundary(surface) if surface.suction)
-    }
-
-    /// Least pressure of a fluid at which it holds what parts from it, Pa.
-    pub(super) fn least_pressure(&self) -> f64 {
-        if self.pulls() { f64::NEG_INFINITY } else { 0.0 }
-    }
 }
 
 /// A neighbour of a fluid particle.
@@ -134,8 +123,8 @@ pub struct FlowCloud {
     pub(super) near: NearRows,
     /// Fluid neighbours within the support of every particle that is no fluid.
     pub(super) near_boundary: NearRows,
-    /// Rate of compression of every fluid particle at the middle of the step.
-    pub(super) compression: Vec<Compressed>,
+    /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
+    pub(super) compression: Vec<f64>,
     /// Whether a viscous fluid had a free surface when the lists were built.
     pub(super) free_surface: bool,
     /// Acceleration of every fluid particle by loads; empty where nothing loads a fluid.

@@ -2,9 +2,6 @@
 //!
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
 //! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
-//!
-//! A boundary without suction does not pull at a fluid of pressure below zero. What parts from it then does not expand by that, `loose` in
-//! [`Compressed`]: the energy of the expansion would come from nowhere, as no force does its work.
 
 use super::batch::{BATCH, Batch};
 use super::cloud::FlowCloud;
@@ -45,20 +42,11 @@ impl Run for Compression {
     }
 }
 
-/// How fast a fluid particle expands, at the middle of the step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Compressed {
-    /// D, 1/s.
-    pub rate: f64,
-    /// What D would have beside that if boundaries could pull, 1/s.
-    pub loose: f64,
-}
-
 impl FlowCloud {
     /// Finds the neighbours within the support of every fluid particle, and its D, 1/s, in a step of that length, s.
     fn compress(&mut self, dt: f64) {
         let (mut near, mut rates) = (std::mem::take(&mut self.near), std::mem::take(&mut self.compression));
-        rates.resize(self.fluid, Compressed::default());
+        rates.resize(self.fluid, 0.0);
         for_each_block((&mut rates[..], near.writer()), &mut Vec::new(), &|first, (out, near)| {
             run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, near });
         });
@@ -71,7 +59,7 @@ struct Rows<'a> {
     /// Time from the end of the step to its middle, s.
     back: f64,
     first: usize,
-    out: &'a mut [Compressed],
+    out: &'a mut [f64],
     near: NearWriter<'a>,
 }
 
@@ -98,13 +86,7 @@ impl Rows<'_> {
                 sum = pairs.add::<A, P>(a, row, (&mut near, &mut batch), sum);
             }
             near.close();
-            let loose = if records[i].pressure() < 0.0 {
-                pairs.loose::<A, P>(a, lists.walls.row(i))
-            } else {
-                Lanes4::ZERO
-            };
-            let [total, loose] = [sum, loose].map(|sum| a.scale(kernel.weight_scale(), sum).sum());
-            *out = Compressed { rate: total - loose, loose };
+            *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }
 }
@@ -167,26 +149,5 @@ impl<const D: usize> Pairs<'_, D> {
             x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
         }
         (dot(a, &x, &x), a.times(four.volume, dot(a, &four.v, &x)))
-    }
-
-    /// The part of the sum that belongs to boundaries which part from the particle and cannot hold it.
-    #[inline(always)]
-    fn loose<A: Arithmetic, const P: bool>(&self, a: A, row: &[u32]) -> Lanes4 {
-        let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, back, .. } = self;
-        let mut sum = Lanes4::ZERO;
-        for chunk in row.chunks(4) {
-            let rows = as_rows(filled_up(chunk));
-            let four = Four::<D>::gather::<A, P>(a, records, own, rows, periods);
-            let mut x = four.x;
-            for axis in 0..D {
-                x[axis] = a.scale_add(*back, four.v[axis], x[axis]);
-            }
-            let parting = a.times(a.or_zero(dot(a, &four.v, &x)), MASKS[chunk.len()]);
-            // A boundary carries the least pressure at which it holds what parts from it.
-            let parting = a.where_below(own.pressure, four.pressure, parting);
-            let shape = kernel.shapes(a, a.sqrt(dot(a, &x, &x)));
-            sum = a.times_add(shape, a.times(four.volume, parting), sum);
-        }
-        sum
     }
 }

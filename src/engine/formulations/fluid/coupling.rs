@@ -85,7 +85,7 @@ impl FlowCloud {
             type Rows<'a> = (&'a mut [super::Record], &'a [DVec3]);
             for_each_block(slices, &mut Vec::new(), &|_, (records, before): Rows<'_>| {
                 for (record, before) in records.iter_mut().zip(before) {
-                    record.motion = Lanes4::new((record.position() - *before) / dt, record.pressure());
+                    record.motion = Lanes4::new((record.position() - *before) / dt, 0.0);
                 }
             });
         }

@@ -1,8 +1,6 @@
 //! The density of fluids at the end of the step, by continuity.
 
 use super::cloud::{FlowCloud, FluidState};
-use super::compression::Compressed;
-use super::force::ACCOUNTS;
 use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -32,8 +30,6 @@ pub(super) struct Change {
     shifted: f64,
     /// Energy of compression that leaves with removed particles, J.
     removed: f64,
-    /// Energy that boundaries keep from expansions which they cannot hold, J.
-    loose: f64,
     /// First row, counted from one, whose density is not above zero.
     broken: usize,
 }
@@ -43,7 +39,6 @@ impl BlockSum for Change {
         self.dissipated += next.dissipated;
         self.shifted += next.shifted;
         self.removed += next.removed;
-        self.loose += next.loose;
         if self.broken == 0 {
             self.broken = next.broken;
         }
@@ -84,10 +79,6 @@ impl Run for Continuity {
                 let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.removed);
             }
-            if change.loose != 0.0 {
-                let account = step.ledger.account(ACCOUNTS[1], AccountKind::Dissipated);
-                step.ledger.add(account, group.body, change.loose);
-            }
             if shift.is_some() {
                 let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.shifted);
@@ -101,7 +92,7 @@ impl Run for Continuity {
     }
 }
 
-type Rows<'a> = (&'a mut [Density], &'a [Compressed], &'a [DensityRate], &'a [Mass], &'a [Removed]);
+type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'a [Removed]);
 
 /// The densities of a block.
 struct Advance<'a> {
@@ -135,15 +126,9 @@ impl HotLoop for Advance<'_> {
             // the pressures of the two kicks, and the books close to second order in the step.
             let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
-            let half = -0.5 * dt * compression[k].rate;
+            let half = -0.5 * dt * compression[k];
             let before = rho.0 + by_terms + shift;
             let after = a.mul_add(before, half, before) / (1.0 - half);
-            if compression[k].loose != 0.0 {
-                // The two kicks do their work with the pressures of both ends.
-                let p = |rho| state.eos.pressure(rho, state.density, state.sound_speed);
-                let volume = mass[k].0 / after;
-                change.loose -= 0.5 * (p(rho.0) + p(after)) * volume * compression[k].loose * dt;
-            }
             if shift != 0.0 {
                 change.shifted += mass[k].0
                     * (state.released(before - shift, before) + state.released(after, after + shift));

@@ -66,8 +66,6 @@ mod viscosities;
 mod wall;
 mod wall_pressure;
 mod wall_state;
-#[cfg(test)]
-mod walls_tests;
 mod watch;
 
 pub use assemble::add_systems;

@@ -11,7 +11,7 @@ use crate::world::{
 };
 
 impl FlowCloud {
-    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries with [`Group::least_pressure`] until they get theirs. Says how far the particles have moved since
+    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far the particles have moved since
     /// they were packed before.
     pub(super) fn pack(&mut self, world: &World) -> Result<Spread, MissingColumn> {
         let mut moved = Spread::NONE;
@@ -34,9 +34,8 @@ impl FlowCloud {
                 })
             } else {
                 let volume = view.read::<ReferenceVolume>()?;
-                let least = group.least_pressure();
                 sum_over_blocks((common, &volume[rows]), &|_, rows: (Common<'_>, &[ReferenceVolume])| {
-                    run_hot(PackBoundary(rows.0, rows.1, least))
+                    run_hot(PackBoundary(rows.0, rows.1))
                 })
             });
         }
@@ -76,19 +75,19 @@ impl HotLoop for PackFluid<'_> {
     }
 }
 
-struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume], f64);
+struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume]);
 
 impl HotLoop for PackBoundary<'_> {
     type Output = Spread;
 
     #[inline(always)]
     fn run<A: Arithmetic>(self, a: A) -> Spread {
-        let Self((records, x, v, removed), volume, least) = self;
+        let Self((records, x, v, removed), volume) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
             let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
             write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
-            record.motion = Lanes4::new(v[k].0, least);
+            record.motion = Lanes4::new(v[k].0, 0.0);
         }
         moved.end()
     }

@@ -5,7 +5,7 @@
 //! softening r^2 / (r^2 + 0.01 h^2): a finite w_ij needs none, and it takes some 2 % from the viscosity.
 //!
 //! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
-//! that of a compressed fluid, so its work is booked by itself. A boundary without suction cannot pull: there p_w is replaced by max(p_w, -p_i).
+//! that of a compressed fluid, so its work is booked by itself.
 
 use glam::DVec3;
 
@@ -138,8 +138,7 @@ impl Rows<'_> {
                 if row.is_empty() {
                     continue;
                 }
-                let suction = group.pulls() || other.pulls();
-                let pairs = Pairs { cloud, kernel, own: lanes, row, viscosity, suction };
+                let pairs = Pairs { cloud, kernel, own: lanes, row, viscosity };
                 match &mut terms {
                     Some(Terms { terms, batch, .. })
                         if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>

@@ -14,8 +14,6 @@ pub(super) struct Pairs<'a, const D: usize> {
     pub row: &'a [u32],
     /// Twice the viscosity between the two, Pa s.
     pub viscosity: f64,
-    /// Whether a boundary among the two can pull at the fluid.
-    pub suction: bool,
 }
 
 /// What the neighbours of a particle do to it, per volume of it and in the lanes of the fours.
@@ -65,10 +63,6 @@ pub(super) enum Between {
     BoundaryAndFluid,
 }
 
-/// Least sum of the pressures of a fluid and a boundary that cannot pull at it: such a boundary holds no drop, and draws no particle into
-/// itself.
-const LEAST: f64 = 0.0;
-
 impl<const D: usize> Pairs<'_, D> {
     /// Adds all neighbours.
     #[inline(always)]
@@ -87,7 +81,8 @@ impl<const D: usize> Pairs<'_, D> {
         between: Between,
         Forces { pressure, viscous, wall }: &mut Forces<D>,
     ) {
-        let floor = if self.suction { f64::NEG_INFINITY } else { LEAST };
+        // sum V_j w x_ij, and the same with p_j.
+        let (mut gradient, mut of_j) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
         let (fours, rest) = self.row.as_chunks();
         for k in 0..fours.len() + usize::from(!rest.is_empty()) {
             let (rows, count) = if k < fours.len() { (fours[k], 4) } else { (filled_up(rest), rest.len()) };
@@ -95,22 +90,25 @@ impl<const D: usize> Pairs<'_, D> {
             let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
             let distance = a.sqrt(dot(a, &four.x, &four.x));
             let weight = a.times(kernel.weights(a, distance), a.times(four.volume, MASKS[count]));
-            // Of the two pressures that of the boundary gives way.
-            let least = |of_fluid| a.minus(Lanes4::splat(floor), of_fluid);
-            let (fluid, boundary) = match between {
-                Between::Fluids => (a.plus(own.pressure, four.pressure), Lanes4::ZERO),
-                Between::FluidAndBoundary => (own.pressure, a.larger(four.pressure, least(own.pressure))),
-                Between::BoundaryAndFluid => (four.pressure, a.larger(own.pressure, least(four.pressure))),
-            };
+            let weight_j = a.times(weight, four.pressure);
             let friction = a.scale(self.viscosity, weight);
-            let (fluid, boundary) = (a.times(weight, fluid), a.times(weight, boundary));
             for axis in 0..D {
-                pressure[axis] = a.times_add(fluid, four.x[axis], pressure[axis]);
-                wall[axis] = a.times_add(boundary, four.x[axis], wall[axis]);
+                gradient[axis] = a.times_add(weight, four.x[axis], gradient[axis]);
+                of_j[axis] = a.times_add(weight_j, four.x[axis], of_j[axis]);
                 if VISCOUS {
                     viscous[axis] = a.times_add(friction, four.v[axis], viscous[axis]);
                 }
             }
+        }
+        for axis in 0..D {
+            let of_i = a.times(gradient[axis], self.own.pressure);
+            let (of_fluid, of_wall) = match between {
+                Between::Fluids => (a.plus(of_i, of_j[axis]), Lanes4::ZERO),
+                Between::FluidAndBoundary => (of_i, of_j[axis]),
+                Between::BoundaryAndFluid => (of_j[axis], of_i),
+            };
+            pressure[axis] = a.plus(pressure[axis], of_fluid);
+            wall[axis] = a.plus(wall[axis], of_wall);
         }
     }
 
