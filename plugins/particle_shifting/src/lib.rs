@@ -9,7 +9,7 @@ mod response;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, SHIFTING_ENERGY, displace};
+use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, Repayment, SHIFTING_ENERGY, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
@@ -70,8 +70,12 @@ impl Plugin for ParticleShifting {
         }
         let shared = Arc::new(Mutex::new(own.collect::<Shifted>()));
         let phases = sim.phases_of(&bodies);
-        let work =
-            Shifting { gravity: sim.gravity(), bodies: Arc::clone(&shared), fields: Fields::default() };
+        let work = Shifting {
+            gravity: sim.gravity(),
+            bodies: Arc::clone(&shared),
+            fields: Fields::default(),
+            repayment: Repayment::default(),
+        };
         sim.extend(shared);
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
@@ -94,6 +98,7 @@ struct Shifting {
     gravity: DVec3,
     bodies: Arc<Mutex<Shifted>>,
     fields: Fields,
+    repayment: Repayment,
 }
 
 /// What the passes compute, row by row of the fluids: scratch memory.
@@ -138,14 +143,12 @@ impl Run for Shifting {
             }
         }
         let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
+        let pass = Responses { cloud, locals, shifts, pending };
+        cloud.for_each_row(0, responses, &pass);
         for &(id, _) in bodies.iter() {
             let (_, rows) = step.world.body_view(id);
-            let own = step.ledger.accounts().iter().find(|account| account.name == SHIFTING_ENERGY);
-            let owed = -own.map_or(0.0, |account| account.of(id));
-            let rubbing = if owed > 0.0 { rows.clone() } else { 0..0 };
-            let pass = Responses { cloud, locals, shifts, rubbing, pending };
-            cloud.for_each_row(rows.start, &mut responses[rows.clone()], &pass);
-            let lost = response::change_velocity(step, id, responses, owed)?;
+            let lost = response::change_velocity(step, id, responses)?;
+            self.repayment.pay(step, cloud, id, SHIFTING_ENERGY)?;
             step.ledger.add(account, id, lost);
             displace(step, id, &moves[rows], self.gravity, SHIFTING_ENERGY)?;
             response::change_density(step, cloud, id, (locals, responses))?;

@@ -1,7 +1,5 @@
 //! How velocity and density respond to the displacements.
 
-use std::ops::Range;
-
 use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, RowPass};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{Arithmetic, Number, Vector, sum_over_blocks};
@@ -18,8 +16,6 @@ const FOLLOWS: f64 = 4.0;
 const DEAD: f64 = 0.01;
 /// Rate at which the density follows the rest of the excess, over the strain rate.
 const RETURN: f64 = 1.0;
-/// Largest share of their relative velocities that neighbours lose in a step to pay for energy that the shift has given.
-const FRICTION: f64 = 0.05;
 
 /// What the displacements of a neighbourhood do to a particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,10 +28,6 @@ pub struct Response {
     pub excess: f64,
     /// Change of what the density has yet to follow, if its neighbours share it.
     pub shared: f64,
-    /// Change of its velocity by friction of strength one, `sum_j V_j W_ij (v_ij . e_ij) e_ij` with e_ij along x_ij, m/s.
-    pub friction: DVec3,
-    /// Energy that such friction takes, `sum_j V_j W_ij (v_ij . e_ij)^2 / 2`, J/kg.
-    pub taken: f64,
 }
 
 /// The pass that computes the responses.
@@ -43,8 +35,6 @@ pub struct Responses<'a> {
     pub cloud: &'a FlowCloud,
     pub locals: &'a [Local],
     pub shifts: &'a [Shift],
-    /// Rows whose friction with each other is wanted: those of the body, or none.
-    pub rubbing: Range<usize>,
     /// Change of volume that the density has not followed yet.
     pub pending: &'a [f64],
 }
@@ -54,7 +44,7 @@ impl RowPass for Responses<'_> {
 
     #[inline(always)]
     fn row<A: Arithmetic>(&self, a: A, i: usize) -> Response {
-        let Self { cloud, locals, shifts, pending, .. } = *self;
+        let Self { cloud, locals, shifts, pending } = *self;
         let (records, own) = (cloud.records(), shifts[i]);
         let (v_i, pending_i) = (records[i].velocity(), pending[i]);
         let mut velocity = Vector::zero(a);
@@ -84,50 +74,26 @@ impl RowPass for Responses<'_> {
                 dilation += near.volume * Number::new(a, weight) * apart.dot(middle);
             }
         }
-        let (mut friction, mut taken) = (Vector::zero(a), Number::zero(a));
-        for near in cloud.fours(a, i, &self.rubbing) {
-            let v_ij = near.vector(|j| records[j].velocity() - v_i);
-            let parting = v_ij.dot(near.x_ij) / near.distance;
-            let share = near.volume * near.kernel * parting;
-            friction = near.x_ij.mul_add(share / near.distance, friction);
-            taken += 0.5 * share * parting;
-        }
         Response {
             velocity: velocity.sum(),
             dilation: dilation.sum(),
             excess: if own.inside { locals[i].excess + excess.sum() } else { 0.0 },
             shared: shared.sum(),
-            friction: friction.sum(),
-            taken: taken.sum(),
         }
     }
 }
 
-/// Changes the velocities of a body; returns the kinetic energy that they lose, J. What shifting has given so far, `owed`, J, is taken back by friction between
-/// neighbours, which keeps momentum and angular momentum and leaves rigid rotation alone.
-pub fn change_velocity(
-    step: &Step<'_>,
-    id: BodyId,
-    responses: &[Response],
-    owed: f64,
-) -> Result<f64, StepError> {
+/// Changes the velocities of a body; returns the kinetic energy that they lose, J.
+pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[Response]) -> Result<f64, StepError> {
     let (view, rows) = step.world.body_view(id);
     let mut velocity = view.write::<Velocity>()?;
     let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
-    let own = &responses[rows.clone()];
-    let mut strength = 0.0;
-    if owed > 0.0 {
-        let taken = sum_over_blocks((own, &mass[rows.clone()]), &|_, (own, mass): (&[Response], &[Mass])| {
-            own.iter().zip(mass).map(|(response, m)| m.0 * response.taken).sum::<f64>()
-        });
-        strength = if taken > 0.0 { (owed / taken).min(FRICTION) } else { 0.0 };
-    }
-    let slices = (&mut velocity[rows.clone()], own, &mass[rows.clone()], &removed[rows]);
+    let slices = (&mut velocity[rows.clone()], &responses[rows.clone()], &mass[rows.clone()], &removed[rows]);
     type Rows<'a> = (&'a mut [Velocity], &'a [Response], &'a [Mass], &'a [Removed]);
     Ok(sum_over_blocks(slices, &|_, (velocity, responses, mass, removed): Rows<'_>| {
         let mut lost = 0.0;
         for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
-            let (v, change) = (velocity[k].0, responses[k].velocity + strength * responses[k].friction);
+            let (v, change) = (velocity[k].0, responses[k].velocity);
             lost -= mass[k].0 * change.dot(v + 0.5 * change);
             velocity[k].0 = v + change;
         }

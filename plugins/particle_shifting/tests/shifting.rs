@@ -3,6 +3,8 @@
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;
 
+use std::f64::consts::PI;
+
 use meshless_engine::assembly::build;
 use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
@@ -122,4 +124,35 @@ fn a_dam_break_does_not_swell_and_the_shift_gives_no_energy() {
     let supplied = sim.ledger().total_named("gravity");
     assert!(least > -1e-3 * supplied, "{least} of {supplied}");
     assert!(sim.ledger().total_named("wall_pressure") > -0.05 * supplied);
+}
+
+/// Two fluids whose lattices meet in a wave, on which a shift that answers its own noise explodes.
+#[test]
+fn an_uneven_interface_of_two_fluids_stays_whole() {
+    let wave = |k: u32| {
+        format!("({:.5}, {:.5})", 0.0125 * f64::from(k), 0.5 + 0.02 * (0.05 * PI * f64::from(k)).cos())
+    };
+    let forth: Vec<String> = (0..=40).map(wave).collect();
+    let back: Vec<String> = (0..=40).rev().map(wave).collect();
+    let text = format!(
+        r#"(dimension: Two, gravity: (0, -9.81),
+        materials: {{"heavy": Fluid(density: 1000.0, sound_speed: 60.0, viscosity: 0.5),
+                     "light": Fluid(density: 500.0, sound_speed: 60.0, viscosity: 0.25)}},
+        bodies: [
+            (name: "light", material: "light", shape: Polygon(points: [(0, 0), (0.5, 0), {}]), spacing: 0.0125, formulation: Fluid),
+            (name: "heavy", material: "heavy", shape: Polygon(points: [(0.5, 1), (0, 1), {}]), spacing: 0.0125, formulation: Fluid),
+            (name: "tank", material: "wall", spacing: 0.0125, formulation: Wall(slip: Free, suction: true),
+             shape: Difference(Box(min: (-0.05, -0.05), max: (0.55, 1.05)), Box(min: (0, 0), max: (0.5, 1)))),
+        ],
+        plugins: [density_diffusion(), particle_shifting()],
+        time: (end: 1.0))"#,
+        back.join(", "),
+        forth.join(", ")
+    );
+    let (scene, source) = parse(Source::new("test.ron", &text)).unwrap_or_else(|error| panic!("{error}"));
+    let registry = Registry::standard().with(particle_shifting::register).with(density_diffusion::register);
+    let mut sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|sim| sim.clock().step < 60).expect("a run");
+    let total = |name: &str| sim.ledger().total_named(name);
+    assert!(total("particle_shifting") > -1e-3 * total("compression"), "{}", total("particle_shifting"));
 }

@@ -2,15 +2,15 @@
 //!
 //! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is less
 //! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
-//! no better than particles are evenly spread.
+//! no better than particles are evenly spread. Energy that it has given is paid back by friction between neighbours.
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
+use meshless_engine::formulations::fluid::{FlowCloud, Repayment, RowPass};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use meshless_engine::world::{BodySet, Force, Pressure, Velocity};
+use meshless_engine::world::{BodySet, Force, Mass, Pressure, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -35,10 +35,21 @@ impl Plugin for TensileControl {
         }
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
-                .on_bodies(bodies)
+                .on_bodies(bodies.clone())
                 .reads::<Pressure>()
                 .reads::<Velocity>()
                 .adds::<Force>(),
+        );
+        let repayment = Repaying { bodies: bodies.clone(), repayment: Repayment::default() };
+        sim.add_system(
+            System::new(Stage::PostStep, "tensile_control_repayment", repayment)
+                .on_bodies(bodies)
+                .after_any("local_damping")
+                .after_any("xsph")
+                .after_any("particle_shifting")
+                .reads::<Mass>()
+                .reads::<Removed>()
+                .writes::<Velocity>(),
         );
         Ok(())
     }
@@ -77,6 +88,23 @@ impl Run for Control {
                 power
             });
             step.ledger.add(account, id, -power * step.clock.dt);
+        }
+        Ok(())
+    }
+}
+
+/// Pays back what the control has given.
+struct Repaying {
+    bodies: BodySet,
+    repayment: Repayment,
+}
+
+impl Run for Repaying {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let resources = step.resources;
+        let cloud = resources.get::<FlowCloud>();
+        for id in self.bodies.iter() {
+            self.repayment.pay(step, &cloud, id, TensileControl::NAME)?;
         }
         Ok(())
     }

@@ -5,6 +5,8 @@ mod periodic_flow;
 
 use meshless_engine::glam::DVec3;
 use meshless_engine::kernels::{Kernel, KernelName};
+use meshless_engine::plugin::{Registry, build};
+use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::Position;
 use meshless_engine::world::{Density, Force, Mass, Pressure};
@@ -44,4 +46,20 @@ fn the_force_is_that_of_a_naive_sum_and_zero_on_a_lattice() {
         }
         assert_eq!(largest < 1e-12, even, "{largest}");
     }
+}
+
+/// A free square that turns is under negative pressure, and its arms are uneven.
+#[test]
+fn energy_that_it_gives_is_paid_back() {
+    let text = r#"(dimension: Two, materials: {"m": Fluid(density: 1.0, sound_speed: 10.0)},
+        bodies: [(name: "b", material: "m", shape: Box(min: (-0.5, -0.5), max: (0.5, 0.5)), spacing: 0.05,
+                  lattice: Relaxed(seed: 1), formulation: Fluid(), plugins: [tensile_control()])],
+        conditions: [InitialVelocity(on: Select(body: "b"), value: ("y", "-x"))],
+        time: (end: 2.0))"#;
+    let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    let registry = Registry::standard().with(tensile_control::register);
+    let mut sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|_| true).expect("a run");
+    let (taken, kinetic) = (sim.ledger().total_named("tensile_control"), sim.ledger().total_named("kinetic"));
+    assert!(taken > -1e-3 * kinetic, "{taken} of {kinetic}");
 }

@@ -41,6 +41,7 @@ mod pairs;
 mod passing;
 mod reaction;
 mod record;
+mod repay;
 mod rest;
 #[cfg(test)]
 mod rest_tests;
@@ -76,6 +77,7 @@ pub use formulation::Fluid;
 pub use kernel::FluidKernel;
 pub use near::{FourNear, Fours, RowPass};
 pub use record::Record;
+pub use repay::Repayment;
 pub use ringing::damp_ringing;
 pub use sound_speed::estimate as estimate_sound_speeds;
 pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
