@@ -37,6 +37,7 @@ mod rebound;
 mod report;
 mod restitution;
 mod rigid;
+mod rotating_flows;
 mod rubber_pull;
 mod taylor;
 mod taylor_bars;
@@ -48,6 +49,7 @@ mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;
 mod upsetting;
+mod viscous_layers;
 mod water_on_plate;
 mod waves;
 

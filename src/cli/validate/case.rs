@@ -65,9 +65,11 @@ macro_rules! for_each_case {
             F5 dam_break::CASE;
             F6 lid_driven_cavity::CASE;
             F8 floating_box::CASE;
+            F12 rotating_flows::CASE;
             X1 water_on_plate::CASE;
             X2 dam_break_obstacle::CASE;
             X5 closed_box::CASE;
+            X6 viscous_layers::CASE;
         }
     };
 }

@@ -65,15 +65,15 @@ impl RigidBody {
         self.refresh();
     }
 
-    /// Changes force and torque of the state, N and N m, at the end of a step, and makes up for half a step, s, of the change. Returns
-    /// the gain of kinetic energy and the work that constraints supply, J.
-    pub(crate) fn push_late(&mut self, force: DVec3, torque: DVec3, half: f64) -> (f64, f64) {
+    /// Pushes with a force and a torque, N and N m, for half a step, s, at its end, and changes those of the state. Returns the gain of
+    /// kinetic energy and the work that constraints supply, J.
+    pub(crate) fn push_late(&mut self, push: [DVec3; 2], change: [DVec3; 2], half: f64) -> (f64, f64) {
         let before = (self.kinetic(), self.state.force, self.state.torque);
-        (self.state.force, self.state.torque) = (force, torque);
+        [self.state.force, self.state.torque] = push;
         let constraints = -half * self.constraint_power();
         self.kick(half);
-        self.state.force += before.1;
-        self.state.torque += before.2;
+        self.state.force = before.1 + change[0];
+        self.state.torque = before.2 + change[1];
         (self.kinetic() - before.0, constraints)
     }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::advice;
+use super::body_spin::Neighborhood;
 use super::checks;
 use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
 use super::drift::Skins;
@@ -17,6 +18,7 @@ use super::start::start;
 use super::systems;
 use super::viscosities::Viscosities;
 use super::wall::WallBody;
+use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
@@ -79,22 +81,26 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let dimension = sim.dimension().count();
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
+    let kernel = FluidKernel::new(support, dimension);
+    let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
+    let spin = viscosities.spin;
+    let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
     let mut cloud = FlowCloud {
         groups: groups.clone(),
         fluid,
-        kernel: FluidKernel::new(support, dimension),
-        viscosities: Viscosities::new(&groups),
+        kernel,
+        viscosities,
         plane,
         periods: Periods::new(&periodic),
         before: Vec::new(),
         records: vec![Record::default(); total],
         pairs: FlowPairs::new(skins, periodic, ends, thin),
-        lists_are_new: false,
         near: NearRows::default(),
         near_boundary: NearRows::default(),
         compression: Vec::new(),
-        free_surface: false,
         loads: Vec::new(),
+        spins: if spin { vec![Lanes4::ZERO; total] } else { Vec::new() },
+        neighborhoods,
     };
     let (walls, contacts, gravity) = (advice::walls(sim), advice::contacts(sim), sim.gravity());
     sim.add_setup(move |setup| {
@@ -105,7 +111,16 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         setup.resources.insert(cloud);
         Ok(())
     });
-    systems::add(&groups, sim)
+    systems::add(&groups, spin, sim)
+}
+
+/// Who is beside whom in the bodies to which fluids stick.
+fn sticky(groups: &[Group], spacing: f64, sim: &SimBuilder<'_>) -> Result<Vec<Neighborhood>, SetupError> {
+    let is_sticky = |group: &&Group| matches!(&group.role, Role::Boundary(surface) if surface.no_slip);
+    let mut bodies: Vec<BodyId> = groups.iter().filter(is_sticky).map(|group| group.body).collect();
+    bodies.dedup();
+    let of = |id: BodyId| Neighborhood::new(sim.body(id), spacing, &sim.periodic());
+    bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()
 }
 
 /// Whether the flow has no free surface, so that bodies in it can pull at it: where walls do, or where the domain has no end.

@@ -4,12 +4,14 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::body_spin::Neighborhood;
 use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
 use super::viscosities::Viscosities;
 use crate::materials::EquationOfState;
+use crate::parallel::Lanes4;
 use crate::world::{BodyId, PhaseId};
 
 /// The equation of state of a body, with its constants.
@@ -117,18 +119,18 @@ pub struct FlowCloud {
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,
-    /// Whether the lists were built in this step.
-    pub(super) lists_are_new: bool,
     /// Neighbours of fluid particles within the support.
     pub(super) near: NearRows,
     /// Fluid neighbours within the support of every particle that is no fluid.
     pub(super) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(super) compression: Vec<f64>,
-    /// Whether a viscous fluid had a free surface when the lists were built.
-    pub(super) free_surface: bool,
     /// Acceleration of every fluid particle by loads; empty where nothing loads a fluid.
     pub(super) loads: Vec<DVec3>,
+    /// Spins of all particles, 1/s; zero for boundaries, and none at all where friction goes without.
+    pub(super) spins: Vec<Lanes4>,
+    /// Bodies to which viscous fluids stick.
+    pub(super) neighborhoods: Vec<Neighborhood>,
 }
 
 impl FlowCloud {

@@ -8,37 +8,17 @@ use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::near_rows::{NearRow, NearWriter};
 use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
-use super::surface_friction;
 use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
 
 /// Runs the pass.
-#[derive(Default)]
-pub(super) struct Compression {
-    /// Whether a viscous fluid had a free surface when the lists were built.
-    free_surface: bool,
-    /// Smallest eigenvalues of the moment matrices: scratch memory.
-    smallest: Vec<f64>,
-}
+pub(super) struct Compression;
 
 impl Run for Compression {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         cloud.compress(step.clock.dt);
-        if cloud.lists_are_new {
-            self.free_surface = surface_friction::is_needed(&cloud, &mut self.smallest);
-        }
-        cloud.free_surface = self.free_surface;
         Ok(())
-    }
-
-    fn save(&self) -> Vec<u8> {
-        vec![u8::from(self.free_surface)]
-    }
-
-    fn restore(&mut self, state: &[u8]) -> bool {
-        self.free_surface = state == [1];
-        state.len() == 1
     }
 }
 

@@ -8,6 +8,8 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group, Role};
+use super::couples::Couples;
+use super::drag::{self, DragColumns};
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::force::ACCOUNTS;
 use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
@@ -18,8 +20,15 @@ use crate::rigid::RigidBodies;
 use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
-/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick.
-pub(super) fn add(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, label: &'static str) {
+/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick. Where
+/// friction `follows`, it changes in the short steps by the motion of the body.
+pub(super) fn add(
+    sim: &mut SimBuilder<'_>,
+    groups: &[Group],
+    phase: PhaseId,
+    label: &'static str,
+    follows: bool,
+) {
     let bodies = BodySet::new(groups.iter().filter(|group| group.phase == phase).map(|group| group.body));
     sim.add_column_to::<CouplingForce>(&bodies);
     sim.add_column_to::<CouplingFriction>(&bodies);
@@ -36,17 +45,23 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, groups: &[Group], phase: PhaseId, la
         System::each::<(Adds<Force>, &CouplingForce)>(
             Stage::Rates,
             format!("{label}_frozen"),
-            bodies,
+            bodies.clone(),
             |_, (force, coupling)| force.0 += coupling.0,
         )
         .on_phases([phase]),
     );
+    if follows {
+        drag::add(sim, &bodies, phase, label);
+    }
     let coupling = Coupling {
         phase,
+        follows,
         total: Vec::new(),
         parts: Vec::new(),
         other_total: Vec::new(),
         other_parts: Vec::new(),
+        couples: Couples::default(),
+        drag: Vec::new(),
         sums: Vec::new(),
     };
     sim.add_system(
@@ -94,12 +109,17 @@ impl FlowCloud {
 
 struct Coupling {
     phase: PhaseId,
+    /// Whether friction follows the motion of the bodies in the short steps.
+    follows: bool,
     /// Force on the particles of a body, and its parts, N.
     total: Vec<Force>,
     parts: Vec<DVec3>,
     /// The same from the other side of a thin body.
     other_total: Vec<Force>,
     other_parts: Vec<DVec3>,
+    couples: Couples,
+    /// How fast friction grows with the velocity of each particle, kg/s.
+    drag: Vec<f64>,
     sums: Vec<Exchange>,
 }
 
@@ -107,12 +127,18 @@ impl Coupling {
     /// Sums the forces of the flow on the particles of a body over both of its sides, if it is thin.
     fn sum_forces(&mut self, cloud: &FlowCloud, body: BodyId) {
         for (side, group) in cloud.groups.iter().filter(|group| group.body == body).enumerate() {
-            let Self { total, parts, other_total, other_parts, .. } = self;
+            let Self { total, parts, other_total, other_parts, couples, .. } = self;
             let (to, parts_to) =
                 if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
             to.resize(group.rows.len(), Force::default());
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
             PairForce { cloud, group, adds: false }.run(to, parts_to);
+            couples.add(cloud, group, to, parts_to);
+            if side == 0 {
+                self.drag.clear();
+                self.drag.resize(group.rows.len(), 0.0);
+            }
+            self.couples.add_drag(&mut self.drag);
             if side > 0 {
                 self.total.iter_mut().zip(&self.other_total).for_each(|(sum, other)| sum.0 += other.0);
                 self.parts.iter_mut().zip(&self.other_parts).for_each(|(sum, other)| *sum += *other);
@@ -121,48 +147,66 @@ impl Coupling {
     }
 }
 
+impl Coupling {
+    /// Gives a body what it lacks at the end of the long step.
+    fn give(&mut self, step: &mut Step<'_>, cloud: &FlowCloud, group: &Group) -> Result<Exchange, StepError> {
+        let rigid = step.resources.try_get::<RigidBodies>().map(|bodies| bodies.clone());
+        let view = step.world.phase(group.phase);
+        let rows = group.rows.clone();
+        let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);
+        let removed = view.read::<Removed>()?;
+        let (mut velocity, mut force) = (view.write::<Velocity>()?, view.write::<Force>()?);
+        let mut frozen = view.write::<CouplingForce>()?;
+        let mut friction = view.write::<CouplingFriction>()?;
+        let mut pressure = view.write::<CouplingPressure>()?;
+        let first = group.cloud.start - cloud.fluid;
+        let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
+        let particles = Particles {
+            dt: step.clock.dt,
+            records: &cloud.records[group.cloud.clone()],
+            before,
+            mass: &mass[rows.clone()],
+            mobility: &mobility[rows.clone()],
+            removed: &removed[rows.clone()],
+            drag: &self.drag,
+            total: &self.total,
+            parts: &self.parts,
+        };
+        let mut drag = if self.follows { Some(DragColumns::new(&view)?) } else { None };
+        let columns = ParticleRows {
+            velocity: &mut velocity[rows.clone()],
+            force: &mut force[rows.clone()],
+            frozen: &mut frozen[rows.clone()],
+            friction: &mut friction[rows.clone()],
+            pressure: &mut pressure[rows.clone()],
+            drag: drag.as_mut().map(|drag| drag.rows(rows)),
+        };
+        let body = |bodies: &RigidBodies| bodies.lock().iter().position(|body| body.id == group.body);
+        let (exchange, rate) = match rigid.as_ref().and_then(|bodies| Some((bodies, body(bodies)?))) {
+            Some((bodies, k)) => {
+                let body = &mut bodies.lock()[k];
+                (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body))
+            }
+            None => (particles.give(columns, &mut self.sums), particles.rate()),
+        };
+        if rate > 0.0 {
+            let name = &step.world.body(group.body).name;
+            step.limits.propose(1.0 / rate, format_args!("friction of the fluid on `{name}`"));
+        }
+        Ok(exchange)
+    }
+}
+
 impl Run for Coupling {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let cloud = step.resources.get::<FlowCloud>();
-        let rigid = step.resources.try_get::<RigidBodies>().map(|bodies| bodies.clone());
         let (mut last, phase) = (None, self.phase);
         for group in cloud.groups.iter().filter(|group| group.phase == phase) {
             if last.replace(group.body) == Some(group.body) {
                 continue;
             }
             self.sum_forces(&cloud, group.body);
-            let view = step.world.phase(group.phase);
-            let rows = group.rows.clone();
-            let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);
-            let removed = view.read::<Removed>()?;
-            let (mut velocity, mut force) = (view.write::<Velocity>()?, view.write::<Force>()?);
-            let mut frozen = view.write::<CouplingForce>()?;
-            let mut friction = view.write::<CouplingFriction>()?;
-            let mut pressure = view.write::<CouplingPressure>()?;
-            let first = group.cloud.start - cloud.fluid;
-            let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
-            let particles = Particles {
-                dt: step.clock.dt,
-                records: &cloud.records[group.cloud.clone()],
-                before,
-                mass: &mass[rows.clone()],
-                mobility: &mobility[rows.clone()],
-                removed: &removed[rows.clone()],
-                total: &self.total,
-                parts: &self.parts,
-            };
-            let rows = ParticleRows {
-                velocity: &mut velocity[rows.clone()],
-                force: &mut force[rows.clone()],
-                frozen: &mut frozen[rows.clone()],
-                friction: &mut friction[rows.clone()],
-                pressure: &mut pressure[rows],
-            };
-            let body = |bodies: &RigidBodies| bodies.lock().iter().position(|body| body.id == group.body);
-            let exchange = match rigid.as_ref().and_then(|bodies| Some((bodies, body(bodies)?))) {
-                Some((bodies, k)) => give_to_rigid_body(&mut bodies.lock()[k], &particles, rows),
-                None => particles.give(rows, &mut self.sums),
-            };
+            let exchange = self.give(step, &cloud, group)?;
             let moving =
                 if let Role::Boundary(surface) = &group.role { surface.velocity } else { DVec3::ZERO };
             // What drives a belt does the work that friction turns into heat.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Role};
+use super::couples::Couples;
 use super::pair_force::{PARTS, PairForce};
-use super::surface_friction::SurfaceFriction;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::for_each_block;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -24,8 +24,7 @@ pub(super) struct FlowForce {
     pub gravity: Option<DVec3>,
     /// The parts of the force on each body, for the booking of their work.
     pub parts: Arc<Mutex<Vec<BodyTerms>>>,
-    /// What friction lacks at a free surface.
-    pub friction: SurfaceFriction,
+    pub couples: Couples,
     /// Pair terms of plugins, run in the same pass.
     pub terms: Option<PhaseTerms>,
 }
@@ -38,9 +37,6 @@ impl Run for FlowForce {
         let mut force = view.write::<Force>()?;
         let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
-        if groups.clone().any(|group| group.fluid().is_some()) {
-            self.friction.prepare(&cloud);
-        }
         for (group, BodyTerms { forces, .. }) in groups.zip(parts.iter_mut()) {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
@@ -49,7 +45,7 @@ impl Run for FlowForce {
                 Some(terms) => pass.run_with(terms, step, total, forces)?,
                 None => pass.run(total, forces),
             }
-            self.friction.add(&cloud, group, total, forces);
+            self.couples.add(&cloud, group, total, forces);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);

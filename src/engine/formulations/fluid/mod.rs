@@ -7,15 +7,19 @@
 
 mod advice;
 mod assemble;
+mod axial;
 mod batch;
+mod body_spin;
 #[cfg(test)]
 mod channel_tests;
 mod checks;
 mod cloud;
 mod compression;
+mod couples;
 mod coupling;
 mod density;
 mod displace;
+mod drag;
 mod drift;
 mod exchange;
 mod fields;
@@ -53,10 +57,12 @@ mod several_tests;
 mod sides;
 mod sort;
 mod sound_speed;
+mod spin;
+#[cfg(test)]
+mod spin_tests;
 mod spread;
 mod start;
 mod state;
-mod surface_friction;
 mod surroundings;
 mod systems;
 #[cfg(test)]

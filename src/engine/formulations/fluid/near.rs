@@ -101,11 +101,11 @@ impl<P: RowPass> HotLoop for Block<'_, P> {
 }
 
 impl FlowCloud {
-    /// The neighbours of fluid particle `i` in the bodies whose rows are `among`, in the order of its list, four at a time; `0..self.fluid` are all
+    /// The neighbours of particle `i` in the bodies whose rows are `among`, in the order of its list, four at a time; `0..self.fluid` are all
     /// fluids, the rows of a body those of its own, and [`FlowCloud::everything`] also what bounds the fluid.
     #[inline(always)]
     pub fn fours<A: Arithmetic>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
-        let row = self.near.row(i);
+        let row = if i < self.fluid { self.near.row(i) } else { self.near_boundary.row(i - self.fluid) };
         Fours { cloud: self, i, chunks: part(row, among).chunks(4), arithmetic: a }
     }
 

@@ -47,8 +47,7 @@ impl Run for Neighbors {
             cloud.build_lists(&std::mem::take(&mut self.restored)).map_err(failed)?;
         }
         let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
-        cloud.lists_are_new = pairs.are_stale(records, *fluid, moved);
-        if cloud.lists_are_new {
+        if pairs.are_stale(records, *fluid, moved) {
             cloud.read_positions(&mut self.built);
             if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;

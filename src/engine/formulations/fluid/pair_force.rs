@@ -1,8 +1,8 @@
 //! Second pass over pairs: the force of pressure and viscosity.
 //!
-//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 2 mu_ij w_ij v_ij`, with the harmonic mean mu_ij of the two
-//! viscosities. Swapping i and j turns the sign of every product. The friction is that of Morris, Fox, Zhu 1997, eq. 22, without their
-//! softening r^2 / (r^2 + 0.01 h^2): a finite w_ij needs none, and it takes some 2 % from the viscosity.
+//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 4 mu_ij w_ij (v_ij - omega_ij x x_ij)`, with the harmonic mean mu_ij of the
+//! two viscosities and the mean omega_ij of the two spins ([`super::spin`]), that of the fluid at a wall. Swapping i and j turns the sign of every
+//! product. Where friction goes without spins it is `2 mu_ij w_ij v_ij`.
 //!
 //! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
 //! that of a compressed fluid, so its work is booked by itself.
@@ -110,6 +110,7 @@ impl Rows<'_> {
         let mut terms = self.terms;
         let own_is_fluid = group.fluid().is_some();
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
+        let factor = cloud.viscosities.factor();
         let first = group.cloud.start + self.first;
         let count = written.total.len();
         // Rows whose terms have not been run begin here.
@@ -130,7 +131,7 @@ impl Rows<'_> {
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
                 let Some(&last) = rest.last() else { break };
-                let (other, viscosity) = (&groups[n], viscosities[n]);
+                let (other, viscosity) = (&groups[n], factor * viscosities[n]);
                 let end = other.cloud.end as u32;
                 let count = if last < end { rest.len() } else { rest.partition_point(|&j| j < end) };
                 let (row, tail) = rest.split_at(count);
@@ -138,7 +139,7 @@ impl Rows<'_> {
                 if row.is_empty() {
                     continue;
                 }
-                let pairs = Pairs { cloud, kernel, own: lanes, row, viscosity };
+                let pairs = Pairs { cloud, kernel, own: lanes, i, row, viscosity };
                 match &mut terms {
                     Some(Terms { terms, batch, .. })
                         if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::cloud::FlowCloud;
+use super::couples::Couples;
 use super::pair_force::{PARTS, PairForce};
 use crate::world::{BodyId, Force};
 
@@ -16,6 +17,7 @@ impl FlowCloud {
             let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
             let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
             PairForce { cloud: self, group, adds: false }.run(&mut total, &mut parts);
+            Couples::default().add(self, group, &mut total, &mut parts);
             let sum = sum.get_or_insert_with(|| vec![Default::default(); total.len()]);
             for (k, (all, viscous)) in sum.iter_mut().enumerate() {
                 *all += total[k].0;

@@ -40,17 +40,44 @@ fn two_fluids_press_on_each_other_with_opposite_forces() {
             scale = scale.max(f[k].0.length());
         }
     }
-    for &(a, x_a, v_a, p_a, volume_a, found) in &all {
+    // x_ij, 2 mu_ij V_j w_ij and v_ij of the neighbours of a particle, and who they are.
+    let neighbors = |i: usize| {
+        let (a, x_a, v_a, ..) = all[i];
+        let all = all.iter().enumerate();
+        let of =
+            move |(j, &(b, x_b, v_b, _, volume_b, _)): (usize, &(usize, DVec3, DVec3, f64, f64, DVec3))| {
+                let x = (x_b - x_a).map(|x| x - x.round());
+                let r = x.length();
+                let mean = 2.0 * viscosity[a] * viscosity[b] / (viscosity[a] + viscosity[b]);
+                (r > 0.0 && r < 0.15).then(|| {
+                    let weight = -kernel.dw_dr(r, 0.075) / r * volume_b;
+                    (j, x, weight, mean, v_b - v_a)
+                })
+            };
+        all.filter_map(of).collect::<Vec<_>>()
+    };
+    let spin = |i: usize| {
+        let (mut momentum, mut inertia) = (0.0, 0.0);
+        for (_, x, weight, mean, v) in neighbors(i) {
+            momentum += weight * mean * x.cross(v).z;
+            inertia += weight * mean * x.length_squared();
+        }
+        (momentum / inertia, inertia)
+    };
+    let fits: Vec<(f64, f64)> = (0..all.len()).map(spin).collect();
+    let sharpened = |i: usize| {
+        let (own, inertia) = fits[i];
+        let of = |(j, x, weight, mean, _): (usize, DVec3, f64, f64, DVec3)| {
+            0.5 * weight * mean * x.length_squared() * (own - fits[j].0)
+        };
+        own + neighbors(i).into_iter().map(of).sum::<f64>() / inertia
+    };
+    let spins: Vec<f64> = (0..all.len()).map(sharpened).collect();
+    for (i, &(_, _, _, p_a, volume_a, found)) in all.iter().enumerate() {
         let mut sum = DVec3::ZERO;
-        for &(b, x_b, v_b, p_b, volume_b, _) in &all {
-            let x = (x_b - x_a).map(|x| x - x.round());
-            let r = x.length();
-            if r == 0.0 || r >= 0.15 {
-                continue;
-            }
-            let weight = -kernel.dw_dr(r, 0.075) / r;
-            let mean = 2.0 * viscosity[a] * viscosity[b] / (viscosity[a] + viscosity[b]);
-            sum += volume_a * volume_b * weight * (2.0 * mean * (v_b - v_a) - (p_a + p_b) * x);
+        for (j, x, weight, mean, v) in neighbors(i) {
+            let turning = 0.5 * (spins[i] + spins[j]) * DVec3::new(-x.y, x.x, 0.0);
+            sum += volume_a * weight * (4.0 * mean * (v - turning) - (p_a + all[j].3) * x);
         }
         assert!(found.distance(sum) < 1e-11 * scale, "{found} {sum}");
     }

@@ -5,13 +5,14 @@ use std::sync::{Arc, Mutex};
 use super::advice;
 use super::cloud::{Group, Role};
 use super::compression::Compression;
+use super::couples::Couples;
 use super::coupling;
 use super::density::Continuity;
 use super::fields::fields;
 use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
 use super::neighbors::{NEIGHBORS, Neighbors};
+use super::spin::Spin;
 use super::state::EquationOfState;
-use super::surface_friction::SurfaceFriction;
 use super::wall::PreviousVelocity;
 use super::wall_state::WallState;
 use super::watch;
@@ -20,6 +21,9 @@ use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::schedule::{Mode, Stage, System};
 use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, Removed, Velocity};
+
+/// Label of the system that gives walls their pressure.
+const WALL_PRESSURE: &str = "wall_pressure";
 
 /// The phases of what bounds the flow.
 fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
@@ -45,8 +49,8 @@ pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseI
     phases
 }
 
-/// Adds the systems of the groups.
-pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+/// Adds the systems of the groups; with `spin`, friction is corrected by it.
+pub(super) fn add(groups: &[Group], spin: bool, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
     phases.dedup();
     let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
@@ -60,9 +64,7 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
         System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default()).on_phases(phases).after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
     sim.add_system(
-        System::new(Stage::Neighbors, "fluid_compression", Compression::default())
-            .on_phases([fluid])
-            .after(NEIGHBORS),
+        System::new(Stage::Neighbors, "fluid_compression", Compression).on_phases([fluid]).after(NEIGHBORS),
     );
     let continuity = Continuity { account, sums: Vec::new() };
     sim.add_system(
@@ -88,9 +90,13 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
     fields().into_iter().for_each(|field| sim.add_field(field));
     let gravity = sim.gravity();
     add_force(sim, groups, fluid, FLUID_FORCE, terms);
+    if spin {
+        let system = System::new(Stage::Boundary, "fluid_spin", Spin::default()).on_phases([fluid]);
+        sim.add_system(if boundaries.is_empty() { system } else { system.after(WALL_PRESSURE) });
+    }
     if !boundaries.is_empty() {
         sim.add_system(
-            System::new(Stage::Boundary, "wall_pressure", WallState { gravity, beside: Vec::new() })
+            System::new(Stage::Boundary, WALL_PRESSURE, WallState { gravity, beside: Vec::new() })
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
                 .reads::<Velocity>()
@@ -107,7 +113,7 @@ pub(super) fn add(groups: &[Group], sim: &mut SimBuilder<'_>) -> Result<(), Setu
             _ => continue,
         };
         if groups.iter().any(|group| group.phase == phase && group.short) {
-            coupling::add(sim, groups, phase, label);
+            coupling::add(sim, groups, phase, label, spin);
         } else {
             add_force(sim, groups, phase, label, None);
         }
@@ -132,9 +138,8 @@ fn add_force(
     let parts = Arc::new(Mutex::new(of_phase().map(own).collect()));
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
-    let friction = SurfaceFriction::default();
     let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
-    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), friction, terms };
+    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), couples: Couples::default(), terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
     let system = system.reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });

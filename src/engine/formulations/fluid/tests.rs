@@ -99,40 +99,49 @@ fn particles(sim: &Simulation, no_slip: bool, kernel: &Kernel, h: f64) -> (Vec<P
     (fluid, wall)
 }
 
-/// Force of b on a, by the formula of the module in ten plain lines.
-fn pair_force(a: &Particle, b: &Particle, viscosity: f64, kernel: &Kernel, h: f64) -> DVec3 {
-    let x = b.x - a.x;
-    let r = x.length();
-    if r == 0.0 {
-        return DVec3::ZERO;
-    }
-    let gradient = -kernel.dw_dr(r, h) * x / r;
-    let pressure = -(a.p + b.p) * gradient;
-    let friction = 2.0 * viscosity * gradient.dot(x) / (r * r) * (b.seen - a.seen);
-    a.volume * b.volume * (pressure + friction)
+/// `-W' / r` of a pair that is not one particle.
+fn weight(x: DVec3, kernel: &Kernel, h: f64) -> f64 {
+    -kernel.dw_dr(x.length(), h) / x.length()
 }
 
-/// `mu (grad v)^T` of a particle from all others, with the inverse of the plain moment matrix.
-fn transposed_stress(
+/// Force of b on a, by the formula of the module in ten plain lines; `spin` is that of the pair.
+fn pair_force(a: &Particle, b: &Particle, viscosity: f64, spin: DVec3, (kernel, h): (&Kernel, f64)) -> DVec3 {
+    let x = b.x - a.x;
+    if x == DVec3::ZERO {
+        return DVec3::ZERO;
+    }
+    let pressure = -(a.p + b.p) * x;
+    let friction = 4.0 * viscosity * (b.seen - a.seen - spin.cross(x));
+    a.volume * b.volume * weight(x, kernel, h) * (pressure + friction)
+}
+
+/// `r^2 I - x (x) x`.
+fn inertia(x: DVec3) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(x.dot(x))) - DMat3::from_cols(x * x.x, x * x.y, x * x.z)
+}
+
+/// The spin of a particle among all others: the matrix of inertia is inverted as it is, and returned beside the spin.
+fn spin<'a>(
     a: &Particle,
-    all: &[Particle],
-    viscosity: f64,
+    all: impl Iterator<Item = &'a Particle>,
     kernel: &Kernel,
     h: f64,
     plane: bool,
-) -> DMat3 {
-    let (mut moment, mut stress) = (DMat3::ZERO, DMat3::ZERO);
-    for b in all.iter().filter(|b| b.x != a.x) {
+) -> (DVec3, DMat3) {
+    let (mut sum, mut momentum) = (DMat3::ZERO, DVec3::ZERO);
+    for b in all.filter(|b| b.x != a.x) {
         let x = b.x - a.x;
-        let weight = -b.volume * kernel.dw_dr(x.length(), h) / x.length();
-        let dyad = |u: DVec3, v: DVec3| DMat3::from_cols(u * v.x, u * v.y, u * v.z);
-        moment += weight * dyad(x, x);
-        stress += weight * dyad(x, b.v - a.v);
+        let mass = b.volume * weight(x, kernel, h);
+        sum += mass * inertia(x);
+        momentum += mass * x.cross(b.seen - a.seen);
     }
     if plane {
-        moment.z_axis.z = 1.0;
+        // Rotations in the plane alone.
+        sum = DMat3::from_diagonal(DVec3::new(1.0, 1.0, sum.z_axis.z));
+        momentum *= DVec3::Z;
     }
-    moment.inverse() * stress * viscosity
+    let inverse = sum.inverse();
+    (inverse * momentum, inverse)
 }
 
 #[test]
@@ -148,27 +157,45 @@ fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
             let mass = column::<Mass>(&sim, 0);
             let forces = column::<Force>(&sim, 0);
             let scale = forces.iter().map(|f| f.0.length()).fold(0.0, f64::max);
-            let stress = |a: &Particle| transposed_stress(a, &fluid, 2.0, &kernel, h, dimension == 2);
-            let stresses: Vec<DMat3> = fluid.iter().map(stress).collect();
-            for (k, particle) in fluid.iter().enumerate() {
-                let of_surface = fluid.iter().zip(&stresses).map(|(b, stress)| {
-                    let x = b.x - particle.x;
-                    let weight = -kernel.dw_dr(x.length(), h) / x.length().max(1e-300);
-                    particle.volume * b.volume * weight * ((stresses[k] + *stress) * x)
+            // Walls along which the fluid slides have no part in its spin.
+            let sticky = if no_slip { &walls[..] } else { &[] };
+            let of = |a: &Particle| spin(a, fluid.iter().chain(sticky), &kernel, h, dimension == 2);
+            let fits: Vec<(DVec3, DMat3)> = fluid.iter().map(of).collect();
+            let sharpened = |(a, (own, inverse)): (&Particle, &(DVec3, DMat3))| {
+                let others = fluid.iter().zip(&fits).filter(|(b, _)| b.x != a.x);
+                let of = others.map(|(b, (other, _))| {
+                    let x = b.x - a.x;
+                    0.5 * b.volume * weight(x, &kernel, h) * (inertia(x) * (*own - *other))
                 });
-                let of_fluid = fluid.iter().map(|other| pair_force(particle, other, 2.0, &kernel, h));
+                *own + *inverse * of.sum::<DVec3>()
+            };
+            let spins: Vec<DVec3> = fluid.iter().zip(&fits).map(sharpened).collect();
+            for (k, particle) in fluid.iter().enumerate() {
+                let of_fluid = fluid.iter().zip(&spins).map(|(other, other_spin)| {
+                    pair_force(particle, other, 2.0, 0.5 * (spins[k] + *other_spin), (&kernel, h))
+                });
                 let friction = if no_slip { 2.0 } else { 0.0 };
-                let of_wall = walls.iter().map(|other| pair_force(particle, other, friction, &kernel, h));
-                let sum: DVec3 = of_fluid.chain(of_wall).chain(of_surface).sum();
+                let of_wall =
+                    walls.iter().map(|other| pair_force(particle, other, friction, spins[k], (&kernel, h)));
+                let sum: DVec3 = of_fluid.chain(of_wall).sum();
                 let wanted = sum + mass[k].0 * DVec3::new(0.0, -9.81, 0.0);
                 let found = forces[k].0;
                 assert!(found.distance(wanted) < 1e-11 * scale, "{dimension}: {found} {wanted}");
             }
-            let weight: f64 = mass.iter().map(|m| m.0 * -9.81).sum();
-            let all: DVec3 = forces.iter().chain(&column::<Force>(&sim, 1)).map(|f| f.0).sum::<DVec3>()
-                - weight * DVec3::Y;
+            let on_walls = column::<Force>(&sim, 1);
+            let (mut all, mut torque) = (DVec3::ZERO, DVec3::ZERO);
+            for (particle, (force, mass)) in fluid.iter().zip(forces.iter().zip(&mass)) {
+                let of_flow = force.0 + 9.81 * mass.0 * DVec3::Y;
+                all += of_flow;
+                torque += particle.x.cross(of_flow);
+            }
+            for (particle, force) in walls.iter().zip(&on_walls) {
+                all += force.0;
+                torque += particle.x.cross(force.0);
+            }
             let turnover: f64 = forces.iter().map(|f| f.0.length()).sum();
             assert!(all.length() < 1e-12 * turnover, "{dimension} {wall}: {all}");
+            assert!(torque.length() < 1e-12 * turnover, "{dimension} {wall}: {torque}");
         }
     }
 }

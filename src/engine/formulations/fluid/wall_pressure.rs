@@ -23,6 +23,8 @@ pub(super) struct Beside {
     pub moment: DVec3,
     /// Mean velocity, less that of the particle, m/s.
     pub velocity: DVec3,
+    /// Mean place, less that of the particle, m.
+    pub offset: DVec3,
 }
 
 /// The pass over all particles that are no fluid.
@@ -66,6 +68,7 @@ impl Rows<'_> {
             let mut rest = cloud.pairs.boundary.row(self.first + k);
             let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
             let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
+            let mut offset = [Lanes4::ZERO; D];
             for group in &cloud.groups {
                 let Some(state) = group.fluid() else { break };
                 let end = group.cloud.end as u32;
@@ -92,6 +95,7 @@ impl Rows<'_> {
                     }
                     for axis in 0..D {
                         moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
+                        offset[axis] = a.times_add(value, four.x[axis], offset[axis]);
                         velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
                     }
                 }
@@ -104,6 +108,7 @@ impl Rows<'_> {
                 out.pressure = pressure.sum() * mean;
                 out.moment = sums(a, &moment) * mean;
                 out.velocity = sums(a, &velocity) * mean;
+                out.offset = sums(a, &offset) * mean;
             }
         }
     }

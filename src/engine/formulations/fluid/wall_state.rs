@@ -26,6 +26,12 @@ impl Run for WallState {
         let mut near = std::mem::take(&mut cloud.near_boundary);
         WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
         cloud.near_boundary = near;
+        let first = cloud.fluid;
+        for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
+            // A fluid that turns with its wall like one rigid body feels no friction.
+            let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
+            cloud.for_each_spin(group, beside, |fluid, spin| fluid.velocity -= spin.cross(fluid.offset));
+        }
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
