@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
-use super::{bench, check, new, plugins, resume, schema, validate, view};
+use super::{bench, check, new, plugins, resume, schema, sweep, validate, view};
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
 #[derive(Parser)]
@@ -20,6 +20,7 @@ struct CommandLine {
 enum Command {
     Run(super::run::Arguments),
     Resume(resume::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     Bench(bench::Arguments),
     New(new::Arguments),
@@ -34,6 +35,7 @@ impl Command {
         match self {
             Self::Run(arguments) => super::run::execute(arguments, registry),
             Self::Resume(arguments) => resume::execute(arguments, registry),
+            Self::Sweep(arguments) => sweep::execute(&arguments, registry),
             Self::Check(arguments) => check::execute(&arguments, registry),
             Self::Bench(arguments) => bench::execute(&arguments, registry),
             Self::New(arguments) => new::execute(arguments),

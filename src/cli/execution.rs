@@ -65,7 +65,7 @@ impl Execution {
     }
 
     /// Does the steps, shows how far they are, and reports at the end.
-    pub fn carry_out(mut self, how: &How) -> Result<(), Failure> {
+    pub fn carry_out(&mut self, how: &How) -> Result<(), Failure> {
         let interrupt = Interrupt::listen()?;
         let mut progress = Progress::new(&self.sim, how.quiet);
         // On a thread of the pool: a parallel loop that begins outside has to wake one each time.

@@ -18,6 +18,7 @@ mod run;
 mod scene_file;
 mod schema;
 mod summary;
+mod sweep;
 mod template;
 mod text;
 pub mod validate;

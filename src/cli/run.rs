@@ -35,7 +35,7 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let folder = out.unwrap_or_else(|| default_folder(&file.path));
     let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };
-    let execution =
+    let mut execution =
         Execution::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
     if failed.exists() {
         std::fs::remove_file(&failed).map_err(|error| {

@@ -16,7 +16,8 @@ pub struct SceneFile {
     pub set: Vec<(String, String)>,
 }
 
-fn replacement(text: &str) -> Result<(String, String), String> {
+/// Path and value of `path=value`.
+pub fn replacement(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((path, value)) if !path.trim().is_empty() && !value.trim().is_empty() => {
             Ok((path.trim().to_owned(), value.trim().to_owned()))

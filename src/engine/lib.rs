@@ -25,6 +25,7 @@ pub mod kernels;
 pub mod linalg;
 pub mod materials;
 pub mod neighbors;
+pub mod notation;
 pub mod pair;
 pub mod parallel;
 pub mod plugin;

@@ -1,5 +1,7 @@
 //! A simulation: the world, the schedule, the clock, and the loop over steps.
 
+use std::collections::BTreeMap;
+
 use thiserror::Error;
 
 use crate::record::{OutputHandle, StateHash};
@@ -11,12 +13,14 @@ use crate::world::{PhaseId, World};
 
 mod checkpoint;
 mod closing;
+mod inputs;
 mod sub_steps;
 mod summary;
 
 pub use checkpoint::{Checkpoint, RestoreError, SaveError};
 pub use summary::{Outcome, Summary};
 
+use inputs::Inputs;
 use sub_steps::SubSteps;
 
 /// A simulation that is ready to run.
@@ -39,6 +43,8 @@ pub struct Simulation {
     checkpoint_at_end: bool,
     source: Source,
     title: String,
+    parameters: BTreeMap<String, f64>,
+    inputs: Inputs,
     failure: Option<String>,
     pace: summary::Pace,
 }
@@ -107,8 +113,10 @@ impl Simulation {
             started: false,
             output,
             checkpoint_at_end: scene.record.checkpoint_at_end,
+            inputs: Inputs::of(&source, scene.parameter_values()),
             source,
             title: scene.title.clone(),
+            parameters: scene.parameter_values(),
             failure: None,
             pace: summary::Pace::default(),
         }
@@ -127,6 +135,11 @@ impl Simulation {
     /// The systems in their order.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// Values of the parameters of the scene.
+    pub fn parameters(&self) -> &BTreeMap<String, f64> {
+        &self.parameters
     }
 
     /// Time and step.

@@ -10,6 +10,7 @@ pub mod output;
 pub mod probe;
 pub mod recorder;
 pub mod series;
+mod stop;
 pub mod trigger;
 pub mod vtk;
 pub mod watchdog;

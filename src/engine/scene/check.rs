@@ -4,11 +4,13 @@ use glam::DVec3;
 
 use super::names::unknown;
 use super::{Axis, Dimension, Face, Probe, Problem, Quantity, Scene, Select, Step};
+use crate::notation::number;
 
 /// All that is wrong with the values of a scene.
 pub(super) fn check(scene: &Scene) -> Vec<Problem> {
     let mut problems = Vec::new();
     check_time(scene, &mut problems);
+    check_stops(scene, &mut problems);
     check_domain(scene, &mut problems);
     in_plane(scene, scene.gravity.0, "gravity", &mut problems);
     check_bodies(scene, &mut problems);
@@ -25,25 +27,44 @@ fn check_time(scene: &Scene, problems: &mut Vec<Problem>) {
     let end = scene.time.end;
     if end <= 0.0 {
         problems.push(
-            Problem::at_path("time.end", format!("the run ends at {end} s, before it starts"))
-                .help("the end must be positive"),
+            Problem::at_path("time.end", format!("`end` must be greater than 0, found {} s", number(end)))
+                .help("a run starts at 0 s"),
         );
     }
     match scene.time.step {
         Step::Adaptive { factor } if !(factor > 0.0 && factor <= 2.0) => problems.push(
-            Problem::at_path("time.step.factor", format!("the factor on the stability limit is {factor}"))
-                .help("it must be above 0 and at most 2; 1 is the limit itself"),
+            Problem::at_path(
+                "time.step.factor",
+                format!("`factor` must be greater than 0 and at most 2, found {}", number(factor)),
+            )
+            .help("it multiplies the stability limit; 1 is the limit itself"),
         ),
-        Step::Fixed(dt) if dt <= 0.0 => problems.push(
-            Problem::at_path("time.step[0]", format!("the time step is {dt} s")).help("it must be positive"),
-        ),
+        Step::Fixed(dt) if dt <= 0.0 => problems.push(Problem::at_path(
+            "time.step[0]",
+            format!("the time step must be positive, found {} s", number(dt)),
+        )),
         _ => {}
     }
     if scene.time.sub_steps == 0 {
         problems.push(
-            Problem::at_path("time.sub_steps", "the number of short steps in a step is 0")
-                .help("1 lets all bodies share one step; leave it out to let each side take its own"),
+            Problem::at_path("time.sub_steps", "`sub_steps` must be at least 1, found 0")
+                .help("1: all bodies share one step; without it each side takes steps of its own"),
         );
+    }
+}
+
+fn check_stops(scene: &Scene, problems: &mut Vec<Problem>) {
+    let names: Vec<_> = scene.probes.iter().map(|probe| &probe.name).collect();
+    for (i, when) in scene.time.stop_when.iter().enumerate() {
+        let at = |field: &str| format!("time.stop_when[{i}].{field}");
+        if !names.contains(&&when.probe) {
+            let (message, help) = unknown("probe", &when.probe, &names);
+            problems.push(Problem::at_path(at("probe"), message).helps(help));
+        }
+        if when.above.is_none() && when.below.is_none() {
+            let message = "a condition to stop needs `above` or `below`";
+            problems.push(Problem::at_path(format!("time.stop_when[{i}]"), message));
+        }
     }
 }
 
@@ -53,10 +74,12 @@ fn check_domain(scene: &Scene, problems: &mut Vec<Problem>) {
     for axis in [Axis::X, Axis::Y, Axis::Z].into_iter().take(scene.dimension.count()) {
         let i = axis.index();
         if min[i] >= max[i] {
-            let message = format!("the domain is empty along {axis:?}: from {} to {} m", min[i], max[i]);
-            problems.push(
-                Problem::at_path("domain.max", message).help("each component of max must exceed that of min"),
+            let message = format!(
+                "`max` must exceed `min` along {axis:?}, found {} m and {} m",
+                number(max[i]),
+                number(min[i])
             );
+            problems.push(Problem::at_path("domain.max", message).help("the domain is empty"));
         }
     }
     for (i, axis) in domain.periodic.iter().enumerate() {
@@ -87,8 +110,8 @@ fn check_bodies(scene: &Scene, problems: &mut Vec<Problem>) {
             problems.push(Problem::at_path(at("material"), message).helps(help));
         }
         if body.spacing <= 0.0 {
-            let message = format!("the distance between particles is {} m", body.spacing);
-            problems.push(Problem::at_path(at("spacing"), message).help("it must be positive"));
+            let message = format!("`spacing` must be positive, found {} m", number(body.spacing));
+            problems.push(Problem::at_path(at("spacing"), message));
         }
         if let Some(velocity) = body.velocity {
             in_plane(scene, velocity.0, &at("velocity"), problems);
@@ -105,17 +128,12 @@ fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
             }
         }
         if contact.friction < 0.0 {
-            let message = format!("the coefficient of friction is {}", contact.friction);
-            problems.push(
-                Problem::at_path(format!("contacts[{i}].friction"), message).help("it must not be negative"),
-            );
+            let message = format!("`friction` must not be negative, found {}", number(contact.friction));
+            problems.push(Problem::at_path(format!("contacts[{i}].friction"), message));
         }
         if !(0.0..=1.0).contains(&contact.restitution) {
-            let message = format!("the restitution is {}", contact.restitution);
-            problems.push(
-                Problem::at_path(format!("contacts[{i}].restitution"), message)
-                    .help("it must be from 0 to 1"),
-            );
+            let message = format!("`restitution` must be from 0 to 1, found {}", number(contact.restitution));
+            problems.push(Problem::at_path(format!("contacts[{i}].restitution"), message));
         }
     }
 }
@@ -128,7 +146,7 @@ fn check_probes(scene: &Scene, problems: &mut Vec<Problem>) {
             problems.push(twice("probe", &probe.name, at("name")));
         }
         if probe.name == "energy" {
-            let message = "a probe cannot be called `energy`: that is the name of the energy ledger's file";
+            let message = "the name `energy` is reserved: the energy balance is written to `energy.csv`";
             problems
                 .push(Problem::at_path(at("name"), message).help("choose another name, such as `energies`"));
         }
@@ -146,23 +164,17 @@ fn check_probes(scene: &Scene, problems: &mut Vec<Problem>) {
 fn place_of_probe(probe: &Probe, i: usize) -> Option<Problem> {
     let (field, message) = match (&probe.on, probe.at, &probe.quantity) {
         (Some(_), Some(_), _) => ("at", "a probe has either `on` or `at`, not both"),
-        (None, Some(_), Quantity::Energy) => {
-            ("at", "there is no energy at a point: `Energy` is that of a selection")
-        }
-        (None, Some(_), Quantity::Force) => {
-            ("at", "there is no reaction force at a point: `Force` is that of a selection")
-        }
-        (None, Some(_), Quantity::Torque) => {
-            ("at", "there is no torque at a point: `Torque` is that of a selection")
-        }
+        (None, Some(_), Quantity::Energy) => ("at", "`Energy` is measured on a selection, not at a point"),
+        (None, Some(_), Quantity::Force) => ("at", "`Force` is measured on a selection, not at a point"),
+        (None, Some(_), Quantity::Torque) => ("at", "`Torque` is measured on a selection, not at a point"),
         (None, Some(_), Quantity::FluidForce | Quantity::FluidTorque { .. }) => {
-            ("at", "there is no force at a point: it is that on a selection")
+            ("at", "forces are measured on a selection, not at a point")
         }
         (Some(_), None, quantity) if quantity.at_point() == Some(true) => {
-            ("on", "what is measured has a place, and a selection is none")
+            ("on", "this quantity is measured at a point, not on a selection")
         }
         (None, None, Quantity::Energy) | (Some(_), None, _) | (None, Some(_), _) => return None,
-        (None, None, _) => ("name", "the probe does not say where it measures"),
+        (None, None, _) => ("name", "the probe needs `on` or `at`"),
     };
     Some(
         Problem::at_path(format!("probes[{i}].{field}"), message)
@@ -202,7 +214,7 @@ fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) 
     } else if name.len() > 100 {
         format!("the name of the {kind} is longer than 100 bytes")
     } else if let Some(c) = name.chars().find(|&c| !fits(c)) {
-        format!("the name of the {kind} contains {c:?}, which a file name or path cannot")
+        format!("character {c:?} is not allowed in the name of a {kind}")
     } else if name.trim() != name {
         format!("the name of the {kind} starts or ends with a space")
     } else {
@@ -218,14 +230,15 @@ fn twice(kind: &str, name: &str, at: String) -> Problem {
 
 fn positive_time(every: Option<f64>, at: &str, problems: &mut Vec<Problem>) {
     if let Some(every) = every.filter(|every| *every <= 0.0) {
-        problems.push(Problem::at_path(at, format!("the interval is {every} s")).help("it must be positive"));
+        problems
+            .push(Problem::at_path(at, format!("the interval must be positive, found {} s", number(every))));
     }
 }
 
 const IN_PLANE: &str = "write (x, y); a two-dimensional scene is plane strain in x-y";
 
 fn out_of_plane(z: f64) -> String {
-    format!("a vector of a two-dimensional scene has z = {z}")
+    format!("a vector of a two-dimensional scene has z = {}", number(z))
 }
 
 fn in_plane(scene: &Scene, vector: DVec3, at: &str, problems: &mut Vec<Problem>) {

@@ -6,17 +6,19 @@ mod error;
 mod value;
 mod variant;
 
-pub(super) use error::text_error;
+pub(super) use error::{expression_problem, text_error};
 pub(super) use value::ITEM;
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 
 use self::error::Error;
 use self::value::Value;
 use super::Problem;
+use super::symbols::Symbols;
 use super::tree::Node;
 
 /// A text can hold that many bad fields before reading gives up to look for more.
@@ -27,6 +29,7 @@ struct Context<'a> {
     /// The text that the tree was read from, and the place of its first byte in the file.
     text: &'a str,
     offset: usize,
+    symbols: &'a Symbols,
     problems: RefCell<Vec<Problem>>,
     /// Where the names of fields are whose values are known to be bad.
     bad_fields: RefCell<BTreeSet<usize>>,
@@ -51,16 +54,18 @@ pub(super) struct Decoded<T> {
 }
 
 /// Reads `node`, whose text starts at byte `offset` of the file, as a `T`. With `unnamed`, the name before its brackets
-/// is not looked at.
+/// is not looked at. Numbers may be expressions in `symbols`.
 pub(super) fn decode<T: DeserializeOwned>(
     node: &Node,
     text: &str,
     offset: usize,
     unnamed: bool,
+    symbols: &Arc<Symbols>,
 ) -> Decoded<T> {
     let context = Context {
         text,
         offset,
+        symbols,
         problems: RefCell::default(),
         bad_fields: RefCell::default(),
         incomplete: Cell::new(false),
@@ -68,7 +73,8 @@ pub(super) fn decode<T: DeserializeOwned>(
     let mut value = None;
     for _ in 0..MAX_PASSES {
         let known = context.bad_fields.borrow().len();
-        let result: Result<T, Error> = T::deserialize(Value { node, context: &context, unnamed });
+        let result: Result<T, Error> =
+            symbols.during(|| T::deserialize(Value { node, context: &context, unnamed }));
         value = result.map_err(|error| error.report(node, &context)).ok();
         if context.bad_fields.borrow().len() == known {
             break;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Contact, Dimension, Domain, Item, Probe, Record, Time, Vec3};
+use super::{Body, Contact, Dimension, Domain, Expression, Item, Probe, Record, Table, Time, Vec3};
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -14,6 +14,13 @@ pub struct Scene {
     /// What the experiment is, in one line; shown in recordings and summaries.
     #[serde(default)]
     pub title: String,
+    /// Numbers by name, each a number or an expression in others: `{ "dx": 0.005, "h": "10*dx" }`. Every expression may use them, and
+    /// an expression in double quotes may stand wherever the scene has a number: `spacing: "dx"`.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, Expression>,
+    /// Functions by name, given by points: `{ "pull": (file: "pull.csv") }`, called in expressions as `"1e5*pull(t)"`.
+    #[serde(default)]
+    pub tables: BTreeMap<String, Table>,
     /// Whether the scene is plane strain in x-y or three-dimensional.
     pub dimension: Dimension,
     /// The space in which particles may be. Without it space is unbounded.
@@ -49,6 +56,12 @@ impl Scene {
     /// The body with this name.
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
+    }
+
+    /// The values of the parameters.
+    pub fn parameter_values(&self) -> BTreeMap<String, f64> {
+        let value = |expression: &Expression| expression.eval(glam::DVec3::ZERO, 0.0);
+        self.parameters.iter().map(|(name, expression)| (name.clone(), value(expression))).collect()
     }
 
     /// Time between two frames of the recording \[s\]: `record.every`, or a hundredth of the duration.

@@ -6,31 +6,37 @@ mod functions;
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use glam::DVec3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use self::compile::{MAX_STACK, Op};
+use self::compile::{MAX_STACK, Op, Program};
 use super::decode::text_error;
+use super::symbols::Symbols;
+
+pub(super) use self::compile::{constant, words};
+pub(super) use self::functions::is_reserved;
 
 /// A function of x, y, z \[m\] and t \[s\], compiled once and evaluated without allocation.
 ///
 /// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt exp ln log10 sin cos tan
 /// asin acos atan sinh cosh tanh floor sign step ramp smoothstep` of one and `min max pow atan2 mod` of two arguments.
 /// `step` is 0 below 0 and 1 from there on; `ramp` and `smoothstep` go from 0 at 0 to 1 at 1 and stay there,
-/// linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2` is `-(x^2)`, and `a^b^c` is `a^(b^c)`.
+/// linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2` is `-(x^2)`, and `a^b^c` is `a^(b^c)`. The parameters of the
+/// scene are constants, its tables are functions of one argument.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,
-    program: Vec<Op>,
+    program: Arc<Program>,
 }
 
 impl Expression {
     /// The function that is `value` everywhere and always.
     pub fn constant(value: f64) -> Self {
-        Self { text: format!("{value:?}"), program: vec![Op::Constant(value)] }
+        Self { text: format!("{value:?}"), program: Arc::new(Program::constant(value)) }
     }
 
     /// The value at place `x` \[m\] and time `t` \[s\].
@@ -38,7 +44,7 @@ impl Expression {
         let variables = [x.x, x.y, x.z, t];
         let mut stack = [0.0; MAX_STACK];
         let mut top = 0;
-        for op in &self.program {
+        for op in &self.program.ops {
             match *op {
                 Op::Constant(value) => {
                     stack[top] = value;
@@ -49,6 +55,7 @@ impl Expression {
                     top += 1;
                 }
                 Op::Unary(function) => stack[top - 1] = function(stack[top - 1]),
+                Op::Table(index) => stack[top - 1] = self.program.tables[index].at(stack[top - 1]),
                 Op::Binary(function) => {
                     top -= 1;
                     stack[top - 1] = function(stack[top - 1], stack[top]);
@@ -60,12 +67,17 @@ impl Expression {
 
     /// Whether the value is the same everywhere and always.
     pub fn is_constant(&self) -> bool {
-        matches!(self.program.as_slice(), [Op::Constant(_)])
+        matches!(self.program.ops.as_slice(), [Op::Constant(_)])
     }
 
     /// Whether the value changes with time.
     pub fn depends_on_time(&self) -> bool {
-        self.program.iter().any(|op| matches!(op, Op::Variable(3)))
+        self.program.ops.iter().any(|op| matches!(op, Op::Variable(3)))
+    }
+
+    /// Compiles a text that may use these names.
+    pub(super) fn with_symbols(text: &str, symbols: &Symbols) -> Result<Self, ExpressionError> {
+        Ok(Self { text: text.to_owned(), program: Arc::new(compile::compile(text, symbols)?) })
     }
 
     /// The text that the function was compiled from.
@@ -92,7 +104,7 @@ impl FromStr for Expression {
     type Err = ExpressionError;
 
     fn from_str(text: &str) -> Result<Self, ExpressionError> {
-        Ok(Self { text: text.to_owned(), program: compile::compile(text)? })
+        Self::with_symbols(text, &Symbols::default())
     }
 }
 
@@ -113,9 +125,8 @@ impl Visitor<'_> for TextOrNumber {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Expression, E> {
-        text.parse().map_err(|error: ExpressionError| {
-            E::custom(text_error(error.start, error.end, &error.to_string(), &error.help))
-        })
+        Expression::with_symbols(text, &Symbols::current())
+            .map_err(|error| E::custom(text_error(error.start, error.end, &error.to_string(), &error.help)))
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Expression, E> {

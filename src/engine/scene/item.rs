@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use ron::value::RawValue;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -11,6 +12,7 @@ use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::decode::{self, ITEM};
+use super::symbols::Symbols;
 use super::tree::{Kind, Node};
 use super::{Problem, path, syntax};
 
@@ -21,6 +23,8 @@ pub struct Item {
     name: String,
     text: String,
     start: usize,
+    /// The names that its expressions may use.
+    symbols: Arc<Symbols>,
 }
 
 impl Item {
@@ -29,7 +33,7 @@ impl Item {
         let node = syntax::read(text, start)?;
         match (node.name, node.kind) {
             (Some(name), Kind::Bare | Kind::Fields(_) | Kind::Tuple(_)) => {
-                Ok(Self { name: name.text, text: text.to_owned(), start })
+                Ok(Self { name: name.text, text: text.to_owned(), start, symbols: Symbols::current() })
             }
             _ => Err(Problem::at_span(node.span, "expected a name, with or without parameters")),
         }
@@ -55,7 +59,7 @@ impl Item {
     /// All that is wrong with the parameters, each at its place in the file.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Vec<Problem>> {
         let node = self.tree().map_err(|problem| vec![problem])?;
-        let decoded = decode::decode(&node, &self.text, self.start, true);
+        let decoded = decode::decode(&node, &self.text, self.start, true, &self.symbols);
         match decoded.value {
             Some(value) if decoded.problems.is_empty() => Ok(value),
             _ => Err(decoded.problems),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::check::check;
 use super::decode::{Decoded, decode};
+use super::definitions::define;
 use super::{Problem, Scene, SceneError, Source};
 
 /// Reads a scene file, with some of its values replaced: `overrides` are pairs of path and value, as in
@@ -42,7 +43,8 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Sourc
 /// The text is not a valid scene; all that is wrong at once.
 pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
     let root = source.tree().map_err(|problem| source.error(vec![problem]))?;
-    let Decoded { value, mut problems } = decode::<Scene>(&root, &source.text, 0, false);
+    let symbols = define(&root, &source.text, source.folder()).map_err(|problems| source.error(problems))?;
+    let Decoded { value, mut problems } = decode::<Scene>(&root, &source.text, 0, false, &symbols);
     if let Some(scene) = &value {
         problems.extend(check(scene));
     }

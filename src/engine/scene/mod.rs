@@ -7,6 +7,7 @@ mod body;
 mod check;
 mod contact;
 mod decode;
+mod definitions;
 mod description;
 mod domain;
 mod expression;
@@ -23,7 +24,9 @@ mod record;
 mod reference;
 mod select;
 mod source;
+mod symbols;
 mod syntax;
+mod table;
 mod time;
 mod tree;
 
@@ -43,7 +46,8 @@ pub use record::Record;
 pub use reference::{Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
-pub use time::{Step, Time};
+pub use table::Table;
+pub use time::{Step, StopWhen, Time};
 
 #[cfg(test)]
 mod tests;

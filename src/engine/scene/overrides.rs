@@ -1,7 +1,9 @@
 //! Single values of a scene replaced from outside: `time.end=0.5`, `bodies.plate.plugins.hourglass_control.alpha=10`.
 
+use super::expression::{constant, words};
 use super::names::nearest;
 use super::path::{self, Step};
+use super::symbols::Symbols;
 use super::tree::{Kind, Node};
 use super::{Problem, Source, syntax};
 
@@ -29,31 +31,51 @@ impl Source {
                     unambiguous(node, step, &setting)?;
                     node = found.value();
                 }
+                // A parameter that nothing uses would change nothing.
+                None if i == 1 && steps[0] == Step::Name("parameters".into()) => {
+                    return Err(not_there(node, step, &setting));
+                }
                 None => {
                     let (at, text) = insertion(node, &steps[i..], &written(&value, None, &setting)?)
                         .ok_or_else(|| not_there(node, step, &setting))?;
-                    return Ok(self.edited(at..at, &text));
+                    return Ok(self.edited(at..at, &text, path, &value));
                 }
             }
         }
-        Ok(self.edited(node.span.clone(), &written(&value, Some(node), &setting)?))
+        let text = written(&value, Some(node), &setting)?;
+        Ok(self.edited(node.span.clone(), &text, path, &value))
     }
 
-    fn edited(&self, range: std::ops::Range<usize>, with: &str) -> Self {
-        let mut text = self.text.clone();
-        text.replace_range(range, with);
-        Self::new(self.name.clone(), text)
+    /// The text with `setting` at `range`.
+    fn edited(&self, range: std::ops::Range<usize>, with: &str, path: &str, value: &str) -> Self {
+        let mut changed = self.clone();
+        changed.text.replace_range(range, with);
+        changed.settings.push((path.to_owned(), value.to_owned()));
+        changed
+    }
+
+    /// The last replacement that has written what stands at `span`, as `path=value`.
+    pub(super) fn setting_at(&self, span: &std::ops::Range<usize>) -> Option<String> {
+        let root = self.tree().ok()?;
+        let covers = |path: &str| {
+            path::exact(&root, path).is_some_and(|range| range.start <= span.start && span.end <= range.end)
+        };
+        let setting = self.settings.iter().rev().find(|(path, _)| covers(path));
+        setting.map(|(path, value)| format!("{path}={value}"))
     }
 }
 
 /// The value as the scene has to say it: a text that replaces a text may lack its quotes.
 fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String, Problem> {
     let parsed = syntax::read(value, 0);
+    let replaces_number = replaced.is_some_and(|node| matches!(node.kind, Kind::Number { .. }));
     let replaces_text = replaced.is_some_and(|node| matches!(node.kind, Kind::Text { .. }));
     match parsed {
         Ok(Node { kind: Kind::Text { .. } | Kind::Number { .. }, .. }) => Ok(value.to_owned()),
         _ if replaces_text => Ok(format!("\"{}\"", value.replace('\\', "\\\\").replace('"', "\\\""))),
         Ok(_) => Ok(value.to_owned()),
+        // `10*dx` is no RON, but it may stand for a number in quotes.
+        Err(_) if replaces_number && is_expression(value) => Ok(format!("\"{value}\"")),
         Err(problem) => {
             let place =
                 replaced.map(|node| Problem::at_span(node.head(), "")).unwrap_or_else(|| Problem::new(""));
@@ -63,6 +85,12 @@ fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String
             })
         }
     }
+}
+
+/// Whether a text is an expression for a number, whatever the names in it stand for.
+fn is_expression(text: &str) -> bool {
+    let parameters = words(text).map(|word| (word.to_owned(), 1.0)).collect();
+    constant(text, &Symbols { parameters, ..Symbols::default() }).is_ok()
 }
 
 /// Where the rest of a path is to be added, and the text.

@@ -81,6 +81,9 @@ impl Problem {
             ),
             None => title.element(Origin::path(source.name.as_str())),
         };
+        let setting = self.span(source).and_then(|span| source.setting_at(&span));
+        let setting = setting.map(|setting| format!("this value was given by `--set {setting}`"));
+        let group = group.elements(setting.iter().map(|note| Level::NOTE.message(note)));
         let group = group.elements(self.help.iter().map(|help| Level::HELP.message(help)));
         Renderer::plain().render(&[group])
     }

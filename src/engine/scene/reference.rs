@@ -230,6 +230,13 @@ fn written(value: &Value, schema: &Value, definitions: &Definitions) -> String {
                     format!("{name}({content})")
                 }
             }
+            _ if properties(schema).is_none() => {
+                let entry = |(name, value): (&String, &Value)| {
+                    let schema = schema.get("additionalProperties").unwrap_or(&Value::Null);
+                    format!("{name:?}: {}", written(value, schema, definitions))
+                };
+                format!("{{{}}}", object.iter().map(entry).collect::<Vec<_>>().join(", "))
+            }
             _ => {
                 let field = |(name, value): (&String, &Value)| {
                     let schema =

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::syntax;
-use super::tree::Node;
+use super::tree::{Kind, Node};
 use super::{Problem, SceneError};
 
 /// A scene text and its name, usually the path of its file.
@@ -13,12 +13,14 @@ pub struct Source {
     pub name: String,
     /// The text.
     pub text: String,
+    /// Path and value of each replacement that the text has gone through.
+    pub(super) settings: Vec<(String, String)>,
 }
 
 impl Source {
     /// A text under a name.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { name: name.into(), text: text.into() }
+        Self { name: name.into(), text: text.into(), settings: Vec::new() }
     }
 
     /// The tree of the whole text.
@@ -32,6 +34,17 @@ impl Source {
     /// The folder that files named in the scene are relative to.
     pub fn folder(&self) -> &Path {
         Path::new(&self.name).parent().unwrap_or(Path::new(""))
+    }
+
+    /// The files that the scene names, as it writes them: the values of all fields `file`. None where the text is not RON.
+    pub fn files(&self) -> Vec<String> {
+        let mut files = Vec::new();
+        if let Ok(root) = self.tree() {
+            collect_files(&root, &mut files);
+        }
+        files.sort_unstable();
+        files.dedup();
+        files
     }
 
     /// Line and column, both from 1, of a byte; the column counts characters.
@@ -48,5 +61,23 @@ impl Source {
     /// All these problems as one error about this text.
     pub fn error(&self, problems: Vec<Problem>) -> SceneError {
         SceneError { source: self.clone(), problems }
+    }
+}
+
+fn collect_files(node: &Node, files: &mut Vec<String>) {
+    match &node.kind {
+        Kind::Fields(fields) => {
+            for field in fields {
+                match &field.value.kind {
+                    Kind::Text { value, .. } if field.name.text == "file" => files.push(value.clone()),
+                    _ => collect_files(&field.value, files),
+                }
+            }
+        }
+        Kind::Tuple(entries) | Kind::List(entries) => {
+            entries.iter().for_each(|entry| collect_files(entry, files));
+        }
+        Kind::Map(entries) => entries.iter().for_each(|(_, value)| collect_files(value, files)),
+        Kind::Bare | Kind::Text { .. } | Kind::Character(_) | Kind::Number { .. } => {}
     }
 }

@@ -16,6 +16,27 @@ pub struct Time {
     /// as their own stability limit asks for. 1: all share one step.
     #[serde(default = "default_sub_steps")]
     pub sub_steps: u32,
+    /// The run ends before `end` when a probe passes a value: the first of these that is met.
+    #[serde(default)]
+    pub stop_when: Vec<StopWhen>,
+}
+
+/// A value of a probe at which the run ends: at its first sample beyond the value after one that is not beyond it. A run that is resumed
+/// goes on to the next passage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StopWhen {
+    /// Name of the probe.
+    pub probe: String,
+    /// Column of the probe, such as `"x"` or `"kinetic"`; needed where it has several.
+    #[serde(default)]
+    pub column: Option<String>,
+    /// The run ends when the value rises above this, in the unit of the probe.
+    #[serde(default)]
+    pub above: Option<f64>,
+    /// The run ends when the value falls below this, in the unit of the probe.
+    #[serde(default)]
+    pub below: Option<f64>,
 }
 
 fn default_sub_steps() -> u32 {

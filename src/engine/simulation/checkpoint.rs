@@ -3,12 +3,13 @@
 //! Every column goes into a section of its own, the rest (clock, ledger, next limit, states of systems, the scene) into
 //! one header section. Lists and packed rows are not saved: they are made again from the columns.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Simulation;
+use super::inputs::Inputs;
 use super::sub_steps::SubStepState;
 use crate::parallel::instruction_path;
 use crate::record::output::OUTPUT;
@@ -20,6 +21,8 @@ use crate::schedule::{Clock, Ledger, Limit, TimeStepLimits};
 use crate::world::{ColumnInfo, PhaseView};
 
 const STATE: &str = "state";
+/// Section of the inputs; checkpoints of earlier versions have none.
+const INPUTS: &str = "inputs";
 
 /// Everything that is not in a column.
 #[derive(Serialize, Deserialize)]
@@ -65,6 +68,8 @@ pub enum SaveError {
 pub struct Checkpoint {
     container: Container,
     header: Header,
+    inputs: Inputs,
+    path: PathBuf,
 }
 
 impl Checkpoint {
@@ -73,12 +78,18 @@ impl Checkpoint {
         let container = Container::read(path)?;
         let section = container.section(STATE).ok_or_else(|| content("it holds no simulation state"))?;
         let header = postcard::from_bytes(&section.bytes).map_err(|error| content(error.to_string()))?;
-        Ok(Self { container, header })
+        let inputs = container.section(INPUTS).map(|section| postcard::from_bytes(&section.bytes));
+        let inputs = inputs.transpose().map_err(|error| content(error.to_string()))?.unwrap_or_default();
+        Ok(Self { container, header, inputs, path: path.to_path_buf() })
     }
 
-    /// The scene that the run was started with.
+    /// The scene that the run was started with. Files that it names are relative to where the scene lies now: seen from the
+    /// checkpoint as before, or else at its former place.
     pub fn source(&self) -> Source {
-        Source::new(self.header.scene_name.clone(), self.header.scene_text.clone())
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let moved = self.inputs.scene_in(folder).and_then(|path| std::path::absolute(path).ok());
+        let name = moved.map_or_else(|| self.header.scene_name.clone(), |path| path.display().to_string());
+        Source::new(name, self.header.scene_text.clone())
     }
 
     /// Time and step of the checkpoint.
@@ -119,10 +130,12 @@ impl Simulation {
             systems: self.schedule.save(),
         };
         let bytes = postcard::to_stdvec(&header).unwrap_or_default();
+        let inputs = postcard::to_stdvec(&self.inputs.beside(path, &source.name)).unwrap_or_default();
         let columns = all_columns(self);
         with_columns(&columns, None, &|last| -> Result<(), ContainerError> {
             let mut writer = ContainerWriter::new();
             writer.section(STATE, "header", 1, &bytes)?;
+            writer.section(INPUTS, "inputs", 1, &inputs)?;
             let mut next = last;
             while let Some(Held { column, bytes, before }) = next {
                 writer.section(&column.path, column.info.unit, column.info.element_size, bytes)?;
@@ -137,6 +150,11 @@ impl Simulation {
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
         let Header { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
             &checkpoint.header;
+        if let Some(file) = self.inputs.changed_since(&checkpoint.inputs) {
+            return Err(content(format!(
+                "`{file}` has changed since the run began: the rest would have other physics; put the former file back"
+            )));
+        }
         for phase in self.world.phases() {
             let view = self.world.phase(phase);
             for column in view.columns().iter() {
@@ -151,7 +169,9 @@ impl Simulation {
                     }
                 });
                 if !fits {
-                    return Err(content(format!("column `{name}` holds another number of particles")));
+                    let message =
+                        "has a different number of particles; has the scene or one of its files changed?";
+                    return Err(content(format!("column `{name}` {message}")));
                 }
             }
         }

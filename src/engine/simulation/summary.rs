@@ -29,6 +29,8 @@ pub enum Outcome {
 pub struct Summary {
     /// Title of the scene.
     pub title: String,
+    /// Values of the parameters of the scene.
+    pub parameters: BTreeMap<String, f64>,
     /// How it has ended.
     pub outcome: Outcome,
     /// Time reached, s.
@@ -118,6 +120,7 @@ impl Simulation {
         });
         Summary {
             title: self.title.clone(),
+            parameters: self.parameters.clone(),
             outcome: self.outcome(),
             time: self.clock.time,
             end_time: self.end,

@@ -11,8 +11,8 @@ use super::system::{OutputHandle, output_system};
 use super::track::Track;
 use crate::fields::{ChosenField, FieldTable};
 use crate::plugin::SimBuilder;
-use crate::record::Recorder;
 use crate::record::probe::{EnergyColumns, Gauge, Probe};
+use crate::record::{Recorder, stop};
 use crate::scene::{Item, Place, Problem, Source};
 use crate::world::BodySet;
 
@@ -69,6 +69,11 @@ impl OutputPlan {
         }
         for warning in probes.iter().filter_map(|probe| probe.warning(sim)).collect::<Vec<_>>() {
             sim.warn(warning);
+        }
+        if problems.is_empty()
+            && let Err(found) = stop::add_system(sim, &table)
+        {
+            problems.extend(found);
         }
         let plan = Self { probes, recorded, written, recorders };
         if problems.is_empty() { Ok(plan) } else { Err(problems) }

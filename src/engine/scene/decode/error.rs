@@ -5,9 +5,9 @@ use std::fmt;
 use serde::de::{self, Expected, Unexpected};
 
 use super::Context;
-use crate::scene::Problem;
 use crate::scene::names::unknown;
 use crate::scene::tree::{Kind, Node};
+use crate::scene::{ExpressionError, Problem};
 
 /// An error on its way to the value that it is about.
 #[derive(Debug)]
@@ -61,6 +61,11 @@ fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
         Kind::Tuple(_) | Kind::Fields(_) => node.span.clone(),
         _ => node.head(),
     }
+}
+
+/// A fault of an expression, at its place within the text value `node`.
+pub(in crate::scene) fn expression_problem(node: &Node, error: &ExpressionError) -> Problem {
+    located(node, &text_error(error.start, error.end, &error.to_string(), &error.help))
 }
 
 const MARK: char = '\u{1f}';

@@ -5,9 +5,10 @@ use serde::de::{Deserializer, Error as _, IntoDeserializer, Visitor};
 
 use super::Context;
 use super::access::{Entries, FieldValues, ItemParts, MapEntries};
-use super::error::Error;
+use super::error::{Error, expression_problem};
 use super::variant::Variant;
 use crate::scene::Problem;
+use crate::scene::expression::constant;
 use crate::scene::names::unknown;
 use crate::scene::tree::{Kind, Node};
 
@@ -85,6 +86,25 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// The value of an expression that stands where a number is expected; none if the value is no text.
+    fn expression(self) -> Outcome<Option<f64>> {
+        let symbols = self.context.symbols;
+        match &self.node.kind {
+            Kind::Text { value, .. } => constant(value, symbols).map(Some).map_err(|error| {
+                self.context.report(expression_problem(self.node, &error));
+                Error::Reported
+            }),
+            Kind::Bare if self.name().is_some_and(|name| symbols.parameters.contains_key(name)) => {
+                let name = self.name().unwrap_or_default();
+                let problem = format!("expected a number or an expression in double quotes, found `{name}`");
+                let problem = Problem::at_span(self.node.head(), problem);
+                self.context.report(problem.help(format!("write `\"{name}\"`")));
+                Err(Error::Reported)
+            }
+            _ => Ok(None),
+        }
+    }
+
     fn read_entries<V: Visitor<'a>>(
         self,
         entries: &'a [Node],
@@ -107,6 +127,14 @@ impl<'a> Value<'a> {
         }
         self.here(result)
     }
+}
+
+macro_rules! whole_numbers {
+    ($($method:ident)*) => {
+        $(fn $method<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+            self.deserialize_i64(visitor)
+        })*
+    };
 }
 
 impl<'a> Deserializer<'a> for Value<'a> {
@@ -143,6 +171,33 @@ impl<'a> Deserializer<'a> for Value<'a> {
             Kind::Map(_) => return self.deserialize_map(visitor),
         };
         self.here(result)
+    }
+
+    fn deserialize_f64<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match self.expression()? {
+            Some(value) => self.here(visitor.visit_f64(value)),
+            None => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_f32<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        self.deserialize_f64(visitor)
+    }
+
+    fn deserialize_i64<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
+        match self.expression()? {
+            // Beyond these numbers not every whole number is one of floating point.
+            Some(value) if value.fract() == 0.0 && value.abs() < 9e15 && value < 0.0 => {
+                self.here(visitor.visit_i64(value as i64))
+            }
+            Some(value) if value.fract() == 0.0 && value.abs() < 9e15 => {
+                self.here(visitor.visit_u64(value as u64))
+            }
+            Some(value) => {
+                self.here(Err(Error::Message(format!("expected a whole number, found {value:?}"))))
+            }
+            None => self.deserialize_any(visitor),
+        }
     }
 
     fn deserialize_str<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
@@ -286,7 +341,11 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     serde::forward_to_deserialize_any! {
         <V: Visitor<'a>>
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char bytes byte_buf identifier
+        bool i128 u128 char bytes byte_buf identifier
+    }
+
+    whole_numbers! {
+        deserialize_i8 deserialize_i16 deserialize_i32 deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64
     }
 }
 

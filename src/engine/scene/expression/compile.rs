@@ -1,8 +1,12 @@
 //! Text of an expression -> program for a stack machine, constants folded.
 
+use std::sync::Arc;
+
 use super::ExpressionError;
 use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, VARIABLES};
 use crate::scene::names::nearest;
+use crate::scene::symbols::Symbols;
+use crate::scene::table::Interpolation;
 
 /// Values that an evaluation can hold at once.
 pub(super) const MAX_STACK: usize = 32;
@@ -16,14 +20,70 @@ pub(super) enum Op {
     Variable(usize),
     Unary(Unary),
     Binary(Binary),
+    /// Interpolates in the table with this index.
+    Table(usize),
 }
 
-/// Compiles an expression.
+/// A compiled expression.
+#[derive(Debug)]
+pub(super) struct Program {
+    pub ops: Vec<Op>,
+    pub tables: Vec<Arc<Interpolation>>,
+}
+
+impl Program {
+    /// The program with this value.
+    pub fn constant(value: f64) -> Self {
+        Self { ops: vec![Op::Constant(value)], tables: Vec::new() }
+    }
+}
+
+/// Compiles an expression that may use the names of `symbols`.
 ///
 /// # Errors
 /// The text is no expression, or its value is constant and not finite.
-pub(super) fn compile(text: &str) -> Result<Vec<Op>, ExpressionError> {
-    let mut compiler = Compiler { text, at: 0, program: Vec::new(), height: 0, depth: 0 };
+pub(super) fn compile(text: &str, symbols: &Symbols) -> Result<Program, ExpressionError> {
+    run(text, symbols, &VARIABLES)
+}
+
+/// The value of an expression that stands for a number: it cannot depend on place and time.
+///
+/// # Errors
+/// The text is no such expression, or its value is not finite.
+pub(in crate::scene) fn constant(text: &str, symbols: &Symbols) -> Result<f64, ExpressionError> {
+    let Program { ops, .. } = run(text, symbols, &[])?;
+    match ops.as_slice() {
+        [Op::Constant(value)] => Ok(*value),
+        _ => Err(ExpressionError {
+            start: 0,
+            end: text.len(),
+            message: "no constant value".into(),
+            help: String::new(),
+        }),
+    }
+}
+
+/// The names in a text; digits that follow a number, as in `2e3`, are none.
+pub(in crate::scene) fn words(text: &str) -> impl Iterator<Item = &str> {
+    let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
+    words.filter(|word| word.starts_with(|c: char| c.is_alphabetic() || c == '_'))
+}
+
+fn run(
+    text: &str,
+    symbols: &Symbols,
+    variables: &'static [&'static str],
+) -> Result<Program, ExpressionError> {
+    let mut compiler = Compiler {
+        text,
+        symbols,
+        variables,
+        at: 0,
+        program: Vec::new(),
+        tables: Vec::new(),
+        height: 0,
+        depth: 0,
+    };
     compiler.sum()?;
     if compiler.peek().is_some() {
         return Err(compiler.unexpected("an operator or the end"));
@@ -32,14 +92,17 @@ pub(super) fn compile(text: &str) -> Result<Vec<Op>, ExpressionError> {
         [Op::Constant(value)] if !value.is_finite() => {
             Err(compiler.error(0..text.len(), "no finite value", ""))
         }
-        _ => Ok(compiler.program),
+        _ => Ok(Program { ops: compiler.program, tables: compiler.tables }),
     }
 }
 
 struct Compiler<'a> {
     text: &'a str,
+    symbols: &'a Symbols,
+    variables: &'static [&'static str],
     at: usize,
     program: Vec<Op>,
+    tables: Vec<Arc<Interpolation>>,
     height: usize,
     depth: usize,
 }
@@ -102,6 +165,15 @@ impl Compiler<'_> {
         match self.program.last_mut() {
             Some(Op::Constant(value)) => *value = function(*value),
             _ => self.program.push(Op::Unary(function)),
+        }
+    }
+
+    fn table(&mut self, table: Arc<Interpolation>) {
+        if let Some(Op::Constant(value)) = self.program.last_mut() {
+            *value = table.at(*value);
+        } else {
+            self.program.push(Op::Table(self.tables.len()));
+            self.tables.push(table);
         }
     }
 
@@ -226,23 +298,32 @@ impl Compiler<'_> {
         let start = self.at;
         let name = self.run(|c| c.is_alphanumeric() || c == '_').to_owned();
         let range = start..self.at;
-        if let Some(index) = VARIABLES.iter().position(|variable| *variable == name) {
+        if let Some(index) = self.variables.iter().position(|variable| *variable == name) {
             return self.push(Op::Variable(index));
+        }
+        if VARIABLES.contains(&name.as_str()) {
+            let message = format!("a number that depends on `{name}`");
+            return Err(self.error(range, message, "numbers here are the same everywhere and always"));
+        }
+        if let Some(value) = self.symbols.parameters.get(&name) {
+            return self.push(Op::Constant(*value));
         }
         if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
             return self.push(Op::Constant(*value));
         }
         let unary = UNARY.iter().find(|(function, _)| *function == name);
         let binary = BINARY.iter().find(|(function, _)| *function == name);
-        if unary.is_none() && binary.is_none() {
+        let table = self.symbols.tables.get(&name).cloned();
+        if unary.is_none() && binary.is_none() && table.is_none() {
             return Err(self.unknown(range, &name));
         }
         let arguments = self.arguments(range.clone(), &name)?;
-        match (unary, binary, arguments) {
-            (Some((_, function)), _, 1) => self.unary(*function),
-            (_, Some((_, function)), 2) => self.binary(*function),
+        match (unary, binary, table, arguments) {
+            (Some((_, function)), _, _, 1) => self.unary(*function),
+            (_, Some((_, function)), _, 2) => self.binary(*function),
+            (_, _, Some(table), 1) => self.table(table),
             _ => {
-                let wanted = if unary.is_some() { "one argument" } else { "two arguments" };
+                let wanted = if binary.is_none() { "one argument" } else { "two arguments" };
                 return Err(self.error(range, format!("`{name}` takes {wanted}, found {arguments}"), ""));
             }
         }
@@ -270,7 +351,8 @@ impl Compiler<'_> {
     }
 
     fn unknown(&self, range: std::ops::Range<usize>, name: &str) -> ExpressionError {
-        let mut known = VARIABLES.to_vec();
+        let mut known: Vec<&str> = self.symbols.names().collect();
+        known.extend(self.variables);
         known.extend(CONSTANTS.iter().map(|(name, _)| *name));
         known.extend(UNARY.iter().map(|(name, _)| *name));
         known.extend(BINARY.iter().map(|(name, _)| *name));

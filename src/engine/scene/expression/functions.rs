@@ -5,6 +5,14 @@ pub(super) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
 
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
+/// Whether a name is already a variable, constant or function.
+pub(in crate::scene) fn is_reserved(name: &str) -> bool {
+    VARIABLES.contains(&name)
+        || CONSTANTS.iter().any(|(other, _)| *other == name)
+        || UNARY.iter().any(|(other, _)| *other == name)
+        || BINARY.iter().any(|(other, _)| *other == name)
+}
+
 pub(super) type Unary = fn(f64) -> f64;
 pub(super) type Binary = fn(f64, f64) -> f64;
 

@@ -4,6 +4,7 @@ mod corpus;
 mod items;
 mod mutation;
 mod overrides;
+mod parameters;
 mod reading;
 mod reference;
 

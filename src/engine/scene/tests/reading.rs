@@ -25,7 +25,10 @@ fn every_part_is_read() {
     assert_eq!((plate.spacing, plate.velocity), (0.0025, Some(Vec3::new(0.0, 1.0, 0.0))));
     assert_eq!((plate.formulation.name(), plate.plugins[0].name()), ("TotalLagrangian", "hourglass_control"));
     assert_eq!(scene.contacts[0].between, ("plate".into(), "tank".into()));
-    assert_eq!(scene.time, Time { end: 1.0, step: Step::Adaptive { factor: 0.9 }, sub_steps: 200 });
+    assert_eq!(
+        scene.time,
+        Time { end: 1.0, step: Step::Adaptive { factor: 0.9 }, sub_steps: 200, stop_when: vec![] }
+    );
     let on = scene.probes[1].on.as_ref().unwrap();
     assert_eq!((on.body.as_deref(), on.face), (Some("tool"), Some(Face::MinY)));
     assert_eq!(scene.probes[2].at, Some(Vec3::new(1.6, 0.012, 0.0)));

@@ -5,6 +5,7 @@ mod periodic;
 mod recorder;
 mod resume;
 mod scene_errors;
+mod stop;
 
 use std::fs;
 use std::path::Path;

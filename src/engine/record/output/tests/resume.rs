@@ -152,3 +152,52 @@ fn a_checkpoint_of_a_run_that_writes_serves_one_that_does_not() {
     silent.restore(&checkpoint).unwrap();
     assert_eq!(silent.state_hash(), sim.state_hash());
 }
+
+/// A block whose particles are those of a file beside the scene.
+fn block_of_points(folder: &Path) -> (Scene, Source) {
+    let text = r#"Scene(
+    dimension: Two,
+    gravity: (0.0, -9.81),
+    materials: {"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)},
+    bodies: [
+        Body(name: "block", material: "rubber", shape: Points(file: "block.csv"), spacing: 0.01,
+             formulation: TotalLagrangian),
+    ],
+    time: (end: 0.02, step: Fixed(1.0e-4)),
+)
+"#;
+    fs::write(folder.join("scene.ron"), text).unwrap();
+    crate::scene::load(&folder.join("scene.ron"), &[]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn write_points(folder: &Path, stretch: f64) {
+    let mut text = "x,y,volume\n".to_owned();
+    for k in 0..25 {
+        text += &format!("{},{},1e-4\n", stretch * 0.01 * f64::from(k % 5), 0.01 * f64::from(k / 5));
+    }
+    fs::write(folder.join("block.csv"), text).unwrap();
+}
+
+#[test]
+fn a_file_that_has_changed_is_refused_and_a_project_can_be_moved() {
+    let place = tempfile::tempdir().unwrap();
+    let project = place.path().join("project");
+    fs::create_dir(&project).unwrap();
+    write_points(&project, 1.0);
+    let mut sim = built(&block_of_points(&project), &project.join("out"));
+    sim.run(|sim| sim.clock().step < 20).unwrap();
+    sim.finish().unwrap();
+    drop(sim);
+    let moved = place.path().join("renamed");
+    fs::rename(&project, &moved).unwrap();
+    let go_on = || {
+        let checkpoint = Checkpoint::read(&moved.join("out/checkpoint.mlc")).unwrap();
+        let scene = parse(checkpoint.source()).unwrap();
+        let mut sim = try_build(&scene, &options(&moved.join("out"), Existing::Refuse, true)).unwrap();
+        sim.restore(&checkpoint).map(|()| sim.clock().step).map_err(|error| error.to_string())
+    };
+    assert_eq!(go_on(), Ok(20));
+    write_points(&moved, 0.99);
+    let error = go_on().unwrap_err();
+    assert!(error.contains("`block.csv` has changed since the run began"), "{error}");
+}

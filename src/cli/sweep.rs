@@ -1,0 +1,96 @@
+//! `meshless sweep`: a scene once for every combination of values, and one table of the probes at the end.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use meshless_engine::plugin::{OutputOptions, Registry};
+use meshless_engine::record::Existing;
+use meshless_engine::scene::{self, Scene, Source};
+
+use super::execution::{Execution, How};
+use super::failure::Failure;
+use super::folder::default_folder;
+use super::interrupt::Interrupt;
+use super::scene_file::replacement;
+use super::text::{complain, say};
+
+mod cases;
+mod report;
+
+use cases::Case;
+use report::Row;
+
+/// Run a scene once for every combination of values, and compare the probes
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file
+    #[arg(value_name = "SCENE")]
+    path: PathBuf,
+    /// Values of the scene, separated by commas, as in `parameters.dx=0.01,0.005`; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUES", value_parser = replacement, required = true)]
+    set: Vec<(String, String)>,
+    /// Folder to write to; every run has a folder of its own in it [default: out/<scene>]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Overwrite the output of an earlier sweep
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    how: How,
+}
+
+/// Runs all cases, one after the other.
+pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+    let cases = cases::combinations(&arguments.set).map_err(Failure::Usage)?;
+    // All scenes are read before the first one runs.
+    let scenes = cases
+        .iter()
+        .map(|case| scene::load(&arguments.path, &case.settings))
+        .collect::<Result<Vec<(Scene, Source)>, _>>()?;
+    arguments.how.set_threads()?;
+    let interrupt = Interrupt::listen()?;
+    let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.path));
+    let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
+    let mut rows = Vec::new();
+    let mut failures = 0;
+    for (k, (case, (scene, source))) in cases.iter().zip(&scenes).enumerate() {
+        if !arguments.how.quiet {
+            complain(&format!("run {} of {}: {}", k + 1, cases.len(), case.label()));
+        }
+        let options = OutputOptions { folder: folder.join(case.folder()), existing, resume: false };
+        let row = run(case, scene, source, registry, options, &arguments.how)?;
+        failures += usize::from(row.is_failed());
+        rows.push(row);
+        if interrupt.asked() {
+            break;
+        }
+    }
+    let file = report::write(&folder, existing, &rows)?;
+    say(&report::text(&rows));
+    say(&format!("table of all runs: {}", file.display()));
+    if interrupt.asked() {
+        return Err(Failure::Interrupted);
+    }
+    match failures {
+        0 => Ok(()),
+        failures => Err(Failure::Run(format!("{failures} of {} runs failed", cases.len()))),
+    }
+}
+
+/// One run. That it fails is told in its row, so that the others still run.
+fn run(
+    case: &Case,
+    scene: &Scene,
+    source: &Source,
+    registry: &Registry,
+    options: OutputOptions,
+    how: &How,
+) -> Result<Row, Failure> {
+    let mut execution = Execution::new(scene, source, registry, options)?;
+    let quiet = How { quiet: true, threads: None, ..*how };
+    match execution.carry_out(&quiet) {
+        Ok(()) | Err(Failure::Interrupted) => {}
+        Err(failure) => failure.report(),
+    }
+    Ok(Row::new(case, execution.sim.summary()))
+}

@@ -1,0 +1,135 @@
+//! The parameters and tables of a scene, read from its tree before anything that may use them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::Problem;
+use super::decode::{decode, expression_problem};
+use super::expression::{constant, words};
+use super::symbols::{Symbols, fault_of_name};
+use super::table::Table;
+use super::tree::{Kind, Node};
+
+/// The names that the scene `root` defines; files of tables are found in `folder`.
+///
+/// # Errors
+/// All that is wrong with them.
+pub(super) fn define(root: &Node, text: &str, folder: &Path) -> Result<Arc<Symbols>, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let parameters = entries(root, "parameters", &mut problems);
+    let mut symbols = Symbols { parameters: evaluate(&parameters, &mut problems), ..Symbols::default() };
+    let tables = entries(root, "tables", &mut problems);
+    for (name, key, _) in &tables {
+        if symbols.parameters.contains_key(*name) {
+            let message = format!("`{name}` is both a parameter and a table");
+            problems.push(Problem::at_span(key.span.clone(), message).help("names must differ"));
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let known = Arc::new(Symbols { parameters: symbols.parameters.clone(), ..Symbols::default() });
+    for (name, _, value) in tables {
+        let decoded = decode::<Table>(value, text, 0, false, &known);
+        problems.extend(decoded.problems);
+        let path = format!("tables.{name}");
+        match decoded.value.map(|table| table.interpolation(folder, &path)) {
+            Some(Ok(table)) => _ = symbols.tables.insert(name.to_owned(), Arc::new(table)),
+            Some(Err(problem)) => problems.push(problem),
+            None => {}
+        }
+    }
+    if problems.is_empty() { Ok(Arc::new(symbols)) } else { Err(problems) }
+}
+
+type Entry<'a> = (&'a str, &'a Node, &'a Node);
+
+/// Name, key and value of the entries of a block of the scene; that it is a map is checked where the scene is read.
+fn entries<'a>(root: &'a Node, block: &str, problems: &mut Vec<Problem>) -> Vec<Entry<'a>> {
+    let Some(Kind::Map(entries)) = root.field(block).map(|field| &field.value.kind) else {
+        return Vec::new();
+    };
+    let mut found: Vec<Entry<'a>> = Vec::new();
+    for (key, value) in entries {
+        let Kind::Text { value: name, .. } = &key.kind else { continue };
+        if let Some((message, help)) = fault_of_name(name) {
+            problems.push(Problem::at_span(key.span.clone(), message).help(help));
+        } else if !found.iter().any(|(other, ..)| other == name) {
+            found.push((name, key, value));
+        }
+    }
+    found
+}
+
+/// The values of parameters, which may name each other in any order.
+fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<String, f64> {
+    let mut symbols = Symbols::default();
+    let mut open: Vec<&Entry<'_>> = parameters.iter().collect();
+    loop {
+        let before = open.len();
+        open.retain(|(name, _, node)| {
+            let waits = used(node, parameters).any(|other| !symbols.parameters.contains_key(other));
+            if waits {
+                return true;
+            }
+            let value = match &node.kind {
+                Kind::Number { value, .. } if value.is_finite() => Ok(*value),
+                Kind::Text { value, .. } => {
+                    constant(value, &symbols).map_err(|error| expression_problem(node, &error))
+                }
+                _ => Err(Problem::at_span(
+                    node.span.clone(),
+                    format!(
+                        "expected a finite number or an expression in double quotes, found {}",
+                        node.describe()
+                    ),
+                )),
+            };
+            // A parameter that is wrong counts as known, so that it is reported once.
+            symbols.parameters.insert(
+                (*name).to_owned(),
+                value.unwrap_or_else(|problem| {
+                    problems.push(problem);
+                    1.0
+                }),
+            );
+            false
+        });
+        if open.is_empty() {
+            return symbols.parameters;
+        }
+        if open.len() == before {
+            problems.push(cycle(&open, parameters));
+            return symbols.parameters;
+        }
+    }
+}
+
+/// The parameters that the expression of a parameter names.
+fn used<'a>(node: &'a Node, parameters: &'a [Entry<'_>]) -> impl Iterator<Item = &'a str> {
+    let text = match &node.kind {
+        Kind::Text { value, .. } => value.as_str(),
+        _ => "",
+    };
+    words(text).filter(|word| parameters.iter().any(|(name, ..)| name == word))
+}
+
+/// Each of `open` waits for another of them: follows the first ones until a name comes again.
+fn cycle(open: &[&Entry<'_>], parameters: &[Entry<'_>]) -> Problem {
+    let mut chain: Vec<&Entry<'_>> = vec![open[0]];
+    loop {
+        let (_, _, node) = chain[chain.len() - 1];
+        let next = used(node, parameters).find_map(|word| open.iter().find(|(name, ..)| *name == word));
+        let Some(next) = next else { break };
+        if let Some(start) = chain.iter().position(|(name, ..)| *name == next.0) {
+            chain.drain(..start);
+            break;
+        }
+        chain.push(next);
+    }
+    let mut names: Vec<&str> = chain.iter().map(|(name, ..)| *name).collect();
+    names.push(names[0]);
+    let message = format!("parameter `{}` depends on itself: {}", names[0], names.join(" -> "));
+    Problem::at_span(chain[0].2.span.clone(), message).help("give one of them as a number")
+}

@@ -1,0 +1,100 @@
+//! Functions that a scene gives by points: `tables: { "pull": (file: "pull.csv") }`, used as `"1e5*pull(t)"`.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Problem;
+use crate::record::read_series;
+
+/// A function of one variable by points, interpolated linearly between them and constant beyond the first and the last. Expressions
+/// call it by its name: `"1e5*pull(t)"`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// CSV file with a header, relative to the scene. Either this or `points`.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// Column of the file with the variable; without it the first one.
+    #[serde(default)]
+    pub variable: Option<String>,
+    /// Column of the file with the value; without it the second one.
+    #[serde(default)]
+    pub value: Option<String>,
+    /// Points (variable, value), the variable increasing.
+    #[serde(default)]
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Table {
+    /// The function; files are found in `folder`, and `path` is the place of the table in the scene.
+    ///
+    /// # Errors
+    /// The file cannot be read, or the points are no function.
+    pub(super) fn interpolation(&self, folder: &Path, path: &str) -> Result<Interpolation, Problem> {
+        let at = |field: &str| format!("{path}.{field}");
+        let (points, at) = match (&self.file, self.points.is_empty()) {
+            (Some(file), true) => {
+                let points = self.read(&folder.join(file));
+                (points.map_err(|message| Problem::at_path(at("file"), message))?, at("file"))
+            }
+            (None, false) => (self.points.clone(), at("points")),
+            (Some(_), false) => {
+                return Err(Problem::at_path(
+                    at("points"),
+                    "a table has either `file` or `points`, not both",
+                ));
+            }
+            (None, true) => return Err(Problem::at_path(path, "a table needs `file` or `points`")),
+        };
+        if let Some(k) = points.iter().position(|(x, y)| !x.is_finite() || !y.is_finite()) {
+            let message =
+                format!("every value must be a finite number, found {:?} at point {}", points[k], k + 1);
+            return Err(Problem::at_path(at, message));
+        }
+        if let Some(k) = (1..points.len()).find(|&k| points[k].0 <= points[k - 1].0) {
+            let (before, here) = (points[k - 1].0, points[k].0);
+            let message =
+                format!("the variable must increase, found {here} after {before} at point {}", k + 1);
+            return Err(Problem::at_path(at, message));
+        }
+        Ok(Interpolation { points })
+    }
+
+    fn read(&self, file: &Path) -> Result<Vec<(f64, f64)>, String> {
+        let series = read_series(file).map_err(|error| error.to_string())?;
+        let columns = series.columns();
+        if columns.len() < 2 || series.is_empty() {
+            let (columns, rows) = (columns.len(), series.len());
+            return Err(format!(
+                "a table needs two columns and a row, `{}` has {columns} columns and {rows} rows",
+                file.display()
+            ));
+        }
+        let numbers = |name: &Option<String>, k: usize| {
+            let name = name.as_deref().unwrap_or(&columns[k].name);
+            series.numbers(name).map_err(|error| error.to_string())
+        };
+        Ok(numbers(&self.variable, 0)?.into_iter().zip(numbers(&self.value, 1)?).collect())
+    }
+}
+
+/// Points that are interpolated linearly; at least one, the variable increasing.
+#[derive(Debug)]
+pub(super) struct Interpolation {
+    points: Vec<(f64, f64)>,
+}
+
+impl Interpolation {
+    /// The value at `x`. NaN stays NaN, so that the watchdog sees it.
+    pub fn at(&self, x: f64) -> f64 {
+        let after = self.points.partition_point(|point| point.0 <= x);
+        match (after.checked_sub(1).and_then(|k| self.points.get(k)), self.points.get(after)) {
+            _ if x.is_nan() => x,
+            (Some(&(x0, y0)), Some(&(x1, y1))) => y0 + (y1 - y0) * ((x - x0) / (x1 - x0)),
+            (Some(&(_, y)), None) | (None, Some(&(_, y))) => y,
+            (None, None) => f64::NAN,
+        }
+    }
+}
