@@ -198,6 +198,7 @@ const LAYERS: &[&str] = &[
     "kernels",
     "parallel",
     "linalg",
+    "notation",
 ];
 
 /// Folders whose files must not import each other in circles.

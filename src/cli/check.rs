@@ -1,22 +1,29 @@
 //! `meshless check`: what a scene will cost and whether it can run, without writing anything.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::time::{Duration, Instant};
 
 use clap::Args;
 use meshless_engine::assembly;
+use meshless_engine::notation::{number, quantity};
 use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Dimension, Scene};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, Mass};
+use serde::Serialize;
 
 use super::failure::Failure;
 use super::memory::resident_bytes;
-use super::neighbors::Neighbors;
 use super::scene_file::SceneFile;
-use super::text::{Table, bytes, complain, counted, duration, say};
+use super::text::{Table, bytes, complain, say};
 
-/// Check a scene: particles, neighbours, memory, time step, estimated time; nothing is written
+mod body;
+mod review;
+mod trial;
+
+use body::BodyReport;
+use trial::Trial;
+
+/// Check a scene: particles, neighbours, memory, time step, estimated time, and what a colleague would note; nothing is written
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -24,24 +31,50 @@ pub struct Arguments {
     /// Print the systems in their order, with the columns that they read and write
     #[arg(long)]
     schedule: bool,
+    /// Print the report as JSON
+    #[arg(long, conflicts_with = "schedule")]
+    json: bool,
 }
 
-/// Wall time spent on trial steps.
-const TRIAL: Duration = Duration::from_millis(500);
-/// Largest number of trial steps.
-const TRIAL_STEPS: u64 = 50;
+/// The report for programs.
+#[derive(Serialize)]
+struct Report<'a> {
+    title: &'a str,
+    dimension: usize,
+    parameters: &'a BTreeMap<String, f64>,
+    bodies: &'a [BodyReport],
+    particles: usize,
+    bytes_of_columns: usize,
+    time_step: f64,
+    limited_by: &'a str,
+    end: f64,
+    steps: f64,
+    sub_steps: Option<u32>,
+    seconds: f64,
+    threads: usize,
+    notes: &'a [String],
+    warnings: &'a [String],
+}
 
 /// Builds the scene, does some steps in memory, and says what was found.
 pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
     let (scene, source) = arguments.scene.load()?;
     let mut sim = assembly::build(&scene, &source, registry)?;
     sim.start().map_err(|error| Failure::Run(error.to_string()))?;
-    let limit = sim.limit().map_or_else(|| "nothing".to_owned(), |limit| limit.by.clone());
-    let mut text = header(&scene, &source.name);
-    text += &bodies(&scene, &sim)?;
-    text += &memory(&sim);
+    let bodies = BodyReport::all(&scene, &sim)?;
+    let memory = memory(&sim);
     let trial = Trial::run(&mut sim)?;
-    text += &trial.describe(&sim, &limit);
+    let notes = review::notes(&bodies, &sim, &trial);
+    if arguments.json {
+        say(&json(&scene, &sim, &bodies, &trial, &notes)?);
+        return Ok(());
+    }
+    let mut text =
+        header(&scene, &source.name, &sim) + &table(&scene, &bodies) + &memory + &trial.describe(&sim);
+    if !notes.is_empty() {
+        let _ =
+            write!(text, "\nnotes\n{}", notes.iter().map(|note| format!("  {note}\n")).collect::<String>());
+    }
     if arguments.schedule {
         let _ = write!(text, "\nschedule\n{}", sim.schedule().describe());
     }
@@ -52,17 +85,47 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     Ok(())
 }
 
-fn header(scene: &Scene, name: &str) -> String {
+fn json(
+    scene: &Scene,
+    sim: &Simulation,
+    bodies: &[BodyReport],
+    trial: &Trial,
+    notes: &[String],
+) -> Result<String, Failure> {
+    let report = Report {
+        title: &scene.title,
+        dimension: scene.dimension.count(),
+        parameters: sim.parameters(),
+        bodies,
+        particles: sim.world().len(),
+        bytes_of_columns: sim.world().bytes(),
+        time_step: trial.dt,
+        limited_by: &trial.limit,
+        end: sim.end(),
+        steps: trial.expected_steps(sim),
+        sub_steps: sim.sub_steps().map(|(last, _)| last),
+        seconds: trial.expected_seconds(sim),
+        threads: rayon::current_num_threads(),
+        notes,
+        warnings: sim.warnings(),
+    };
+    serde_json::to_string_pretty(&report).map_err(|error| Failure::Run(error.to_string()))
+}
+
+fn header(scene: &Scene, name: &str, sim: &Simulation) -> String {
     let space = match scene.dimension {
         Dimension::Two => "two dimensions, plane strain",
         Dimension::Three => "three dimensions",
     };
     let title = if scene.title.is_empty() { "untitled" } else { &scene.title };
-    format!("{name}: {title} ({space})\n\n")
+    let values = sim.parameters().iter().map(|(name, value)| format!("{name} = {}", number(*value)));
+    let values = values.collect::<Vec<_>>().join(", ");
+    let parameters = if values.is_empty() { values } else { format!("parameters: {values}\n") };
+    format!("{name}: {title} ({space})\n{parameters}\n")
 }
 
-fn bodies(scene: &Scene, sim: &Simulation) -> Result<String, Failure> {
-    let mass_heading = match scene.dimension {
+fn table(scene: &Scene, bodies: &[BodyReport]) -> String {
+    let mass = match scene.dimension {
         Dimension::Two => "mass kg/m",
         Dimension::Three => "mass kg",
     };
@@ -71,34 +134,35 @@ fn bodies(scene: &Scene, sim: &Simulation) -> Result<String, Failure> {
         "formulation",
         "material",
         "particles",
-        "spacing m",
-        mass_heading,
+        "spacing",
+        "across",
+        mass,
+        "sound",
         "neighbours",
-        "least",
-        "most",
+        "min",
+        "max",
     ];
-    let mut table = Table::new(&headings, 6);
-    for (k, (body, described)) in sim.world().bodies().iter().zip(&scene.bodies).enumerate() {
-        let (view, rows) = sim.world().body_view(BodyId(k));
-        let masses = view.read::<Mass>().map_err(|error| Failure::Run(error.to_string()))?;
-        let mass: f64 = masses[rows.clone()].iter().map(|mass| mass.0).sum();
-        let [mean, least, most] = match Neighbors::count(sim, BodyId(k))? {
-            Some(count) => [format!("{:.1}", count.mean), count.least.to_string(), count.most.to_string()],
+    let mut table = Table::new(&headings, 8);
+    for body in bodies {
+        let [mean, least, most] = match body.neighbours {
+            Some((mean, least, most)) => [format!("{mean:.1}"), least.to_string(), most.to_string()],
             None => ["-".to_owned(), "-".to_owned(), "-".to_owned()],
         };
         table.row([
             body.name.clone(),
-            described.formulation.name().to_owned(),
+            body.formulation.clone(),
             body.material.clone(),
-            body.rows.len().to_string(),
-            format!("{}", body.spacing),
-            format!("{mass:.6}"),
+            body.particles.to_string(),
+            quantity(body.spacing, "m"),
+            number(body.across.round()),
+            number(body.mass),
+            body.sound_speed.map_or_else(|| "-".to_owned(), |speed| quantity(speed, "m/s")),
             mean,
             least,
             most,
         ]);
     }
-    Ok(table.render())
+    table.render()
 }
 
 fn memory(sim: &Simulation) -> String {
@@ -113,42 +177,4 @@ fn memory(sim: &Simulation) -> String {
         let _ = write!(text, "; the whole program takes {}", bytes(resident));
     }
     text + "\n"
-}
-
-/// Some steps to measure the speed with.
-struct Trial {
-    steps: u64,
-    wall: f64,
-    dt: f64,
-}
-
-impl Trial {
-    fn run(sim: &mut Simulation) -> Result<Self, Failure> {
-        let begun = Instant::now();
-        let mut dt = 0.0;
-        while !sim.is_finished() && sim.clock().step < TRIAL_STEPS && begun.elapsed() < TRIAL {
-            sim.step().map_err(|error| Failure::Run(error.to_string()))?;
-            if sim.clock().step == 1 {
-                dt = sim.clock().dt;
-            }
-        }
-        Ok(Self { steps: sim.clock().step, wall: begun.elapsed().as_secs_f64(), dt })
-    }
-
-    fn describe(&self, sim: &Simulation, limit: &str) -> String {
-        let steps = sim.end() / self.dt;
-        let per_step = self.wall / self.steps.max(1) as f64;
-        format!(
-            "time step  {:.3e} s, limited by {limit}\n\
-             length     about {} to {} s\n\
-             run time   about {} on {} threads, without output ({} in {} trial steps)\n",
-            self.dt,
-            counted(steps.ceil(), "steps"),
-            sim.end(),
-            duration(steps * per_step),
-            rayon::current_num_threads(),
-            counted(sim.world().len() as f64 / per_step, "particle-steps/s"),
-            self.steps,
-        )
-    }
 }

@@ -6,12 +6,13 @@ use clap::{Parser, Subcommand};
 use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
-use super::{bench, check, new, plugins, resume, schema, sweep, validate, view};
+use super::text::unsaid;
+use super::{bench, check, completions, new, plugins, resume, schema, sweep, validate, version, view};
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
 #[derive(Parser)]
-#[command(name = "meshless", version, arg_required_else_help = true)]
-struct CommandLine {
+#[command(name = "meshless", version, long_version = version::long(), arg_required_else_help = true, after_help = EXIT_CODES)]
+pub(super) struct CommandLine {
     #[command(subcommand)]
     command: Command,
 }
@@ -28,7 +29,13 @@ enum Command {
     Schema(schema::Arguments),
     Validate(validate::Arguments),
     View(view::Arguments),
+    Completions(completions::Arguments),
+    Manual(completions::Manual),
 }
+
+const EXIT_CODES: &str = "\
+exit codes: 0 success, 1 the run failed or a file could not be read or written, 2 the scene or the command line is wrong,
+130 stopped by Ctrl-C or by the system (SIGINT, SIGTERM, SIGHUP), with a checkpoint left";
 
 impl Command {
     fn execute(self, registry: &Registry) -> Result<(), Failure> {
@@ -43,6 +50,8 @@ impl Command {
             Self::Schema(arguments) => schema::execute(&arguments, registry),
             Self::Validate(arguments) => validate::execute(&arguments, registry),
             Self::View(arguments) => view::execute(&arguments),
+            Self::Completions(arguments) => completions::execute(&arguments),
+            Self::Manual(_) => completions::manual(),
         }
     }
 }
@@ -57,7 +66,11 @@ pub fn run(registry: Registry) -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match command.execute(&registry) {
+    let done = command.execute(&registry).and_then(|()| match unsaid() {
+        Some(error) => Err(Failure::Run(format!("cannot write to the standard output: {error}"))),
+        None => Ok(()),
+    });
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report();

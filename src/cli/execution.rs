@@ -6,16 +6,17 @@ use clap::Args;
 use meshless_engine::assembly::{self, BuildOptions};
 use meshless_engine::plugin::Registry;
 use meshless_engine::record::OutputOptions;
-use meshless_engine::scene::{Scene, SceneError, Source};
+use meshless_engine::scene::{Scene, Source};
 use meshless_engine::simulation::{RunError, Simulation};
 
 use super::failure::Failure;
 use super::folder::{self, FAILED};
 use super::interrupt::Interrupt;
+use super::lock::Lock;
 use super::profile;
 use super::progress::Progress;
 use super::summary;
-use super::text::{complain, say};
+use super::text::{complain, program, quoted, say};
 
 /// How a run is carried out; what it computes does not depend on any of this.
 #[derive(Args)]
@@ -49,6 +50,7 @@ pub struct Execution {
     pub sim: Simulation,
     folder: PathBuf,
     source: Source,
+    _lock: Lock,
 }
 
 impl Execution {
@@ -58,10 +60,10 @@ impl Execution {
         source: &Source,
         registry: &Registry,
         output: OutputOptions,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self, Failure> {
         let folder = output.folder.clone();
         let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
-        Ok(Self { sim, folder, source: source.clone() })
+        Ok(Self { sim, _lock: Lock::of(&folder)?, folder, source: source.clone() })
     }
 
     /// Does the steps, shows how far they are, and reports at the end.
@@ -136,19 +138,17 @@ impl Execution {
         if frames > 0 {
             names.push(format!("{frames} ParaView frames"));
         }
-        let folder = self.folder.display();
+        let folder = self.folder.display().to_string();
+        let (program, quoted) = (program(), quoted(&folder));
         let mut text = format!("files in {folder}: {}", names.join(", "));
         text += &match names.iter().any(|name| name.ends_with(".rrd")) {
-            true => format!("\nto look at the recording: meshless view {folder}"),
-            false if cfg!(feature = "rerun") => {
-                "\nthere is no recording: `plugins: [rerun_recorder()]` of the scene makes one".to_owned()
-            }
-            false => String::new(),
+            true => format!("\nview the recording with: {program} view {quoted}"),
+            false => "\nno recording: `plugins: [rerun_recorder()]` in the scene writes one".to_owned(),
         };
         if names.iter().any(|name| name == folder::CHECKPOINT) {
             text += &match self.sim.clock().time >= self.sim.end() {
-                false => format!("\nto go on: meshless resume {folder}"),
-                true => format!("\nto go further: meshless resume {folder} --until TIME"),
+                false => format!("\nresume with: {program} resume {quoted}"),
+                true => format!("\nextend with: {program} resume {quoted} --until TIME"),
             };
         }
         Ok(text)

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use meshless_engine::scene::SceneError;
 use thiserror::Error;
 
-use super::text::complain;
+use super::text::{complain, in_colour};
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, Error)]
@@ -26,7 +26,13 @@ pub enum Failure {
 
 impl Failure {
     pub(super) fn report(&self) {
-        complain(&self.to_string());
+        match self {
+            Self::Scene(error) if in_colour() => complain(&error.styled()),
+            Self::Usage(text) | Self::Run(text) if in_colour() => {
+                complain(&format!("\u{1b}[1;31merror\u{1b}[0m: {text}"));
+            }
+            _ => complain(&self.to_string()),
+        }
     }
 
     pub(super) fn exit_code(&self) -> ExitCode {

@@ -3,10 +3,12 @@
 mod bench;
 mod check;
 mod commands;
+mod completions;
 mod execution;
 mod failure;
 mod folder;
 mod interrupt;
+mod lock;
 mod memory;
 mod neighbors;
 mod new;
@@ -22,6 +24,7 @@ mod sweep;
 mod template;
 mod text;
 pub mod validate;
+mod version;
 mod view;
 #[cfg(feature = "rerun")]
 mod web_viewer;

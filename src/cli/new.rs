@@ -7,7 +7,7 @@ use meshless_engine::record::{Existing, write_atomically};
 use meshless_engine::scene::unknown;
 
 use super::failure::Failure;
-use super::text::{Table, say};
+use super::text::{Table, program, quoted, say};
 
 /// Write a commented scene to start from; without a name, list those that there are
 #[derive(Args)]
@@ -79,7 +79,12 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
     let file = arguments.file.unwrap_or_else(|| Path::new(&name).with_extension("ron"));
     write_atomically(&file, Existing::Refuse, |to| to.write_all(template.text.as_bytes()))
         .map_err(|error| Failure::Run(error.to_string()))?;
-    say(&format!("{} is written; run it with: meshless run {}", file.display(), file.display()));
+    say(&format!(
+        "{} is written; run it with: {} run {}",
+        file.display(),
+        program(),
+        quoted(&file.display().to_string())
+    ));
     Ok(())
 }
 

@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use clap::Args;
 use meshless_engine::plugin::{Entry, Kind, Registry};
-use meshless_engine::scene::{Scene, type_docs, unknown};
+use meshless_engine::scene::{Scene, TypeDoc, expression_names, type_docs, unknown};
 
 use super::failure::Failure;
 use super::text::{Table, say};
 
-/// List materials, formulations, conditions and plugins, or describe one of them
+/// List everything that a scene can name, or describe one of these
 #[derive(Args)]
 pub struct Arguments {
     /// Name of what is to be described
@@ -33,16 +33,88 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
 
 fn list(registry: &Registry) -> String {
     let mut table = Table::new(&["", ""], 0);
+    let mut section = |heading: &str, entries: Vec<(String, String)>| {
+        table.row([heading.to_owned(), String::new()]);
+        for (name, doc) in entries {
+            table.row([format!("  {name}"), first_sentence(&doc).to_owned()]);
+        }
+    };
     for kind in KINDS {
-        table.row([format!("{}s", kind.word()), String::new()]);
+        let entries = registry.entries(kind).map(|entry| (entry.name.to_owned(), entry.doc().to_owned()));
+        section(&format!("{}s", kind.word()), entries.collect());
+    }
+    for (heading, entries) in language(registry) {
+        section(heading, entries);
+    }
+    format!("{}\n`meshless plugins NAME` describes one of these", table.render().trim_start_matches('\n'))
+}
+
+/// The types of the scene whose variants are listed, each with its heading.
+const LISTED: [(&str, &str); 6] = [
+    ("shapes", "Shape"),
+    ("lattices", "Lattice"),
+    ("faces", "Face"),
+    ("kernels", "KernelName"),
+    ("quantities of probes", "Quantity"),
+    ("at the sides of the domain", "Outside"),
+];
+
+/// What scenes name beside that which is registered: heading, and name and meaning of each.
+fn language(registry: &Registry) -> Vec<(&'static str, Vec<(String, String)>)> {
+    let docs = documented(registry);
+    let variants = |name: &str| docs.iter().find(|docs| docs.name == name).map(|docs| docs.variants.clone());
+    let mut sections: Vec<_> =
+        LISTED.iter().map(|(heading, name)| (*heading, variants(name).unwrap_or_default())).collect();
+    let fields = meshless_engine::assembly::fields(registry).into_iter().map(|(name, unit)| {
+        let unit = if unit == "1" { "-" } else { unit };
+        (name, format!("[{unit}]"))
+    });
+    sections.push(("fields (plugins may add more; a component is `velocity.x`)", fields.collect()));
+    let names = expression_names().iter().map(|(name, meaning)| ((*name).to_owned(), (*meaning).to_owned()));
+    sections.push(("expressions", names.collect()));
+    sections
+}
+
+/// All types of the scene and of the parameters of what is registered.
+fn documented(registry: &Registry) -> Vec<TypeDoc> {
+    let mut docs = type_docs::<Scene>();
+    for kind in KINDS {
         for entry in registry.entries(kind) {
-            table.row([format!("  {}", entry.name), first_sentence(entry.doc()).to_owned()]);
+            docs.extend(entry.docs.iter().skip(1).cloned());
         }
     }
-    format!(
-        "{}\n`meshless plugins NAME` tells the parameters of one of them",
-        table.render().trim_start_matches('\n')
-    )
+    docs
+}
+
+/// The description of a name of the scene language, or of a type of it.
+fn in_language(registry: &Registry, name: &str) -> Option<String> {
+    let docs = documented(registry);
+    let holder = |docs: &&TypeDoc| docs.variants.iter().any(|(variant, _)| variant == name);
+    if let Some(docs) = docs.iter().find(|docs| docs.name == name).or_else(|| docs.iter().find(holder)) {
+        let what = if docs.name == name { String::new() } else { format!(" (of {})", docs.name) };
+        let meaning = docs.variants.iter().find(|(variant, _)| variant == name).map(|(_, meaning)| meaning);
+        let body = match meaning {
+            Some(_) => variant_body(&docs.body, name),
+            None => docs.body.clone(),
+        };
+        return Some(format!(
+            "{name}{what}\n\n  {}\n{}",
+            meaning.unwrap_or(&docs.doc),
+            body.replace("\n\n", "\n")
+        ));
+    }
+    let sections = language(registry);
+    let (heading, (_, meaning)) = sections
+        .iter()
+        .find_map(|(heading, entries)| Some((heading, entries.iter().find(|(other, _)| other == name)?)))?;
+    Some(format!("{name} ({})\n\n  {meaning}\n", heading.split(" (").next().unwrap_or(heading)))
+}
+
+/// The table of the fields of a variant, out of the description of its type.
+fn variant_body(body: &str, name: &str) -> String {
+    let start = format!("- `{name}");
+    let lines = body.lines().skip_while(|line| !line.starts_with(&start)).skip(1);
+    lines.take_while(|line| !line.starts_with("- `")).map(|line| format!("{line}\n")).collect()
 }
 
 /// The text up to the first full stop that ends a sentence.
@@ -55,7 +127,12 @@ fn describe(registry: &Registry, name: &str) -> Result<String, Failure> {
         KINDS.into_iter().flat_map(|kind| registry.entries(kind).map(move |entry| (kind, entry))).collect();
     let found: Vec<_> = all.iter().filter(|(_, entry)| entry.name == name).collect();
     if found.is_empty() {
-        let known: Vec<&str> = all.iter().map(|(_, entry)| entry.name).collect();
+        if let Some(text) = in_language(registry, name) {
+            return Ok(text);
+        }
+        let sections = language(registry);
+        let mut known: Vec<&str> = all.iter().map(|(_, entry)| entry.name).collect();
+        known.extend(sections.iter().flat_map(|(_, entries)| entries.iter().map(|(name, _)| name.as_str())));
         let (message, helps) = unknown("name", name, &known);
         return Err(Failure::Usage(format!("{message}\n{}", helps.join("\n"))));
     }

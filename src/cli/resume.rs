@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use meshless_engine::notation::quantity;
 use meshless_engine::plugin::Registry;
 use meshless_engine::record::Existing;
 use meshless_engine::record::OutputOptions;
@@ -12,9 +13,10 @@ use meshless_engine::simulation::Checkpoint;
 use super::execution::{Execution, How};
 use super::failure::Failure;
 use super::folder;
+use super::scene_file::replacement;
 use super::text::complain;
 
-/// Go on from a checkpoint
+/// Resume a run from a checkpoint
 #[derive(Args)]
 pub struct Arguments {
     /// Checkpoint, or an output folder whose newest checkpoint is meant
@@ -23,25 +25,39 @@ pub struct Arguments {
     /// Run to this time [s] instead of the end time of the scene
     #[arg(long, value_name = "TIME")]
     until: Option<f64>,
+    /// Where the scene file is now: the files that it names are found relative to it. Its text stays that of the checkpoint
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Replace a value of the scene from here on, as in `record.every=0.001`; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = replacement)]
+    set: Vec<(String, String)>,
     #[command(flatten)]
     how: How,
 }
 
 /// Goes on from the checkpoint, in the folder it is in.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
-    let Arguments { path, until, how } = arguments;
+    let Arguments { path, until, scene: moved, set, how } = arguments;
     // Before the checkpoint is read, which takes threads of its own.
     how.set_threads()?;
     let file = folder::checkpoint(&path)?;
     let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
-    let (mut scene, mut source) = scene::parse(checkpoint.source())?;
+    let mut source = checkpoint.source();
+    if let Some(scene) = moved {
+        source.name = at_new_place(&scene)?;
+    }
+    for (path, value) in &set {
+        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
+    }
+    let (mut scene, mut source) = scene::parse(source)?;
     if let Some(end) = until {
         (scene, source) = prolonged(&scene, &source, end)?;
     }
-    if checkpoint.clock().time >= scene.time.end {
+    let reached = checkpoint.clock().time;
+    if reached >= scene.time.end {
+        let (reached, end) = (quantity(reached, "s"), quantity(scene.time.end, "s"));
         return Err(Failure::Usage(format!(
-            "the checkpoint is at {:.6e} s, which is the end of the run; go further with `--until`",
-            checkpoint.clock().time
+            "the checkpoint is at {reached}, the run ends at {end}; extend it with `--until TIME`"
         )));
     }
     if let Some(warning) = checkpoint.path_warning() {
@@ -52,6 +68,14 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let mut execution = Execution::new(&scene, &source, registry, output)?;
     execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
     execution.carry_out(&how)
+}
+
+/// The name of a scene file that the user gives, which must be there.
+fn at_new_place(scene: &Path) -> Result<String, Failure> {
+    if !scene.is_file() {
+        return Err(Failure::Usage(format!("the scene file `{}` does not exist", scene.display())));
+    }
+    Ok(std::path::absolute(scene).unwrap_or_else(|_| scene.to_path_buf()).display().to_string())
 }
 
 /// The scene with another end time. What follows from the end time where the scene is silent stays as it was.

@@ -1,14 +1,18 @@
 //! The scene argument that several commands share: a file and values that replace some of its own.
 
-use std::path::PathBuf;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshless_engine::scene::{self, Scene, SceneError, Source};
+use meshless_engine::scene::{self, Problem, Scene, SceneError, Source};
+
+/// Largest scene that is read from the standard input, B.
+const LARGEST_INPUT: u64 = 64 << 20;
 
 /// A scene file, with replaced values.
 #[derive(Args)]
 pub struct SceneFile {
-    /// Scene file
+    /// Scene file; `-` reads it from the standard input
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
     /// Replace a value of the scene, as in `time.end=0.5` or `bodies.plate.spacing=0.01`; may be given several times
@@ -27,8 +31,24 @@ pub fn replacement(text: &str) -> Result<(String, String), String> {
 }
 
 impl SceneFile {
+    /// The path after which the output folder is named.
+    pub fn named(&self) -> &Path {
+        if self.path == Path::new("-") { Path::new("stdin.ron") } else { &self.path }
+    }
+
     /// Reads the scene.
     pub fn load(&self) -> Result<(Scene, Source), SceneError> {
-        scene::load(&self.path, &self.set)
+        if self.path != Path::new("-") {
+            return scene::load(&self.path, &self.set);
+        }
+        let mut text = String::new();
+        let read = std::io::stdin().take(LARGEST_INPUT).read_to_string(&mut text);
+        let source = Source::new("stdin.ron", text);
+        if let Err(error) = read {
+            return Err(
+                source.error(vec![Problem::new(format!("the standard input cannot be read: {error}"))])
+            );
+        }
+        scene::parse_with(source, &self.set)
     }
 }

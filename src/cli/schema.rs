@@ -21,7 +21,21 @@ const INTRODUCTION: &str = "\
 
 A scene is a RON text: structs with named fields in round brackets, lists in square ones, maps in curly ones. Units are
 SI, and points and vectors have two or three components. Fields that have a default may be left out. Numbers that may
-depend on place and time are expressions in x, y, z, t within quotes.
+depend on place and time are expressions in x, y, z, t within quotes. An expression without these variables may stand
+wherever a number is expected, also in plugins: `spacing: \"0.1/8\"`.
+
+Expressions may use the names of `parameters`, which are constants, and of `tables`, which are functions of one
+argument:
+
+```ron
+parameters: { \"dx\": 0.005, \"h\": \"10*dx\" },
+tables: { \"pull\": (file: \"pull.csv\") },
+bodies: [Body(spacing: \"dx\", shape: Box(min: (0, 0), max: (\"4*h\", \"h\")), ...)],
+conditions: [Traction(value: (\"1e5*pull(t)\", None), ...)],
+```
+
+`meshless run scene.ron --set parameters.dx=0.01` replaces a value, and `meshless sweep scene.ron --set
+parameters.dx=0.01,0.005` runs the scene once for each value.
 ";
 
 /// Prints the reference.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use meshless_engine::notation::{count, number, quantity, quantity_to};
 use meshless_engine::record::StateHash;
 use meshless_engine::schedule::{AccountKind, Ledger};
 use meshless_engine::simulation::{Outcome, Summary};
@@ -11,36 +12,39 @@ use super::text::{Table, counted, duration};
 /// The summary; `steps` are those done since the run was started or taken up.
 pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -> String {
     let mut text = String::new();
-    let how = match &summary.outcome {
-        Outcome::Finished => "complete".to_owned(),
-        Outcome::Stopped(why) => format!("stopped ({why})"),
-        Outcome::Interrupted => "stopped before its end".to_owned(),
-        Outcome::Failed(_) => "failed".to_owned(),
-    };
+    let (time, end) = (quantity(summary.time, "s"), quantity(summary.end_time, "s"));
     // Writing to a String cannot fail.
+    let _ = match &summary.outcome {
+        Outcome::Finished => write!(text, "finished: t = {time}"),
+        Outcome::Stopped(why) => write!(text, "stopped: {why}; t = {time} of {end}"),
+        Outcome::Interrupted => write!(text, "stopped early: t = {time} of {end}"),
+        Outcome::Failed(_) => write!(text, "failed: t = {time} of {end}"),
+    };
+    let _ = writeln!(text, ", {}", count(summary.steps, "step"));
+    if !summary.parameters.is_empty() {
+        let values = summary.parameters.iter().map(|(name, value)| format!("{name} = {}", number(*value)));
+        let _ = writeln!(text, "parameters: {}", values.collect::<Vec<_>>().join(", "));
+    }
     let _ = writeln!(
         text,
-        "{how} at {:.6e} s of {:.6e} s, step {}",
-        summary.time, summary.end_time, summary.steps
-    );
-    let _ = writeln!(
-        text,
-        "{steps} steps of {} particles in {}: {} on {} threads",
-        summary.particles,
+        "{} of {} in {}: {} on {}",
+        count(steps, "step"),
+        count(summary.particles as u64, "particle"),
         duration(summary.wall_seconds),
         counted(summary.particle_steps_per_second, "particle-steps/s"),
-        summary.threads
+        count(summary.threads as u64, "thread")
     );
     if let Some(short) = summary.short_steps {
         let per_step = short as f64 / summary.steps.max(1) as f64;
         let _ = writeln!(
             text,
-            "solids and rigid bodies: {short} short steps, {per_step:.1} in a step of the fluid"
+            "solids and rigid bodies: {}, {per_step:.1} in each step of the fluid",
+            count(short, "sub-step")
         );
     }
-    for (body, count) in &summary.removed_of {
+    for (body, removed) in &summary.removed_of {
         let of = summary.particles_of.get(body).copied().unwrap_or_default();
-        let _ = writeln!(text, "{count} of {of} particles of `{body}` have been removed");
+        let _ = writeln!(text, "{removed} of {of} particles of `{body}` were removed");
     }
     let _ = write!(text, "\n{}", energies(ledger));
     extremes(&mut text, summary);
@@ -51,17 +55,22 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
 }
 
 fn energies(ledger: &Ledger) -> String {
-    let mut table = Table::new(&["energy", "", "J"], 1);
+    let joule = |energy: f64| quantity_to(energy, "J", 4);
+    let mut table = Table::new(&["energy", "", ""], 1);
     for account in ledger.accounts() {
         let kind = match account.kind {
             AccountKind::Stored => "stored",
             AccountKind::Supplied => "supplied",
             AccountKind::Dissipated => "dissipated",
         };
-        table.row([account.name.clone(), kind.into(), format!("{:.6e}", account.total())]);
+        table.row([account.name.clone(), kind.into(), joule(account.total())]);
     }
-    table.row(["balance error".into(), String::new(), format!("{:.2e}", ledger.balance_error())]);
-    table.row(["over the largest energy".into(), String::new(), format!("{:.1e}", ledger.relative_error())]);
+    table.row(["balance error".into(), String::new(), joule(ledger.balance_error())]);
+    table.row([
+        "relative to the peak energy".into(),
+        String::new(),
+        format!("{:.1e}", ledger.relative_error()),
+    ]);
     table.render()
 }
 
@@ -69,18 +78,17 @@ fn extremes(text: &mut String, summary: &Summary) {
     if summary.probes.values().all(Vec::is_empty) {
         return;
     }
-    let mut table = Table::new(&["probe", "", "", "least", "at s", "most", "at s", "last"], 5);
+    let mut table = Table::new(&["probe", "", "", "minimum", "at", "maximum", "at", "last"], 5);
     for (probe, columns) in &summary.probes {
         for column in columns {
-            let number = |value: f64| format!("{value:.5e}");
             table.row([
                 probe.clone(),
                 column.name.clone(),
                 column.unit.clone(),
                 number(column.min),
-                format!("{:.4e}", column.min_time),
+                quantity(column.min_time, "s"),
                 number(column.max),
-                format!("{:.4e}", column.max_time),
+                quantity(column.max_time, "s"),
                 number(column.last),
             ]);
         }

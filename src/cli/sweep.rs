@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshless_engine::plugin::{OutputOptions, Registry};
-use meshless_engine::record::Existing;
+use meshless_engine::plugin::Registry;
+use meshless_engine::record::{Existing, OutputOptions};
 use meshless_engine::scene::{self, Scene, Source};
 
 use super::execution::{Execution, How};

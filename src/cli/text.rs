@@ -1,16 +1,52 @@
 //! Text for people: numbers with prefixes, durations, aligned tables, and streams that may be closed.
 
-use std::io::Write;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::Mutex;
 use std::time::Duration;
 
-/// Prints lines for the user. That nobody reads them, as after `| head`, is no failure.
+/// What has kept the lines for the user from being written.
+static UNSAID: Mutex<Option<std::io::Error>> = Mutex::new(None);
+
+/// Prints lines for the user.
 pub fn say(text: &str) {
-    let _ = writeln!(std::io::stdout(), "{}", text.trim_end());
+    let mut out = std::io::stdout();
+    if let Err(error) = writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush())
+        && let Ok(mut unsaid) = UNSAID.lock()
+    {
+        unsaid.get_or_insert(error);
+    }
+}
+
+/// Why what was to be said has not reached its reader, if it has not. That nobody reads on, as after `| head`, is no failure.
+pub fn unsaid() -> Option<std::io::Error> {
+    let error = UNSAID.lock().ok()?.take();
+    error.filter(|error| error.kind() != ErrorKind::BrokenPipe)
+}
+
+/// Whether errors and progress may have colours: on a terminal, unless the user wants none (<https://no-color.org>).
+pub fn in_colour() -> bool {
+    let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    std::io::stderr().is_terminal() && !unwanted
 }
 
 /// Prints what went wrong or needs a look.
 pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
+}
+
+/// How this program was called, for hints that can be pasted: its path, or its name where the shell has found it.
+pub fn program() -> String {
+    let called = std::env::args().next().filter(|called| called.contains(std::path::MAIN_SEPARATOR));
+    called.map_or_else(|| "meshless".to_owned(), |path| quoted(&path))
+}
+
+/// An argument as a shell reads it.
+pub fn quoted(argument: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=,:@%".contains(c);
+    match argument.chars().all(plain) && !argument.is_empty() {
+        true => argument.to_owned(),
+        false => format!("'{}'", argument.replace('\'', r"'\''")),
+    }
 }
 
 /// A number, with a decimal prefix where it is large, and what it counts: `1.23 M particles`.
@@ -95,6 +131,12 @@ mod tests {
         assert_eq!(duration(7505.0), "2 h 5 min");
         assert_eq!(duration(f64::INFINITY), "very long");
         assert_eq!(duration(f64::NAN), "very long");
+    }
+
+    #[test]
+    fn arguments_can_be_pasted() {
+        assert_eq!(quoted("out/beam"), "out/beam");
+        assert_eq!(quoted("out/my run's"), r"'out/my run'\''s'");
     }
 
     #[test]

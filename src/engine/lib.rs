@@ -19,6 +19,7 @@ pub mod boundaries;
 pub mod contact;
 pub mod correction;
 pub mod fields;
+mod files;
 pub mod formulations;
 pub mod integrate;
 pub mod kernels;

@@ -43,6 +43,7 @@ pub struct Simulation {
     checkpoint_at_end: bool,
     source: Source,
     title: String,
+    sound_speeds: Vec<Option<f64>>,
     parameters: BTreeMap<String, f64>,
     inputs: Inputs,
     failure: Option<String>,
@@ -62,6 +63,8 @@ pub(crate) struct SimulationParts {
     pub source: Source,
     pub warnings: Vec<String>,
     pub references: Vec<String>,
+    /// Speed of sound of each body, m/s.
+    pub sound_speeds: Vec<Option<f64>>,
 }
 
 /// Why a time step cannot be chosen.
@@ -94,8 +97,17 @@ const LEAST_STEP: f64 = 1e-12;
 
 impl Simulation {
     pub(crate) fn new(parts: SimulationParts, scene: &Scene) -> Self {
-        let SimulationParts { world, resources, schedule, sub_cycled, output, source, warnings, references } =
-            parts;
+        let SimulationParts {
+            world,
+            resources,
+            schedule,
+            sub_cycled,
+            output,
+            source,
+            warnings,
+            references,
+            sound_speeds,
+        } = parts;
         Self {
             ledger: Ledger::new(world.bodies().len()),
             world,
@@ -116,6 +128,7 @@ impl Simulation {
             inputs: Inputs::of(&source, scene.parameter_values()),
             source,
             title: scene.title.clone(),
+            sound_speeds,
             parameters: scene.parameter_values(),
             failure: None,
             pace: summary::Pace::default(),
@@ -135,6 +148,11 @@ impl Simulation {
     /// The systems in their order.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// Speed of sound in the undeformed material of each body, m/s: of longitudinal waves in solids, c_0 in fluids. None for walls.
+    pub fn sound_speeds(&self) -> &[Option<f64>] {
+        &self.sound_speeds
     }
 
     /// Values of the parameters of the scene.

@@ -9,6 +9,8 @@ use super::memory;
 use super::names;
 use super::options::BuildOptions;
 use super::overlap;
+use super::placement;
+use super::plausibility;
 use super::spawn;
 use crate::materials::{Law, Material};
 use crate::plugin::{BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
@@ -55,12 +57,17 @@ fn build_in(
         return Err(misspelt);
     }
     let (mut bodies, phases, parsed) = place_bodies(scene, source, registry)?;
+    let misplaced = placement::problems(&bodies, scene);
+    if !misplaced.is_empty() {
+        return Err(misplaced);
+    }
     crate::formulations::fluid::estimate_sound_speeds(&mut bodies, scene)?;
     let overlaps = overlap::problems(&bodies);
     if !overlaps.is_empty() {
         return Err(overlaps);
     }
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
+    plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);
     crate::solids::add_fields(&mut sim);
@@ -89,6 +96,7 @@ fn build_in(
     if let Some(output) = &output {
         output.lock().prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }
+    let sound_speeds = sim.bodies().iter().map(|body| body.material.sound_speed()).collect();
     let parts = SimulationParts {
         world,
         resources,
@@ -98,6 +106,7 @@ fn build_in(
         source: source.clone(),
         warnings: sim.warnings,
         references: sim.references,
+        sound_speeds,
     };
     Ok(Simulation::new(parts, scene))
 }

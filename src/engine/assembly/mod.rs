@@ -5,12 +5,16 @@ mod build;
 mod handed_tests;
 mod memory;
 mod names;
+mod named_fields;
 mod options;
 mod overlap;
+mod placement;
+mod plausibility;
 mod spawn;
 mod standard;
 #[cfg(test)]
 mod tests;
 
 pub use build::{build, build_with};
+pub use named_fields::fields;
 pub use options::BuildOptions;

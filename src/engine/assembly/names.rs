@@ -12,7 +12,19 @@ pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
             found.extend(problems);
         }
     }
+    for list in scene.bodies.iter().map(|body| &body.plugins).chain([&scene.plugins]) {
+        found.extend(given_twice(list));
+    }
     found
+}
+
+/// A plugin that is named twice in one list would act twice.
+fn given_twice(list: &[Item]) -> impl Iterator<Item = Problem> {
+    let again = |(k, item): &(usize, &Item)| list[..*k].iter().any(|other| other.name() == item.name());
+    list.iter().enumerate().filter(again).map(|(_, item)| {
+        let message = format!("plugin `{}` is given twice in one list", item.name());
+        item.problem_with_name(message).help("leave one of them out")
+    })
 }
 
 /// All that a registry has to know, in the order of scenes.

@@ -1,5 +1,7 @@
 //! The velocity that particles start with.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -8,7 +10,7 @@ use super::field::Field;
 use super::part::{Part, parts_of};
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
-use crate::world::{Mobility, Velocity};
+use crate::world::{BodyId, Mobility, Velocity};
 
 /// Gives particles a velocity to start with, a function of their place; it takes the place of the body's `velocity`. Axes
 /// whose motion is prescribed keep the prescribed one, and walls their own: nothing would stop them.
@@ -40,6 +42,7 @@ impl Plugin for InitialVelocity {
             ));
         }
         field.require_finite(&parts, "velocity")?;
+        only_once(&parts, field.axes(), sim)?;
         sim.add_setup(move |setup| {
             let axes = field.axes();
             for part in &parts {
@@ -58,4 +61,34 @@ impl Plugin for InitialVelocity {
         });
         Ok(())
     }
+}
+
+/// Axes of the particles that have an initial velocity already.
+#[derive(Default)]
+struct Given(BTreeMap<(BodyId, u32), [bool; 3]>);
+
+/// Two initial velocities of one particle along one axis contradict each other.
+fn only_once(parts: &[Part], axes: [bool; 3], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    let mut given: Given = sim.take_extensions().pop().unwrap_or_default();
+    for part in parts {
+        for &row in &part.rows {
+            let taken = given.0.entry((part.body, row)).or_default();
+            for axis in (0..3).filter(|&axis| axes[axis]) {
+                if std::mem::replace(&mut taken[axis], true) {
+                    let body = sim.body(part.body);
+                    let number = row as usize - body.rows.start;
+                    let message = format!(
+                        "particle {number} of body `{}` at {} has two initial velocities along {}",
+                        body.name,
+                        body.sites[number].position,
+                        ["x", "y", "z"][axis]
+                    );
+                    let help = "the selections must not overlap, or leave the axis to one of them";
+                    return Err(SetupError::parameter("on", message, help));
+                }
+            }
+        }
+    }
+    sim.extend(given);
+    Ok(())
 }

@@ -15,6 +15,7 @@ pub use chosen::ChosenField;
 pub use field::{Field, FieldInput};
 pub use rows::FieldColumns;
 pub use table::FieldTable;
+pub(crate) use table::named;
 
 #[cfg(test)]
 mod tests;

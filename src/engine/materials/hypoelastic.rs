@@ -72,6 +72,11 @@ impl SolidLaw for HypoelasticLaw {
         true
     }
 
+    fn initial_yield_stress(&self) -> Option<f64> {
+        let hardening = self.shape.hardening.as_ref()?;
+        Some(hardening.static_stress(0.0, self.temperature.unwrap_or_default()))
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.pressure.step_factor(&self.elastic, stretches)
     }

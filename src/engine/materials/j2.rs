@@ -112,6 +112,10 @@ impl SolidLaw for PlasticLaw {
         true
     }
 
+    fn initial_yield_stress(&self) -> Option<f64> {
+        Some(self.hardening.static_stress(0.0, self.temperature.unwrap_or_default()))
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.pressure.step_factor(&self.elastic, stretches)
     }

@@ -11,6 +11,7 @@ use super::elastic_constants::ElasticConstants;
 use super::fluid::FluidLaw;
 use super::state::StateRows;
 use super::stretches::Stretches;
+use crate::notation::number;
 use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::ColumnSet;
 
@@ -37,7 +38,7 @@ impl ParameterError {
         if value.is_finite() && value > 0.0 {
             return Ok(());
         }
-        Err(Self::new(field, format!("`{field}` is {value}, not above zero"), "give a positive number"))
+        Err(Self::new(field, format!("`{field}` must be positive, found {}", number(value)), ""))
     }
 
     /// An error unless the value is finite and not below zero.
@@ -45,7 +46,7 @@ impl ParameterError {
         if value.is_finite() && value >= 0.0 {
             return Ok(());
         }
-        Err(Self::new(field, format!("`{field}` is {value}, below zero"), "give zero or a positive number"))
+        Err(Self::new(field, format!("`{field}` must not be negative, found {}", number(value)), ""))
     }
 }
 
@@ -147,6 +148,11 @@ pub trait SolidLaw: Send + Sync {
     /// anew, the law then goes on from the F that it knows.
     fn remembers_path(&self) -> bool {
         false
+    }
+
+    /// Stress at which plastic flow begins, Pa; none for laws without plasticity.
+    fn initial_yield_stress(&self) -> Option<f64> {
+        None
     }
 
     /// Factor of the stable time step at the extreme stretches of a body.

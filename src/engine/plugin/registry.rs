@@ -8,7 +8,6 @@ use serde::de::DeserializeOwned;
 use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
-use super::plan::BodyPlan;
 use super::traits::{Formulation, Plugin};
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};
@@ -173,6 +172,11 @@ impl Registry {
         self.entries.iter().filter(move |((k, _), _)| *k == kind).map(|(_, entry)| entry)
     }
 
+    /// The formulations.
+    pub(crate) fn formulations(&self) -> impl Iterator<Item = &FormulationEntry> {
+        self.formulations.values()
+    }
+
     fn describe<T: schemars::JsonSchema + DeserializeOwned>(
         &mut self,
         kind: Kind,
@@ -187,9 +191,9 @@ impl Registry {
 
     fn unknown(&self, kind: Kind, item: &Item) -> Vec<Problem> {
         if LATER.contains(&(kind, item.name())) {
-            let message = format!("{} `{}` is not there yet", kind.word(), item.name());
+            let message = format!("{} `{}` is not implemented yet", kind.word(), item.name());
             let known: Vec<&str> = self.entries(kind).map(|entry| entry.name).collect();
-            let help = format!("a later version will have it; known now: `{}`", known.join("`, `"));
+            let help = format!("known here: `{}`", known.join("`, `"));
             return vec![item.problem_with_name(message).help(help)];
         }
         let known: Vec<&str> = self.entries(kind).map(|entry| entry.name).collect();

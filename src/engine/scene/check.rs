@@ -9,6 +9,10 @@ use crate::notation::number;
 /// All that is wrong with the values of a scene.
 pub(super) fn check(scene: &Scene) -> Vec<Problem> {
     let mut problems = Vec::new();
+    if let Some(c) = scene.title.chars().find(|&c| c.is_control() && c != '\t') {
+        let message = format!("character {c:?} is not allowed in the title");
+        problems.push(Problem::at_path("title", message).help("terminals would take it for a command"));
+    }
     check_time(scene, &mut problems);
     check_stops(scene, &mut problems);
     check_domain(scene, &mut problems);

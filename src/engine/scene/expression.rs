@@ -20,6 +20,11 @@ use super::symbols::Symbols;
 pub(super) use self::compile::{constant, words};
 pub(super) use self::functions::is_reserved;
 
+/// What expressions may name beside parameters and tables, with its meaning.
+pub fn expression_names() -> &'static [(&'static str, &'static str)] {
+    &functions::MEANINGS
+}
+
 /// A function of x, y, z \[m\] and t \[s\], compiled once and evaluated without allocation.
 ///
 /// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt exp ln log10 sin cos tan

@@ -6,6 +6,7 @@ use super::check::check;
 use super::decode::{Decoded, decode};
 use super::definitions::define;
 use super::{Problem, Scene, SceneError, Source};
+use crate::files;
 
 /// Reads a scene file, with some of its values replaced: `overrides` are pairs of path and value, as in
 /// `("time.end", "0.5")`.
@@ -14,7 +15,7 @@ use super::{Problem, Scene, SceneError, Source};
 /// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at once.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
     let name = path.display().to_string();
-    let read = std::fs::read(path).map_err(|error| {
+    let read = files::read(path, files::LARGEST_TEXT).map_err(|error| {
         let source = Source::new(name.clone(), "");
         let problem = Problem::new(match error.kind() {
             std::io::ErrorKind::NotFound => "the scene file does not exist".into(),
@@ -30,7 +31,14 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Sourc
             Problem::new(format!("the scene file is not UTF-8 text: line {line} has an invalid byte"));
         Source::new(name.clone(), "").error(vec![problem])
     })?;
-    let mut source = Source::new(name, text);
+    parse_with(Source::new(name, text), overrides)
+}
+
+/// Reads a scene text, with some of its values replaced as by [`load`].
+///
+/// # Errors
+/// An override leads nowhere, or the text is not a valid scene; all that is wrong at once.
+pub fn parse_with(mut source: Source, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
     for (path, value) in overrides {
         source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
     }

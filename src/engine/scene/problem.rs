@@ -72,6 +72,10 @@ impl Problem {
 
     /// The problem as text: message, file, line, column, the line with carets, help.
     pub fn render(&self, source: &Source) -> String {
+        self.rendered(source, &Renderer::plain())
+    }
+
+    fn rendered(&self, source: &Source, renderer: &Renderer) -> String {
         let title = Level::ERROR.primary_title(&self.message);
         let group = match self.span(source) {
             Some(span) => title.element(
@@ -85,7 +89,7 @@ impl Problem {
         let setting = setting.map(|setting| format!("this value was given by `--set {setting}`"));
         let group = group.elements(setting.iter().map(|note| Level::NOTE.message(note)));
         let group = group.elements(self.help.iter().map(|help| Level::HELP.message(help)));
-        Renderer::plain().render(&[group])
+        renderer.render(&[group])
     }
 }
 
@@ -109,6 +113,15 @@ pub struct SceneError {
     pub source: Source,
     /// What is wrong, in the order of the text.
     pub problems: Vec<Problem>,
+}
+
+impl SceneError {
+    /// All problems as text with colours, for a terminal.
+    pub fn styled(&self) -> String {
+        let renderer = Renderer::styled();
+        let problems = self.problems.iter().map(|problem| problem.rendered(&self.source, &renderer));
+        problems.collect::<Vec<_>>().join("\n\n")
+    }
 }
 
 impl fmt::Display for SceneError {

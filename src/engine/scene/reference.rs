@@ -37,6 +37,8 @@ pub struct TypeDoc {
     pub doc: String,
     /// Its fields or variants as Markdown; empty if it has none.
     pub body: String,
+    /// Name and meaning of its variants; none if it has none.
+    pub variants: Vec<(String, String)>,
 }
 
 /// The documentation of a type, and then of every type that it mentions, each once.
@@ -62,7 +64,7 @@ pub fn type_docs<T: JsonSchema>() -> Vec<TypeDoc> {
 
 /// The reference of everything in a scene that is not found in a registry, as Markdown.
 pub fn schema_markdown() -> String {
-    let section = |TypeDoc { name, doc, body }| {
+    let section = |TypeDoc { name, doc, body, .. }| {
         if body.is_empty() { format!("## {name}\n\n{doc}\n") } else { format!("## {name}\n\n{doc}\n{body}") }
     };
     type_docs::<Scene>().into_iter().map(section).collect::<Vec<_>>().join("\n")
@@ -253,7 +255,10 @@ fn written(value: &Value, schema: &Value, definitions: &Definitions) -> String {
 fn type_doc(name: &str, schema: &Value, definitions: &Definitions) -> TypeDoc {
     let mut body = String::new();
     write_body(&mut body, schema, definitions);
-    TypeDoc { name: name.to_owned(), doc: doc(schema), body }
+    let variants = variants(schema).unwrap_or_default();
+    let variants =
+        variants.into_iter().map(|(name, _)| (name.clone(), doc_of_variant(schema, &name))).collect();
+    TypeDoc { name: name.to_owned(), doc: doc(schema), body, variants }
 }
 
 fn write_body(page: &mut String, schema: &Value, definitions: &Definitions) {
@@ -262,14 +267,7 @@ fn write_body(page: &mut String, schema: &Value, definitions: &Definitions) {
         table(page, &parameters);
     }
     let Some(variants) = variants(schema) else { return };
-    let options = schema.get("oneOf").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
-    let doc_of = |variant: &str| {
-        let is = |option: &&Value| {
-            option.get("const") == Some(&Value::from(variant))
-                || properties(option).is_some_and(|fields| fields.contains_key(variant))
-        };
-        options.iter().find(is).map(doc).unwrap_or_default()
-    };
+    let doc_of = |variant: &str| doc_of_variant(schema, variant);
     for (variant, content) in variants {
         match content {
             None => {
@@ -287,6 +285,16 @@ fn write_body(page: &mut String, schema: &Value, definitions: &Definitions) {
             }
         }
     }
+}
+
+/// What a variant of an enum means.
+fn doc_of_variant(schema: &Value, variant: &str) -> String {
+    let options = schema.get("oneOf").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
+    let is = |option: &&Value| {
+        option.get("const") == Some(&Value::from(variant))
+            || properties(option).is_some_and(|fields| fields.contains_key(variant))
+    };
+    options.iter().find(is).map(doc).unwrap_or_default()
 }
 
 fn table(page: &mut String, parameters: &[Parameter]) {

@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Problem;
-use crate::record::read_series;
 
 /// A function of one variable by points, interpolated linearly between them and constant beyond the first and the last. Expressions
 /// call it by its name: `"1e5*pull(t)"`.
@@ -63,20 +62,31 @@ impl Table {
     }
 
     fn read(&self, file: &Path) -> Result<Vec<(f64, f64)>, String> {
-        let series = read_series(file).map_err(|error| error.to_string())?;
-        let columns = series.columns();
-        if columns.len() < 2 || series.is_empty() {
-            let (columns, rows) = (columns.len(), series.len());
-            return Err(format!(
-                "a table needs two columns and a row, `{}` has {columns} columns and {rows} rows",
-                file.display()
-            ));
+        let shown = file.display();
+        let failed = |error: csv::Error| format!("cannot read the table `{shown}`: {error}");
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(failed)?;
+        let headers = reader.headers().map_err(failed)?.clone();
+        let names: Vec<&str> = headers.iter().map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
+        if names.len() < 2 {
+            return Err(format!("a table needs two columns, `{shown}` has {}", names.len()));
         }
-        let numbers = |name: &Option<String>, k: usize| {
-            let name = name.as_deref().unwrap_or(&columns[k].name);
-            series.numbers(name).map_err(|error| error.to_string())
+        let column = |name: &Option<String>, k: usize| match name {
+            Some(name) => names.iter().position(|other| other == name).ok_or_else(|| {
+                format!("the table `{shown}` has no column `{name}`; its columns are {}", names.join(", "))
+            }),
+            None => Ok(k),
         };
-        Ok(numbers(&self.variable, 0)?.into_iter().zip(numbers(&self.value, 1)?).collect())
+        let columns = [column(&self.variable, 0)?, column(&self.value, 1)?];
+        let mut points = Vec::new();
+        for (record, line) in reader.records().zip(2..) {
+            let record = record.map_err(failed)?;
+            let [x, y] = columns.map(|k| record[k].parse::<f64>());
+            let (Ok(x), Ok(y)) = (x, y) else {
+                return Err(format!("`{shown}`, row {line}: expected numbers, found `{}`", record.as_slice()));
+            };
+            points.push((x, y));
+        }
+        if points.is_empty() { Err(format!("a table needs a row, `{shown}` has none")) } else { Ok(points) }
     }
 }
 

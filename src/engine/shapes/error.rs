@@ -4,6 +4,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::mesh::MeshFault;
+use crate::notation::number;
 
 /// Why a shape cannot be filled with particles or used as a selection.
 #[derive(Debug, Error)]
@@ -30,7 +31,7 @@ pub enum FillErrorKind {
     #[error("expected a finite number, found {0}")]
     NotFinite(f64),
     /// Zero or negative where only a positive number makes sense.
-    #[error("must be greater than 0, found {0}")]
+    #[error("must be greater than 0, found {}", number(*.0))]
     NotPositive(f64),
     /// Two ends in the wrong order, or equal.
     #[error("the {axis} range is empty: the lower end {min} is not below the upper end {max}")]
@@ -81,22 +82,22 @@ pub enum FillErrorKind {
     #[error("needs at least one shape")]
     NoShapes,
     /// A normal of no length.
-    #[error("the normal has no length")]
+    #[error("the normal must not be a zero vector")]
     NoNormal,
     /// A shape without end where a body is to be filled.
-    #[error("the shape has no end, it cannot be filled with particles")]
+    #[error("the shape is unbounded and cannot be filled with particles")]
     Unbounded,
     /// A shape whose nearest surface points have no closed form.
     #[error("a tool needs a surface with known nearest points: {0}")]
     NoSurface(&'static str),
     /// A rotation axis of no length.
-    #[error("the axis has no length")]
+    #[error("the axis must not be a zero vector")]
     NoAxis,
     /// A rotation out of the plane.
     #[error("in two dimensions the axis must be along z")]
     AxisNotZ,
     /// A particle file where a region is needed.
-    #[error("a particle file has no inside")]
+    #[error("a particle file encloses no region")]
     NoInside,
     /// A lattice that does not fit the shape.
     #[error("a concentric lattice does not fit this shape")]
@@ -113,7 +114,7 @@ pub enum FillErrorKind {
     #[error("the shape is empty: no particle of spacing {0} m lies in it")]
     NoParticle(f64),
     /// A wall that two particles cannot resolve.
-    #[error("the body is {:.3} spacings thick along {direction}, at least 2 are needed", .thickness / .spacing)]
+    #[error("the body must be at least 2 spacings thick along {direction}, found {}", number(.thickness / .spacing))]
     Thin {
         /// Name of the direction: `x`, `y`, `z`, `the axis` or `the radius`.
         direction: &'static str,
@@ -123,7 +124,7 @@ pub enum FillErrorKind {
         spacing: f64,
     },
     /// More particles than the caller has memory for.
-    #[error("about {estimate:.3e} particles, more than the {limit} there is memory for")]
+    #[error("the body needs {}, more than the {limit} that fit into memory", particles(*.estimate))]
     TooMany {
         /// Estimated number of particles.
         estimate: f64,
@@ -156,6 +157,14 @@ pub enum FillErrorKind {
         extent: DVec3,
         /// Spacing of the particles \[m\].
         spacing: f64,
+    },
+    /// Particles of a file that contradict each other or the spacing.
+    #[error("`{file}`: {message}")]
+    Particles {
+        /// The file as looked for.
+        file: String,
+        /// The requirement and what was found.
+        message: String,
     },
     /// A particle file with wrong content.
     #[error("`{file}`, line {line}: {message}")]
@@ -194,11 +203,19 @@ impl FillErrorKind {
             }
             Self::Mesh { fault, .. } => fault.help().into(),
             Self::MeshSize { .. } => {
-                "the unit of a file is not known to it: `scale: 0.001` reads millimetres; or change the spacing".into()
+                "mesh files do not record their unit: `scale: 0.001` reads millimetres; or change the spacing".into()
             }
             Self::TooMany { .. } => "use a larger spacing".into(),
             _ => return None,
         })
+    }
+}
+
+/// An estimate of a number of particles.
+fn particles(estimate: f64) -> String {
+    match estimate {
+        _ if estimate.is_finite() => format!("about {} particles", number(estimate)),
+        _ => "too many particles to count".into(),
     }
 }
 

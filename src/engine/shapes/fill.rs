@@ -69,7 +69,11 @@ impl Filling<'_> {
     fn sites(&self, shape: &Shape, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
         let check = Check { dimension: self.dimension, folder: self.folder, path };
         match shape {
-            Shape::Points { file } => points::read(self.folder, file, self.dimension, self.limit, path),
+            Shape::Points { file } => {
+                let sites = points::read(self.folder, file, self.dimension, self.limit, path)?;
+                points::check(&sites, spacing, self.dimension, &self.folder.join(file), path)?;
+                Ok(sites)
+            }
             Shape::Translate { shape, by } => {
                 let by = check.point("by", *by)?;
                 self.moved(shape, spacing, &check, 1.0, |position| position + by)

@@ -1,11 +1,14 @@
 //! Particles from a CSV file.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
 
 use super::error::{FillError, FillErrorKind};
 use super::fill::Site;
+use crate::files;
+use crate::notation::number;
 use crate::space::Dimension;
 
 /// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may follow a name (`x[m]`); empty
@@ -24,8 +27,11 @@ pub(super) fn read(
     let full = folder.join(file);
     let shown = full.display().to_string();
     let error = |kind| FillError::new(format!("{path}.file"), kind);
-    let text = std::fs::read_to_string(&full)
+    let text = files::read(&full, files::LARGEST_GEOMETRY)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
         .map_err(|source| error(FillErrorKind::File { file: shown.clone(), source }))?;
+    // Excel begins UTF-8 with a mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let wrong = |line, message| error(FillErrorKind::Csv { file: shown.clone(), line, message });
     let mut lines = text
         .lines()
@@ -35,6 +41,11 @@ pub(super) fn read(
     let (header, header_line) = lines
         .next()
         .ok_or_else(|| wrong(1, "the file is empty, expected a header `x,y,volume`".to_owned()))?;
+    if header.contains(';') && !header.contains(',') {
+        let message =
+            "the values of a line must be separated by `,`, found `;`; decimals are written with a point";
+        return Err(wrong(header_line, message.to_owned()));
+    }
     let names: Vec<&str> = values(header).map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
     let column = |name: &str| names.iter().position(|&title| title == name);
     let required = |name: &str| {
@@ -76,6 +87,56 @@ pub(super) fn read(
         return Err(wrong(header_line, "the file has no particle".to_owned()));
     }
     Ok(sites)
+}
+
+/// Factor between the volume of a particle and that of its spacing which is most likely a slip of units.
+const VOLUME_RATIO: f64 = 100.0;
+/// Distance in spacings below which two particles are one that was written twice.
+const TWICE: f64 = 0.01;
+
+/// Looks whether places and volumes make sense together with the spacing \[m\] of the body.
+///
+/// # Errors
+/// Two particles are at one place; the volumes are those of another spacing.
+pub(super) fn check(
+    sites: &[Site],
+    spacing: f64,
+    dimension: Dimension,
+    file: &Path,
+    path: &str,
+) -> Result<(), FillError> {
+    let file = file.display().to_string();
+    let error = |message: String| {
+        FillError::new(format!("{path}.file"), FillErrorKind::Particles { file: file.clone(), message })
+    };
+    let expected = spacing.powi(dimension.count() as i32);
+    let mean = sites.iter().map(|site| site.volume).sum::<f64>() / sites.len().max(1) as f64;
+    if !(1.0 / VOLUME_RATIO..=VOLUME_RATIO).contains(&(mean / expected)) {
+        return Err(error(format!(
+            "the mean volume of a particle must be near spacing^{} = {}, found {}",
+            dimension.count(),
+            number(expected),
+            number(mean)
+        )));
+    }
+    let cell = |x: DVec3| (x / (TWICE * spacing)).floor().to_array().map(|k| k as i64);
+    let mut cells: HashMap<[i64; 3], usize> = HashMap::with_capacity(sites.len());
+    for (k, site) in sites.iter().enumerate() {
+        let [x, y, z] = cell(site.position);
+        let around =
+            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |l| [x + i, y + j, z + l])));
+        let near = |other: &usize| sites[*other].position.distance(site.position) < TWICE * spacing;
+        if let Some(other) = around.filter_map(|cell| cells.get(&cell).copied()).find(near) {
+            return Err(error(format!(
+                "two particles must not be at one place, found particles {} and {} at {}",
+                other + 1,
+                k + 1,
+                site.position
+            )));
+        }
+        cells.insert([x, y, z], k);
+    }
+    Ok(())
 }
 
 /// The values of a line, without spaces and quotes about them.

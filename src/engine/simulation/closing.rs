@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::{RunError, SaveError, Simulation, Summary};
+use crate::notation::quantity;
 use crate::record::{Existing, RecordError, write_atomically};
 use crate::scene::Source;
 
@@ -22,6 +23,8 @@ impl Simulation {
         let name = std::path::absolute(&self.source.name)
             .map_or_else(|_| self.source.name.clone(), |path| path.display().to_string());
         self.save(&file, &Source::new(name, self.source.text.clone()))?;
+        // The state is safe: a recorder that fails can no longer take it along.
+        output.lock().flush_recorders()?;
         Ok(Some(file))
     }
 
@@ -52,13 +55,18 @@ impl Simulation {
         self.warn_of_balance();
         let begun = self.output.as_ref().filter(|output| output.lock().has_begun()).cloned();
         let Some(output) = begun else { return Ok(self.summary()) };
-        if self.failure.is_none() && (self.clock.time < self.end || self.checkpoint_at_end) {
-            self.checkpoint()?;
-        }
-        output.lock().finish(&self.warnings)?;
+        // Each part is tried, whatever has become of the others; the first fault is told.
+        let kept = match self.failure.is_none() && (self.clock.time < self.end || self.checkpoint_at_end) {
+            true => self.checkpoint().map(drop),
+            false => Ok(()),
+        };
+        let recorded = output.lock().finish(&self.warnings);
         let summary = self.summary();
         let file = output.lock().summary_file();
-        write_summary(&file, &summary)?;
+        let written = write_summary(&file, &summary);
+        kept?;
+        recorded?;
+        written?;
         Ok(summary)
     }
 
@@ -67,9 +75,9 @@ impl Simulation {
         let error = self.ledger.relative_error();
         if error.abs() > BALANCE_WARNING && self.failure.is_none() {
             let text = format!(
-                "the energy balance is off by {:.2} % of the largest energy ({:.3e} J)",
+                "energy balance error: {:.2} % of the peak energy ({})",
                 100.0 * error,
-                self.ledger.balance_error()
+                quantity(self.ledger.balance_error(), "J")
             );
             if !self.warnings.contains(&text) {
                 self.warnings.push(text);

@@ -21,6 +21,8 @@ pub const TIMELINE: &str = "sim_time";
 
 /// For how long an answer of a viewer is waited for.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// For how long the file is waited for.
+const WRITING: Duration = Duration::from_secs(60);
 
 /// A file and perhaps a viewer, which get the same. They are two streams, so that the file does not depend on the
 /// viewer: the user may close it at any time.
@@ -135,7 +137,8 @@ impl Output {
             // A viewer that was closed is no reason to stop.
             let _ = viewer.flush_async();
         }
-        Ok(self.file.flush_blocking()?)
+        // A writer that has ended, as on a full disk, would be waited for without end.
+        Ok(self.file.flush_with_timeout(WRITING)?)
     }
 }
 

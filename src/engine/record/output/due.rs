@@ -106,10 +106,12 @@ impl Output {
                 return Ok(());
             }
         };
-        if state.is_none() && !self.folder.resume {
-            let path = &self.folder.path;
-            self.folder.clear().map_err(|error| WriteError::new(path, error))?;
-        }
+        let path = &self.folder.path;
+        let cleared = match state.is_none() && !self.folder.resume {
+            true => self.folder.clear(),
+            false => self.folder.clear_temporaries(),
+        };
+        cleared.map_err(|error| WriteError::new(path, error))?;
         let resumed = state.is_some();
         let (mut tracks, frames) = match state {
             Some(state) => {
@@ -211,15 +213,26 @@ impl Output {
         self.recorders.iter_mut().try_for_each(|recorder| recorder.flush())
     }
 
-    /// Forces all that is written to the disk: a checkpoint speaks of it.
+    /// Forces all series to the disk: a checkpoint speaks of their lengths. Recorders have no part in that, so that one which fails
+    /// does not take the checkpoint with it.
     ///
     /// # Errors
-    /// Something cannot be written.
+    /// A series cannot be written.
     pub fn sync(&mut self) -> Result<(), RecordError> {
         if matches!(self.progress, Progress::Open) {
             for track in &mut self.tracks {
                 track.table.sync()?;
             }
+        }
+        Ok(())
+    }
+
+    /// Makes readable what recorders have written.
+    ///
+    /// # Errors
+    /// A recorder failed.
+    pub fn flush_recorders(&mut self) -> Result<(), RecordError> {
+        if matches!(self.progress, Progress::Open) {
             self.recorders.iter_mut().try_for_each(|recorder| recorder.flush())?;
         }
         Ok(())
@@ -239,8 +252,10 @@ impl Output {
             return Ok(());
         }
         self.progress = Progress::Finished;
-        self.flush()?;
-        self.recorders.iter_mut().try_for_each(|recorder| recorder.finish(warnings))
+        let flushed = self.flush();
+        // A recorder that fails does not keep the others from their end.
+        let ends: Vec<_> = self.recorders.iter_mut().map(|recorder| recorder.finish(warnings)).collect();
+        flushed.and(ends.into_iter().collect())
     }
 
     /// File of the last checkpoint.

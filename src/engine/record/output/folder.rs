@@ -60,7 +60,7 @@ impl OutputFolder {
             let fixed = [ENERGY, SUMMARY, CHECKPOINT].map(str::to_owned);
             let found = fixed.iter().chain(names).map(|name| self.file(name)).find(|file| file.exists());
             if let Some(file) = found.or_else(|| self.frames_there().into_iter().next()) {
-                let problem = Problem::new(format!("`{}` exists already", file.display()));
+                let problem = Problem::new(format!("`{}` already exists", file.display()));
                 return Err(Box::new(
                     problem.help(
                         "choose another folder, or replace the files of the earlier run with `--force`",
@@ -93,16 +93,31 @@ impl OutputFolder {
     /// # Errors
     /// A file cannot be removed.
     pub fn clear(&self) -> std::io::Result<()> {
-        let mut old = self.frames_there();
+        self.clear_temporaries()?;
+        let mut old = self.all_frames();
         old.extend([CHECKPOINT, SUMMARY].map(|name| self.file(name)));
         old.iter().filter(|file| file.exists()).try_for_each(fs::remove_file)
     }
 
-    /// ParaView files of this scene that are there.
+    /// Removes the halves of checkpoints that runs have left which were killed while they wrote.
+    ///
+    /// # Errors
+    /// A file cannot be removed.
+    pub fn clear_temporaries(&self) -> std::io::Result<()> {
+        let prefix = format!(".{CHECKPOINT}.");
+        let ours = |name: &str| name.starts_with(&prefix) && name.ends_with(".tmp");
+        let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
+        let mut halves = entries.filter(|entry| entry.file_name().to_str().is_some_and(ours));
+        halves.try_for_each(|entry| fs::remove_file(entry.path()))
+    }
+
+    /// ParaView files that this run would write over.
     fn frames_there(&self) -> Vec<PathBuf> {
-        if !self.vtk {
-            return Vec::new();
-        }
+        if self.vtk { self.all_frames() } else { Vec::new() }
+    }
+
+    /// ParaView files of this scene that are there.
+    fn all_frames(&self) -> Vec<PathBuf> {
         let prefix = format!("{}_", self.scene_name);
         let ours = |name: &str| {
             name.strip_prefix(&prefix).is_some_and(|rest| {

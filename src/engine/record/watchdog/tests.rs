@@ -156,7 +156,7 @@ fn a_balance_that_does_not_close_is_warned_of_at_the_end() {
     let mut sim = blocks(scene);
     sim.run(|_| true).unwrap();
     let warnings = sim.finish().unwrap().warnings;
-    assert!(warnings.iter().any(|w| w.contains("the energy balance is off by")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.contains("energy balance error")), "{warnings:?}");
     assert_eq!(sim.finish().unwrap().warnings, warnings);
 }
 

@@ -5,6 +5,40 @@ pub(super) const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
 
 pub(super) const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
+/// What expressions may name, with its meaning.
+pub(in crate::scene) const MEANINGS: [(&str, &str); 30] = [
+    ("x", "first coordinate [m]"),
+    ("y", "second coordinate [m]"),
+    ("z", "third coordinate [m]"),
+    ("t", "time [s]"),
+    ("pi", "3.14159..."),
+    ("e", "2.71828..."),
+    ("abs", "absolute value"),
+    ("sqrt", "square root"),
+    ("exp", "exponential function"),
+    ("ln", "natural logarithm"),
+    ("log10", "logarithm to base 10"),
+    ("sin", "sine of an angle in radians"),
+    ("cos", "cosine of an angle in radians"),
+    ("tan", "tangent of an angle in radians"),
+    ("asin", "inverse sine [rad]"),
+    ("acos", "inverse cosine [rad]"),
+    ("atan", "inverse tangent [rad]"),
+    ("sinh", "hyperbolic sine"),
+    ("cosh", "hyperbolic cosine"),
+    ("tanh", "hyperbolic tangent"),
+    ("floor", "largest whole number that is not above the argument"),
+    ("sign", "-1, 0 or 1"),
+    ("step", "0 below 0, 1 from 0 on"),
+    ("ramp", "linear from 0 at 0 to 1 at 1, constant outside"),
+    ("smoothstep", "3 s^2 - 2 s^3 from 0 at 0 to 1 at 1, constant outside"),
+    ("min", "smaller one of two arguments"),
+    ("max", "larger one of two arguments"),
+    ("pow", "first argument to the power of the second"),
+    ("atan2", "angle of the point (second, first argument) [rad]"),
+    ("mod", "remainder of a division, never negative"),
+];
+
 /// Whether a name is already a variable, constant or function.
 pub(in crate::scene) fn is_reserved(name: &str) -> bool {
     VARIABLES.contains(&name)

@@ -87,3 +87,13 @@ fn errors_point_at_their_place() {
     let wide = format!("{}1{}", "x+(".repeat(40), ")".repeat(40));
     assert!(wide.parse::<Expression>().is_err());
 }
+
+#[test]
+fn every_name_has_a_meaning() {
+    let count = functions::VARIABLES.len()
+        + functions::CONSTANTS.len()
+        + functions::UNARY.len()
+        + functions::BINARY.len();
+    assert_eq!(expression_names().len(), count);
+    assert!(expression_names().iter().all(|(name, _)| is_reserved(name)));
+}

@@ -133,7 +133,7 @@ fn tables_are_functions() {
 #[test]
 fn faults_of_tables() {
     for (tables, message, place) in [
-        ("\"a\": (file: \"nothing.csv\")", "cannot read the series", "\"nothing.csv\""),
+        ("\"a\": (file: \"nothing.csv\")", "cannot read the table", "\"nothing.csv\""),
         (
             "\"a\": (points: [(0, 1), (0, 2)])",
             "the variable must increase, found 0 after 0 at point 2",

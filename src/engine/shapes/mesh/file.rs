@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::fault::MeshFault;
 use super::solid::MeshSolid;
 use super::{obj, stl};
+use crate::files;
 use crate::shapes::error::FillErrorKind;
 
 /// Reads a mesh and multiplies its coordinates by `scale` \[m per unit of the file\].
@@ -16,7 +17,7 @@ use crate::shapes::error::FillErrorKind;
 pub(in crate::shapes) fn load(folder: &Path, file: &str, scale: f64) -> Result<MeshSolid, FillErrorKind> {
     let full = folder.join(file);
     let shown = full.display().to_string();
-    let bytes = match std::fs::read(&full) {
+    let bytes = match files::read(&full, files::LARGEST_GEOMETRY) {
         Ok(bytes) => bytes,
         Err(source) => return Err(FillErrorKind::File { file: shown, source }),
     };

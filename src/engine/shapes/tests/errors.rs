@@ -35,12 +35,12 @@ fn numbers_that_cannot_be() {
             "shape.min",
             "z must be left out or 0 in two dimensions, found 1",
         ),
-        ("HalfSpace(point: (0, 0), normal: (0, 0))", Two, "shape.normal", "the normal has no length"),
+        ("HalfSpace(point: (0, 0), normal: (0, 0))", Two, "shape.normal", "the normal must not be a zero vector"),
         (
             "Union([Box(min: (0, 0), max: (1, 1)), HalfSpace(point: (0, 0), normal: (0, 1))])",
             Two,
             "shape",
-            "the shape has no end, it cannot be filled with particles; cut it with others: `Intersection([Box(...), HalfSpace(...)])`",
+            "the shape is unbounded and cannot be filled with particles; cut it with others: `Intersection([Box(...), HalfSpace(...)])`",
         ),
         ("Sphere(center: (0, 0), radius: 0)", Two, "shape.radius", "must be greater than 0, found 0"),
         ("Sphere(center: (0, 0), radius: -1)", Two, "shape.radius", "must be greater than 0, found -1"),
@@ -116,7 +116,7 @@ fn numbers_that_cannot_be() {
             "Rotate(shape: Sphere(center: (0, 0), radius: 1), axis: (0, 0, 0), angle_degrees: 1)",
             Two,
             "shape.axis",
-            "the axis has no length",
+            "the axis must not be a zero vector",
         ),
         (
             "Rotate(shape: Sphere(center: (0, 0), radius: 1), axis: (1, 0, 0), angle_degrees: 1)",
@@ -134,7 +134,7 @@ fn numbers_that_cannot_be() {
             "Difference(Sphere(center: (0, 0), radius: 1), Points(file: \"a.csv\"))",
             Two,
             "shape[1]",
-            "a particle file has no inside; it can fill a body, but not be combined with shapes, select particles, or be a tool",
+            "a particle file encloses no region; it can fill a body, but not be combined with shapes, select particles, or be a tool",
         ),
     ];
     for (text, dimension, path, message) in cases {
@@ -179,11 +179,11 @@ fn spacing() {
         (-0.1, "must be greater than 0, found -0.1"),
         (f64::NAN, "expected a finite number, found NaN"),
         (f64::INFINITY, "expected a finite number, found inf"),
-        (1e-6, "about 1.000e12 particles, more than the 1000000 there is memory for; use a larger spacing"),
-        (1e-200, "about inf particles, more than the 1000000 there is memory for; use a larger spacing"),
+        (1e-6, "the body needs about 1e12 particles, more than the 1000000 that fit into memory; use a larger spacing"),
+        (1e-200, "the body needs too many particles to count, more than the 1000000 that fit into memory; use a larger spacing"),
         (
             0.8,
-            "the body is 1.250 spacings thick along x, at least 2 are needed; use a spacing of at most 0.5 m",
+            "the body must be at least 2 spacings thick along x, found 1.25; use a spacing of at most 0.5 m",
         ),
     ] {
         let error = try_fill("Box(min: (0, 0), max: (1, 1))", Lattice::Regular, spacing, Two).unwrap_err();

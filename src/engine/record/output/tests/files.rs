@@ -183,7 +183,7 @@ fn nothing_is_overwritten_unless_asked_for() {
         let scene = cantilever(|t| t);
         let error = try_build(&scene, &BuildOptions::into_folder(folder.path())).map(|_| ()).unwrap_err();
         let text = error.to_string();
-        assert!(text.contains(&format!("{file}` exists already")) && text.contains("--force"), "{text}");
+        assert!(text.contains(&format!("{file}` already exists")) && text.contains("--force"), "{text}");
         assert_eq!(names_in(folder.path()), [file]);
         assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
 

@@ -138,5 +138,5 @@ fn files_of_recorders_are_not_overwritten() {
     let (scene, source) = with_listener("pressure");
     let error = build_with(&scene, &source, &registry(), &BuildOptions::into_folder(folder.path()));
     let text = error.map(|_| ()).unwrap_err().to_string();
-    assert!(text.contains("cantilever.told` exists already"), "{text}");
+    assert!(text.contains("cantilever.told` already exists"), "{text}");
 }

@@ -125,8 +125,8 @@ fn probes_of_flows_that_make_no_sense_are_refused() {
     assert!(
         still(&at("PressureSensor(diameter: -1.0, normal: (1, 0))", "at: (0, 0)")).contains("below zero")
     );
-    assert!(still(&at("Flux(normal: (1, 0))", "on: Select()")).contains("has a place"));
-    assert!(still(&at("FluidForce", "at: (0, 0)")).contains("no force at a point"));
+    assert!(still(&at("Flux(normal: (1, 0))", "on: Select()")).contains("not on a selection"));
+    assert!(still(&at("FluidForce", "at: (0, 0)")).contains("not at a point"));
 }
 
 /// Fluid and solid meet at x = 1: a point on either side shows its own velocity, though its reach goes across.

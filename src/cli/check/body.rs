@@ -1,0 +1,87 @@
+//! What `check` tells of each body.
+
+use meshless_engine::scene::{Dimension, Scene};
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, Mass, PlasticStrain, Position};
+use serde::Serialize;
+
+use crate::cli::failure::Failure;
+use crate::cli::neighbors::Neighbors;
+
+/// A body, as far as it matters for cost and accuracy.
+#[derive(Clone, Debug, Serialize)]
+pub struct BodyReport {
+    /// Name.
+    pub name: String,
+    /// Formulation.
+    pub formulation: String,
+    /// Material.
+    pub material: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Spacing, m.
+    pub spacing: f64,
+    /// Mass, kg; in two dimensions kg/m.
+    pub mass: f64,
+    /// Speed of sound, m/s; none for walls.
+    pub sound_speed: Option<f64>,
+    /// Particles across the smallest side of the box around the body.
+    pub across: f64,
+    /// Whether its material flows plastically.
+    pub plastic: bool,
+    /// Mean, smallest and largest number of neighbours, where they are counted.
+    pub neighbours: Option<(f64, usize, usize)>,
+    /// Names of the plugins of the scene and of the body.
+    #[serde(skip)]
+    pub plugins: Vec<String>,
+}
+
+impl BodyReport {
+    /// Looks at all bodies.
+    pub fn all(scene: &Scene, sim: &Simulation) -> Result<Vec<Self>, Failure> {
+        (0..scene.bodies.len()).map(|k| Self::of(k, scene, sim)).collect()
+    }
+
+    fn of(k: usize, scene: &Scene, sim: &Simulation) -> Result<Self, Failure> {
+        let (body, described) = (&sim.world().bodies()[k], &scene.bodies[k]);
+        let failed = |error: meshless_engine::world::MissingColumn| Failure::Run(error.to_string());
+        let (view, rows) = sim.world().body_view(BodyId(k));
+        let mass: f64 = view.read::<Mass>().map_err(failed)?[rows.clone()].iter().map(|mass| mass.0).sum();
+        let across = {
+            let positions = view.read::<Position>().map_err(failed)?;
+            let places = positions[rows.clone()].iter().map(|x| x.0);
+            let axes = if scene.dimension == Dimension::Two { 2 } else { 3 };
+            let side = |axis: usize| {
+                let (low, high) =
+                    places.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                        (low.min(x[axis]), high.max(x[axis]))
+                    });
+                (high - low) / body.spacing + 1.0
+            };
+            (0..axes).map(side).fold(f64::INFINITY, f64::min)
+        };
+        let count = Neighbors::count(sim, BodyId(k))?;
+        let plugins = scene.plugins.iter().chain(&described.plugins);
+        Ok(Self {
+            name: body.name.clone(),
+            formulation: described.formulation.name().to_owned(),
+            material: body.material.clone(),
+            particles: body.rows.len(),
+            spacing: body.spacing,
+            mass,
+            sound_speed: sim.sound_speeds().get(k).copied().flatten(),
+            across,
+            plastic: view.read::<PlasticStrain>().is_ok() && has_plasticity(scene, &body.material),
+            neighbours: count.map(|count| (count.mean, count.least, count.most)),
+            plugins: plugins.map(|item| item.name().to_owned()).collect(),
+        })
+    }
+}
+
+/// Columns are those of all bodies of a formulation: whether the material itself has a flow stress stands in its text.
+fn has_plasticity(scene: &Scene, material: &str) -> bool {
+    scene.materials.get(material).is_some_and(|item| {
+        let text = item.text();
+        ["hardening", "JohnsonCook", "Al6061T6", "Copper", "Steel"].iter().any(|name| text.contains(name))
+    })
+}

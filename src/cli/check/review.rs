@@ -1,0 +1,58 @@
+//! What a colleague would say of a scene before it is run.
+
+use meshless_engine::notation::{count, number};
+use meshless_engine::simulation::Simulation;
+
+use super::body::BodyReport;
+use super::trial::Trial;
+
+/// Particles across a solid below which its bending is too stiff.
+const ACROSS: f64 = 4.0;
+/// Sub-steps of solids in a step of the fluid whose cost dominates.
+const MANY_SUB_STEPS: u32 = 50;
+
+/// Notes on the scene; they do not keep it from running.
+pub fn notes(bodies: &[BodyReport], sim: &Simulation, trial: &Trial) -> Vec<String> {
+    let mut notes: Vec<String> = bodies.iter().flat_map(of_body).collect();
+    if let Some((sub_steps, _)) = sim.sub_steps().filter(|(sub_steps, _)| *sub_steps > 1) {
+        let limit = sim.short_limit().map(|limit| format!(", limited by {}", limit.by)).unwrap_or_default();
+        let costly = match sub_steps >= MANY_SUB_STEPS {
+            true => "; a softer material or a coarser solid costs less",
+            false => "",
+        };
+        notes.push(format!(
+            "solids take {} in each step of the fluid{limit}{costly}",
+            count(u64::from(sub_steps), "sub-step")
+        ));
+    }
+    if bodies.iter().any(|body| body.plastic) {
+        notes.push(format!(
+            "{} is a lower bound: plastic flow compresses particles, and the step shrinks with them",
+            count(trial.expected_steps(sim) as u64, "step")
+        ));
+    }
+    notes
+}
+
+fn of_body(body: &BodyReport) -> Vec<String> {
+    let has = |plugin: &str| body.plugins.iter().any(|name| name == plugin);
+    let name = &body.name;
+    let mut notes = Vec::new();
+    match body.formulation.as_str() {
+        "TotalLagrangian" if !has("hourglass_control") => notes.push(format!(
+            "body `{name}` has no `hourglass_control`: zero-energy modes can grow, above all under large strain"
+        )),
+        "Fluid" if !has("density_diffusion") => notes.push(format!(
+            "fluid `{name}` has no `density_diffusion`: its pressure will be noisy"
+        )),
+        _ => {}
+    }
+    if body.formulation == "TotalLagrangian" && body.across < ACROSS - 0.5 {
+        notes.push(format!(
+            "body `{name}` has {} particles across its smallest side: at least {} resolve its bending",
+            number(body.across.round()),
+            number(ACROSS)
+        ));
+    }
+    notes
+}

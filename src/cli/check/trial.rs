@@ -1,0 +1,68 @@
+//! Some steps in memory, to measure the speed with.
+
+use std::time::{Duration, Instant};
+
+use meshless_engine::notation::{count, quantity};
+use meshless_engine::simulation::Simulation;
+
+use crate::cli::failure::Failure;
+use crate::cli::text::{counted, duration};
+
+/// Wall time spent on trial steps.
+const TRIAL: Duration = Duration::from_millis(500);
+/// Largest number of trial steps.
+const TRIAL_STEPS: u64 = 50;
+
+/// What some steps have shown.
+pub struct Trial {
+    steps: u64,
+    wall: f64,
+    /// First step, s.
+    pub dt: f64,
+    /// What limits it.
+    pub limit: String,
+}
+
+impl Trial {
+    /// Does the steps; the simulation has started.
+    pub fn run(sim: &mut Simulation) -> Result<Self, Failure> {
+        let limit = sim.limit().map_or_else(|| "nothing".to_owned(), |limit| limit.by.clone());
+        let begun = Instant::now();
+        let mut dt = 0.0;
+        while !sim.is_finished() && sim.clock().step < TRIAL_STEPS && begun.elapsed() < TRIAL {
+            sim.step().map_err(|error| Failure::Run(error.to_string()))?;
+            if sim.clock().step == 1 {
+                dt = sim.clock().dt;
+            }
+        }
+        Ok(Self { steps: sim.clock().step, wall: begun.elapsed().as_secs_f64(), dt, limit })
+    }
+
+    /// Steps of the whole run, at the first step.
+    pub fn expected_steps(&self, sim: &Simulation) -> f64 {
+        (sim.end() / self.dt).ceil()
+    }
+
+    /// Wall time of the whole run, s.
+    pub fn expected_seconds(&self, sim: &Simulation) -> f64 {
+        sim.end() / self.dt * self.wall / self.steps.max(1) as f64
+    }
+
+    /// The lines of the report.
+    pub fn describe(&self, sim: &Simulation) -> String {
+        let per_step = self.wall / self.steps.max(1) as f64;
+        format!(
+            "time step  {}, limited by {}\n\
+             length     about {} to {}\n\
+             run time   about {} on {}, without output ({} in {})\n",
+            quantity(self.dt, "s"),
+            self.limit,
+            count(self.expected_steps(sim) as u64, "step"),
+            quantity(sim.end(), "s"),
+            duration(self.expected_seconds(sim)),
+            count(rayon::current_num_threads() as u64, "thread"),
+            counted(sim.world().len() as f64 / per_step, "particle-steps/s"),
+            count(self.steps, "trial step"),
+        )
+    }
+}
