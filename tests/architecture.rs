@@ -156,8 +156,8 @@ fn links(page: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn links_between_pages_lead_somewhere() {
-    let pages =
-        ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "assets/README.md"].map(|page| root().join(page));
+    let pages = ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "assets/README.md"]
+        .map(|page| root().join(page));
     let docs =
         entries(&root().join("docs")).into_iter().filter(|path| path.extension().is_some_and(|e| e == "md"));
     let own = plugins().into_iter().map(|plugin| plugin.join("README.md"));

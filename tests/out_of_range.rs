@@ -56,7 +56,7 @@ fn refused(slot: &str, marked: &str) {
         shown.contains(&format!("scene.ron:{line}:{column}\n")),
         "{marked}: not at {line}:{column}:\n{shown}"
     );
-    let helps = shown.contains("= help: ") || shown.contains("must be ");
+    let helps = shown.contains("= help: ") || shown.contains(" must ");
     assert!(helps, "{marked}: no help:\n{shown}");
 }
 

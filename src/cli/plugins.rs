@@ -46,7 +46,10 @@ fn list(registry: &Registry) -> String {
     for (heading, entries) in language(registry) {
         section(heading, entries);
     }
-    format!("{}\n`meshless plugins NAME` describes one of these", table.render().trim_start_matches('\n'))
+    let text = table.render();
+    format!(
+        "{text}\n`meshless plugins NAME` describes one of these. Plugins may add fields; `velocity.x` is a component of one."
+    )
 }
 
 /// The types of the scene whose variants are listed, each with its heading.
@@ -69,7 +72,7 @@ fn language(registry: &Registry) -> Vec<(&'static str, Vec<(String, String)>)> {
         let unit = if unit == "1" { "-" } else { unit };
         (name, format!("[{unit}]"))
     });
-    sections.push(("fields (plugins may add more; a component is `velocity.x`)", fields.collect()));
+    sections.push(("fields", fields.collect()));
     let names = expression_names().iter().map(|(name, meaning)| ((*name).to_owned(), (*meaning).to_owned()));
     sections.push(("expressions", names.collect()));
     sections
@@ -97,17 +100,40 @@ fn in_language(registry: &Registry, name: &str) -> Option<String> {
             Some(_) => variant_body(&docs.body, name),
             None => docs.body.clone(),
         };
-        return Some(format!(
-            "{name}{what}\n\n  {}\n{}",
-            meaning.unwrap_or(&docs.doc),
-            body.replace("\n\n", "\n")
-        ));
+        return Some(format!("{name}{what}\n\n  {}\n{}", meaning.unwrap_or(&docs.doc), aligned(&body)));
     }
     let sections = language(registry);
     let (heading, (_, meaning)) = sections
         .iter()
         .find_map(|(heading, entries)| Some((heading, entries.iter().find(|(other, _)| other == name)?)))?;
-    Some(format!("{name} ({})\n\n  {meaning}\n", heading.split(" (").next().unwrap_or(heading)))
+    Some(format!("{name} ({})\n\n  {meaning}\n", heading))
+}
+
+/// A description with its Markdown tables as aligned columns.
+fn aligned(body: &str) -> String {
+    let mut text = String::new();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for line in body.lines().chain([""]) {
+        if let Some(row) = line.strip_prefix("| ") {
+            let cells = row.trim_end_matches(" |").split(" | ");
+            rows.push(cells.map(|cell| cell.trim_matches('`').replace("\\|", "|")).collect());
+        } else if !line.starts_with("|---") {
+            text += &table_of(&std::mem::take(&mut rows));
+            if !line.is_empty() {
+                text += &format!("{line}\n");
+            }
+        }
+    }
+    text
+}
+
+/// Rows as a table, the first one its heading; nothing where there are none.
+fn table_of(rows: &[Vec<String>]) -> String {
+    let Some((head, rest)) = rows.split_first() else { return String::new() };
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    let mut table = Table::new(&head, 0);
+    rest.iter().filter(|row| row.len() == head.len()).for_each(|row| table.row(row.clone()));
+    table.render()
 }
 
 /// The table of the fields of a variant, out of the description of its type.
@@ -160,7 +186,7 @@ fn description(kind: Kind, entry: &Entry) -> String {
     let _ = write!(text, "\n{}", table.render());
     let common = type_docs::<Scene>();
     for docs in entry.docs.iter().skip(1).filter(|docs| !common.contains(docs)) {
-        let _ = write!(text, "\n{}: {}\n{}", docs.name, docs.doc, docs.body.replace("\n\n", "\n"));
+        let _ = write!(text, "\n{}: {}\n{}", docs.name, docs.doc, aligned(&docs.body));
     }
     let known: Vec<&str> =
         entry.docs.iter().skip(1).filter(|docs| common.contains(docs)).map(|docs| &*docs.name).collect();

@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use meshless_engine::notation::quantity;
 use meshless_engine::simulation::Simulation;
 
 use super::text::{complain, counted, duration};
@@ -107,16 +108,16 @@ impl Progress {
         let clock = sim.clock();
         let limiter = sim.limit().map(|limit| format!(" ({})", limit.by)).unwrap_or_default();
         let short = match (sim.sub_steps(), sim.short_limit()) {
-            (Some((count, _)), Some(limit)) => format!(" = {count} short steps ({})", limit.by),
+            (Some((count, _)), Some(limit)) => format!(" = {count} sub-steps ({})", limit.by),
             _ => String::new(),
         };
         let done = clock.time - self.start.0;
         let rest = self.elapsed() * (sim.end() - clock.time) / done;
         format!(
-            "t {:.4e} s  step {}  dt {:.2e} s{limiter}{short}  {}  {} left",
-            clock.time,
+            "t = {}  step {}  dt = {}{limiter}{short}  {}  {} left",
+            quantity(clock.time, "s"),
             clock.step,
-            clock.dt,
+            quantity(clock.dt, "s"),
             counted(self.rate(sim), "particle-steps/s"),
             duration(rest)
         )

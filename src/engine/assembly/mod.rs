@@ -4,8 +4,8 @@ mod build;
 #[cfg(test)]
 mod handed_tests;
 mod memory;
-mod names;
 mod named_fields;
+mod names;
 mod options;
 mod overlap;
 mod placement;

@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
+use super::plan::BodyPlan;
 use super::traits::{Formulation, Plugin};
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};

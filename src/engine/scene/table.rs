@@ -66,7 +66,8 @@ impl Table {
         let failed = |error: csv::Error| format!("cannot read the table `{shown}`: {error}");
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(failed)?;
         let headers = reader.headers().map_err(failed)?.clone();
-        let names: Vec<&str> = headers.iter().map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
+        let names: Vec<&str> =
+            headers.iter().map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
         if names.len() < 2 {
             return Err(format!("a table needs two columns, `{shown}` has {}", names.len()));
         }
@@ -82,7 +83,10 @@ impl Table {
             let record = record.map_err(failed)?;
             let [x, y] = columns.map(|k| record[k].parse::<f64>());
             let (Ok(x), Ok(y)) = (x, y) else {
-                return Err(format!("`{shown}`, row {line}: expected numbers, found `{}`", record.as_slice()));
+                return Err(format!(
+                    "`{shown}`, row {line}: expected numbers, found `{}`",
+                    record.as_slice()
+                ));
             };
             points.push((x, y));
         }

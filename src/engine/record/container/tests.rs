@@ -219,7 +219,7 @@ fn chunks_that_are_no_lz4_are_an_error() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(cases()) })]
 
     #[test]
     fn every_changed_byte_is_an_error(place: prop::sample::Index, change in 1..=255_u8) {
@@ -246,4 +246,9 @@ proptest! {
 fn small_once() -> &'static [u8] {
     static BYTES: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
     BYTES.get_or_init(small)
+}
+
+/// Few in the continuous integration; as many as `PROPTEST_CASES` asks for in a hunt.
+fn cases() -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(2000)
 }

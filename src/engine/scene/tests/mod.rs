@@ -12,6 +12,11 @@ use std::path::PathBuf;
 
 use super::Source;
 
+/// Cases of a property test: `PROPTEST_CASES` where it is set, for a long hunt.
+fn cases(few: u32) -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(few)
+}
+
 /// A folder of scenes under `tests/scenes`.
 fn folder(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenes").join(name)

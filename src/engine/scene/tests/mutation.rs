@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::super::*;
-use super::everything;
+use super::{cases, everything};
 
 /// Bits of scenes that are likely to confuse.
 const PIECES: [&str; 24] = [
@@ -27,7 +27,7 @@ fn boundary(text: &str, place: f64) -> usize {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(400), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn damaged_scenes(cuts in prop::collection::vec((0.0..1.0f64, 0usize..12, 0usize..PIECES.len()), 1..5)) {

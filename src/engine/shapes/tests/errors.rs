@@ -35,7 +35,12 @@ fn numbers_that_cannot_be() {
             "shape.min",
             "z must be left out or 0 in two dimensions, found 1",
         ),
-        ("HalfSpace(point: (0, 0), normal: (0, 0))", Two, "shape.normal", "the normal must not be a zero vector"),
+        (
+            "HalfSpace(point: (0, 0), normal: (0, 0))",
+            Two,
+            "shape.normal",
+            "the normal must not be a zero vector",
+        ),
         (
             "Union([Box(min: (0, 0), max: (1, 1)), HalfSpace(point: (0, 0), normal: (0, 1))])",
             Two,
@@ -179,8 +184,14 @@ fn spacing() {
         (-0.1, "must be greater than 0, found -0.1"),
         (f64::NAN, "expected a finite number, found NaN"),
         (f64::INFINITY, "expected a finite number, found inf"),
-        (1e-6, "the body needs about 1e12 particles, more than the 1000000 that fit into memory; use a larger spacing"),
-        (1e-200, "the body needs too many particles to count, more than the 1000000 that fit into memory; use a larger spacing"),
+        (
+            1e-6,
+            "the body needs about 1e12 particles, more than the 1000000 that fit into memory; use a larger spacing",
+        ),
+        (
+            1e-200,
+            "the body needs too many particles to count, more than the 1000000 that fit into memory; use a larger spacing",
+        ),
         (
             0.8,
             "the body must be at least 2 spacings thick along x, found 1.25; use a spacing of at most 0.5 m",

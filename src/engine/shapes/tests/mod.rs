@@ -3,6 +3,7 @@
 mod concentric;
 mod errors;
 mod hexagonal;
+mod mutation;
 mod order;
 mod points;
 mod regions;

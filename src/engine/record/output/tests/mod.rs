@@ -1,5 +1,6 @@
 //! Runs of small scenes, and what they leave on the disk.
 
+mod failing;
 mod files;
 mod periodic;
 mod recorder;
