@@ -2,6 +2,7 @@
 
 pub mod fluid;
 pub mod total_lagrangian;
+pub mod updated_lagrangian;
 
 use crate::plugin::Registry;
 
@@ -9,6 +10,7 @@ use crate::plugin::Registry;
 pub fn register(registry: &mut Registry) {
     registry
         .formulation::<total_lagrangian::TotalLagrangian>()
+        .formulation::<updated_lagrangian::UpdatedLagrangian>()
         .formulation::<fluid::Fluid>()
         .formulation::<fluid::Wall>()
         .formulation::<crate::rigid::Rigid>();

@@ -64,7 +64,6 @@ impl Entry {
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
 const LATER: &[(Kind, &str)] = &[
-    (Kind::Formulation, "UpdatedLagrangian"),
     (Kind::Formulation, "Eulerian"),
     (Kind::Plugin, "hessian_stabilization"),
     (Kind::Plugin, "artificial_stress"),

@@ -33,24 +33,24 @@ pub enum BondError {
 #[derive(Debug, Default)]
 pub struct Bonds {
     /// Where the neighbours of each row start.
-    pub(super) offsets: Vec<u32>,
+    pub(in crate::formulations) offsets: Vec<u32>,
     /// Row of the neighbour; rows beyond the last particle are ghosts (see [`Ghosts`]).
-    pub(super) neighbors: Vec<u32>,
+    pub(in crate::formulations) neighbors: Vec<u32>,
     /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
     /// deformation gradient of an affine map stays exact.
-    pub(super) weights: Vec<f32>,
+    pub(in crate::formulations) weights: Vec<f32>,
     /// Inverse of M_i = sum_j V_j w_ij X_ij (x) X_ij; zero for a free particle.
-    pub(super) inverse_moment: Vec<Sym3>,
+    pub(in crate::formulations) inverse_moment: Vec<Sym3>,
     /// `sum_j V_j w_ij X_ij`.
-    pub(super) reach: Vec<DVec3>,
+    pub(in crate::formulations) reach: Vec<DVec3>,
     /// `sum_j V_j w_ij`, 1/m2.
     weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
-    pub(super) free: Vec<u32>,
+    pub(in crate::formulations) free: Vec<u32>,
 }
 
 /// The reference configuration of one body.
-pub(super) struct BodyBonds<'a> {
+pub(in crate::formulations) struct BodyBonds<'a> {
     /// Rows of the body in the phase.
     pub rows: Range<usize>,
     /// Reference positions of the whole phase, m.
@@ -101,7 +101,7 @@ impl BodyBonds<'_> {
 
 impl Bonds {
     /// Appends the bonds of the next body; bodies must come in the order of their rows.
-    pub(super) fn append(
+    pub(in crate::formulations) fn append(
         &mut self,
         body: &BodyBonds<'_>,
         search: &mut NeighborSearch,
@@ -152,7 +152,7 @@ impl Bonds {
 
     /// Makes the moment matrices of the given rows; a neighbour without volume has no part in them, and a row without
     /// volume has none.
-    pub(super) fn correct(
+    pub(in crate::formulations) fn correct(
         &mut self,
         rows: Range<usize>,
         dimension: usize,
@@ -191,7 +191,12 @@ impl Bonds {
     }
 
     /// The smallest stable step of the given rows, s.
-    pub(super) fn stable_step(&self, rows: Range<usize>, axes: usize, estimate: &StepEstimate) -> f64 {
+    pub(in crate::formulations) fn stable_step(
+        &self,
+        rows: Range<usize>,
+        axes: usize,
+        estimate: &StepEstimate,
+    ) -> f64 {
         let particle =
             |i: usize| estimate.stable_step(self.weight_sum[i], self.inverse_moment[i].trace() / axes as f64);
         rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)

@@ -15,7 +15,7 @@ use crate::world::{Damage, Removed};
 
 /// What a particle is to its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Mark {
+pub(in crate::formulations) enum Mark {
     /// It holds.
     #[default]
     Holds,
@@ -27,7 +27,7 @@ pub(super) enum Mark {
 
 /// A particle that holds and has failed neighbours.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(in crate::formulations) struct Edge {
     /// Row in the phase.
     pub row: u32,
     /// Whether a neighbour has failed in the last step.
@@ -39,7 +39,7 @@ pub(super) struct Edge {
 }
 
 /// The edges in a block of rows, to be written.
-pub(super) struct EdgeRows<'a> {
+pub(in crate::formulations) struct EdgeRows<'a> {
     pub edges: &'a mut [Edge],
     /// First row of the block in the phase.
     pub first: usize,
@@ -64,7 +64,7 @@ impl<'a> EdgeRows<'a> {
 
 /// All cracks of the phase.
 #[derive(Debug, Default)]
-pub(super) struct Cracks {
+pub(in crate::formulations) struct Cracks {
     /// Of every row; empty before anything fails.
     pub marks: Vec<Mark>,
     /// Ascending by row.

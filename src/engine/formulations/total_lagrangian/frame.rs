@@ -12,7 +12,7 @@ use crate::solids::CorrectedStress;
 /// of both is as small as the strains are, and so is what rounding makes of the sums: momentum stays exact for a
 /// body that has gone far and turned.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(in crate::formulations) struct Frame {
     /// First row behind the body.
     pub end: usize,
     /// H.
@@ -22,6 +22,11 @@ pub(super) struct Frame {
 }
 
 impl Frame {
+    /// No motion, for the body that ends before row `end`.
+    pub fn at_rest(end: usize) -> Self {
+        Self { end, gradient: DMat3::ZERO, displacement: DVec3::ZERO }
+    }
+
     /// The motion of a particle and its neighbourhood, for the body that ends before row `end`.
     pub fn of(end: usize, deformation: &DMat3, site: &Site) -> Self {
         let gradient = *deformation - DMat3::IDENTITY;
@@ -55,6 +60,6 @@ impl Frame {
 }
 
 /// Index of the frame of a row.
-pub(super) fn frame_of(frames: &[Frame], row: usize) -> usize {
+pub(in crate::formulations) fn frame_of(frames: &[Frame], row: usize) -> usize {
     frames.partition_point(|frame| frame.end <= row)
 }

@@ -10,7 +10,7 @@ use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid};
 use crate::solids::CorrectedStress;
 
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
-pub(super) struct Gather<'a> {
+pub(in crate::formulations) struct Gather<'a> {
     pub bonds: &'a Bonds,
     pub sites: &'a [Site],
     /// First row of the block in the phase.
@@ -61,7 +61,7 @@ impl PlaneOrSolid for Gather<'_> {
 }
 
 /// Makes A_i = P_i M_i^-1 of a block.
-pub(super) struct CorrectStress<'a> {
+pub(in crate::formulations) struct CorrectStress<'a> {
     pub stress: &'a [DMat3],
     pub inverse_moment: &'a [Sym3],
     pub stresses: &'a mut [CorrectedStress],

@@ -24,7 +24,7 @@ use crate::symmetry::Ghosts;
 use crate::world::{Force, Mass, PhaseId};
 
 /// The pass over all bodies of the phase.
-pub(super) struct InternalForce<'a> {
+pub(in crate::formulations) struct InternalForce<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
     pub cracks: &'a Cracks,
@@ -136,7 +136,12 @@ impl<const D: usize> ForceSum<D> {
 }
 
 /// The system of the pass.
-pub(super) fn run(step: &mut Step<'_>, phase: PhaseId, gravity: DVec3, plane: bool) -> Result<(), StepError> {
+pub(in crate::formulations) fn run(
+    step: &mut Step<'_>,
+    phase: PhaseId,
+    gravity: DVec3,
+    plane: bool,
+) -> Result<(), StepError> {
     let view = step.world.phase(phase);
     let packed = step.resources.solid_rows::<PackedRows>(phase);
     let mass = view.read::<Mass>()?;

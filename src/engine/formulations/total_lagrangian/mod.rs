@@ -23,6 +23,14 @@ mod state_tests;
 mod support;
 mod system;
 
+pub(super) use bonds::BodyBonds;
 pub use bonds::{BondError, Bonds};
+pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;
+pub(super) use frame::Frame;
+pub(super) use gather::{CorrectStress, Gather};
+pub(super) use internal_force::InternalForce;
+pub(super) use pairs::BodyPairs;
+pub(super) use phase::BodyKernel;
 pub use rows::Site;
+pub(super) use spread::fit;

@@ -16,7 +16,7 @@ use crate::symmetry::Ghosts;
 use crate::world::{BodyId, PhaseId, SupportRadius, Velocity};
 
 /// Gives pair terms the bonds of the phase.
-pub(super) struct BondPairs {
+pub(in crate::formulations) struct BondPairs {
     pub phase: PhaseId,
 }
 
@@ -50,18 +50,19 @@ impl PairSource for BondPairs {
     }
 }
 
-struct BodyPairs<'a> {
-    bonds: &'a Bonds,
-    ghosts: &'a Ghosts,
-    sites: &'a [Site],
-    support: &'a [SupportRadius],
+/// The pairs of one body.
+pub(in crate::formulations) struct BodyPairs<'a> {
+    pub bonds: &'a Bonds,
+    pub ghosts: &'a Ghosts,
+    pub sites: &'a [Site],
+    pub support: &'a [SupportRadius],
     /// Support radius of all particles, m, where it is the same.
-    uniform: Option<f64>,
+    pub uniform: Option<f64>,
     /// Velocities, where they are read.
-    velocity: Option<&'a [Velocity]>,
+    pub velocity: Option<&'a [Velocity]>,
     /// Kernel, where its values are read.
-    kernel: Option<&'a Kernel>,
-    plane: bool,
+    pub kernel: Option<&'a Kernel>,
+    pub plane: bool,
 }
 
 impl PairRows for BodyPairs<'_> {

@@ -13,7 +13,7 @@ use crate::symmetry::Ghosts;
 use crate::world::{BodyId, Mobility, Velocity};
 
 /// What the systems of the formulation share.
-pub(super) struct PackedRows {
+pub(in crate::formulations) struct PackedRows {
     pub bonds: Bonds,
     pub ghosts: Ghosts,
     /// Where the reference positions of sites are measured from, m.
@@ -31,7 +31,7 @@ pub(super) struct PackedRows {
 }
 
 /// The kernel of a body.
-pub(super) struct BodyKernel {
+pub(in crate::formulations) struct BodyKernel {
     pub body: BodyId,
     pub kernel: Kernel,
     /// Support radius, m, where all particles have the same.

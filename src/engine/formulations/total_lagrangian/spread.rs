@@ -6,7 +6,7 @@ use crate::parallel::{Arithmetic, Lanes4};
 
 /// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
 /// wait for each other.
-pub(super) struct Spread<const D: usize> {
+pub(in crate::formulations) struct Spread<const D: usize> {
     /// Columns of `sum_j V_j w_ij u_ij (x) X_j`: X_i is taken off behind the loop. u_ij is made first, so that a body that
     /// has moved as a whole has no gradient, to the bit.
     pub spread: [Lanes4; D],
@@ -43,7 +43,11 @@ impl<const D: usize> Spread<D> {
 
 /// The columns of a weighted sum times the inverse moment matrix.
 #[inline(always)]
-pub(super) fn fit<A: Arithmetic, const D: usize>(a: A, spread: &[Lanes4; D], inverse: &Sym3) -> [Lanes4; 3] {
+pub(in crate::formulations) fn fit<A: Arithmetic, const D: usize>(
+    a: A,
+    spread: &[Lanes4; D],
+    inverse: &Sym3,
+) -> [Lanes4; 3] {
     let Sym3 { xx, yy, zz, xy, xz, yz } = *inverse;
     let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let mut f = [Lanes4::ZERO; 3];

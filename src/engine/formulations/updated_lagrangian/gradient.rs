@@ -1,0 +1,131 @@
+//! First pass over pairs: the deformation gradient since the last update, then, while a block is in cache, stress and corrected stress.
+
+use glam::{DMat3, DVec3};
+
+use super::control::ControlFit;
+use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, Site};
+use crate::linalg::Sym3;
+use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
+use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
+
+/// What the pass writes of packed rows, cut by rows of one body.
+pub(super) struct GradientRows<'a> {
+    pub stresses: &'a mut [CorrectedStress],
+    pub control: &'a mut [CorrectedStress],
+    pub self_force: &'a mut [DVec3],
+}
+
+impl Split for GradientRows<'_> {
+    fn rows(&self) -> usize {
+        self.stresses.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
+        let (control, control_rest) = self.control.split_at_mut(at);
+        let (self_force, self_force_rest) = self.self_force.split_at_mut(at);
+        (
+            Self { stresses, control, self_force },
+            Self { stresses: stresses_rest, control: control_rest, self_force: self_force_rest },
+        )
+    }
+}
+
+/// The pass over one body.
+pub(super) struct GradientPass<'a> {
+    pub bonds: &'a Bonds,
+    /// Weights of the control.
+    pub control_weights: &'a [f32],
+    pub sites: &'a [Site],
+    pub originals: &'a [Site],
+    /// F_r.
+    pub gradient: &'a [DMat3],
+    /// V_0, m3.
+    pub reference_volume: &'a [f64],
+    pub frame: &'a Frame,
+    /// Plane strain.
+    pub plane: bool,
+}
+
+impl GradientPass<'_> {
+    /// Runs the pass over a block of rows.
+    pub fn block(
+        &self,
+        constitutive: &Constitutive<'_>,
+        mut rows: SolidRows<'_>,
+        own: GradientRows<'_>,
+        block: &mut SolidBlock,
+    ) -> SolidSum {
+        let (n, first) = (rows.deformation.len(), block.first);
+        let mut stretch = [DVec3::ZERO; BLOCK];
+        let mut volume = [0.0; BLOCK];
+        let gather = Gather {
+            bonds: self.bonds,
+            sites: self.sites,
+            first,
+            deformation: rows.deformation,
+            gradient: &mut block.gradient,
+            misfit: &mut block.misfit,
+            stretch: &mut stretch,
+            volume: &mut volume,
+        };
+        run_hot_in(self.plane, gather);
+        let f_r = &self.gradient[first..first + n];
+        for (k, f_r) in f_r.iter().enumerate() {
+            // F = f F_r; H = F - I keeps the digits of small strains where the reference is still the original one.
+            block.gradient[k] = block.gradient[k] * *f_r + (*f_r - DMat3::IDENTITY);
+            rows.deformation[k] = DMat3::IDENTITY + block.gradient[k];
+            block.volume[k] = if volume[k] > 0.0 { self.reference_volume[first + k] } else { 0.0 };
+        }
+        let inverse_moment = &self.bonds.inverse_moment[first..first + n];
+        let is_free = |k: usize| inverse_moment[k] == Sym3::ZERO;
+        let GradientRows { stresses, control, self_force } = own;
+        let mut sum = SolidSum::default();
+        let reference_volume = block.volume;
+        constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
+            let mut seen = [DMat3::ZERO; BLOCK];
+            for (k, stress) in stress.iter().enumerate().filter(|(k, _)| volume[*k] > 0.0) {
+                // The stress as seen from the reference.
+                seen[k] = *stress * f_r[k].transpose() * (reference_volume[k] / volume[k]);
+            }
+            run_hot(CorrectStress { stress: &seen[..n], inverse_moment, stresses: &mut *stresses });
+        });
+        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
+            self.frame.complete(stress, &self.sites[first + k]);
+            *self_force = stress.times(self.bonds.reach[first + k], stretch[k]);
+        }
+        sum.close(&rows, block);
+        if !constitutive.terms.is_empty() {
+            self.add_control(constitutive, (&mut rows, block), control, &mut sum);
+        }
+        sum
+    }
+
+    /// Adds the folded terms, with the fit to the original pair vectors.
+    fn add_control(
+        &self,
+        constitutive: &Constitutive<'_>,
+        (rows, block): (&mut SolidRows<'_>, &mut SolidBlock),
+        control: &mut [CorrectedStress],
+        sum: &mut SolidSum,
+    ) {
+        let (n, first) = (rows.deformation.len(), block.first);
+        let mut fitted = [false; BLOCK];
+        let fit = ControlFit {
+            bonds: self.bonds,
+            weights: self.control_weights,
+            sites: self.originals,
+            rows: first..first + n,
+            gradient: &mut block.gradient,
+            misfit: &mut block.misfit,
+            volume: &mut block.volume,
+            fitted: &mut fitted,
+        };
+        run_hot_in(self.plane, fit);
+        control.fill(CorrectedStress::default());
+        constitutive.fold(&mut constitutive.folded(rows, block, control), sum);
+        for (stress, _) in control.iter_mut().zip(fitted).filter(|(_, fitted)| !fitted) {
+            *stress = CorrectedStress::default();
+        }
+    }
+}

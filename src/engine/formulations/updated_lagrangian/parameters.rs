@@ -1,0 +1,152 @@
+//! The formulation as scenes name it: its parameters, their check, its columns and systems.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::columns::{UpdatedGradient, UpdatedReference};
+use super::force::InternalForce;
+use super::pairs::UpdatedPairs;
+use super::reference::set_up;
+use super::system::UpdatedSolids;
+use crate::kernels::KernelName;
+use crate::pair::add_pair_systems;
+use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
+use crate::scene::Dimension;
+use crate::schedule::{Mode, Stage, System};
+use crate::solids::SolidBodies;
+use crate::symmetry::repeats_of;
+use crate::world::{
+    BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
+    ReferenceVolume, Removed, SupportRadius, Velocity,
+};
+
+/// Updated-Lagrangian solid: neighbours, weights and corrections are made anew while the body deforms.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct UpdatedLagrangian {
+    /// Kernel.
+    pub kernel: KernelName,
+    /// Support radius over spacing.
+    pub support: f64,
+    /// When the present configuration becomes the reference.
+    pub update: Update,
+}
+
+/// When the present configuration becomes the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum Update {
+    /// After every so many steps.
+    Every(u64),
+    /// When a pair has changed its length.
+    Adaptive {
+        /// Change of length over the smoothing length, half of the support radius \[1\].
+        change: f64,
+    },
+    /// Never: the reference stays that of the start.
+    Never,
+}
+
+/// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the paper.
+const USUAL_SUPPORT: f64 = 2.4;
+
+impl Default for UpdatedLagrangian {
+    fn default() -> Self {
+        Self {
+            kernel: KernelName::CubicSpline,
+            support: USUAL_SUPPORT,
+            update: Update::Adaptive { change: 0.25 },
+        }
+    }
+}
+
+/// Label of the system that makes deformation gradient, stress and corrected stress, and updates the reference.
+const GRADIENT: &str = "updated_lagrangian_gradient";
+/// Label of the system that makes the internal force.
+const FORCE: &str = "updated_lagrangian_force";
+
+impl Formulation for UpdatedLagrangian {
+    const NAME: &'static str = "UpdatedLagrangian";
+    const REFERENCE: &'static str = "updated-Lagrangian SPH: Y. Vidal, J. Bonet, A. Huerta, Int. J. Numer. Methods Engng. 69 (2007) 2687-2710";
+    const KIND: BodyKind = BodyKind::Solid;
+    const OFFERS: &'static [Offer] = Offer::OF_SOLIDS;
+
+    fn support(&self, body: &BodyPlan) -> Option<f64> {
+        Some(self.support * body.spacing)
+    }
+
+    fn columns(columns: &mut ColumnSet) {
+        columns
+            .add::<SupportRadius>()
+            .add::<DeformationGradient>()
+            .add::<PiolaStress>()
+            .add::<UpdatedReference>()
+            .add::<UpdatedGradient>();
+    }
+
+    fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let mut repeats = Vec::with_capacity(bodies.len());
+        for (id, parameters) in &bodies {
+            let body = sim.body(*id);
+            parameters.check(body.spacing).map_err(|error| error.of_formulation(*id))?;
+            let own = repeats_of(body, parameters.support * body.spacing, sim);
+            repeats.push(own.map_err(|error| error.of_formulation(*id))?);
+        }
+        let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
+        let phase = sim.body(ids[0]).phase;
+        let plane = sim.dimension() == Dimension::Two;
+        let solids = SolidBodies::new(&ids, sim)?;
+        let state = solids.access();
+        let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
+        let (estimates, has_control) = (system.estimates(), system.has_control());
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, repeats, phase, has_control, setup));
+        let gradient = System::new(Stage::Constitutive, GRADIENT, system)
+            .on_phases([phase])
+            .reads::<Position>()
+            .reads::<ReferencePosition>()
+            .reads::<ReferenceVolume>()
+            .reads::<SupportRadius>()
+            .reads::<Removed>()
+            .reads::<Velocity>()
+            .reads::<Mass>()
+            .writes::<UpdatedReference>()
+            .writes::<UpdatedGradient>()
+            .writes::<DeformationGradient>()
+            .writes::<PiolaStress>();
+        sim.add_system(gradient.touches_all(state));
+        let force = InternalForce { phase, plane, gravity: sim.gravity() };
+        let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
+        sim.add_system(force.touches("corrected_stress", Mode::Reads).writes::<Force>());
+        add_pair_systems(sim, phase, UpdatedPairs { phase })
+    }
+}
+
+impl UpdatedLagrangian {
+    fn check(&self, spacing: f64) -> Result<(), SetupError> {
+        let fewest = 1.5;
+        if !(self.support.is_finite() && (fewest..=10.0).contains(&self.support)) {
+            return Err(SetupError::parameter(
+                "support",
+                format!(
+                    "`support` must be between {fewest} and 10 spacings, found {} ({} m)",
+                    self.support,
+                    self.support * spacing
+                ),
+                format!("{USUAL_SUPPORT} is usual"),
+            ));
+        }
+        match self.update {
+            Update::Every(0) => Err(SetupError::parameter(
+                "update",
+                "`Every` must be at least 1 step, found 0",
+                "use `Never` for a reference that stays",
+            )),
+            Update::Adaptive { change } if !(change > 0.0 && change <= 1.0) => Err(SetupError::parameter(
+                "update",
+                format!("`change` must be above 0 and at most 1, found {change}"),
+                "0.25 is usual",
+            )),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The packed rows of the phase, and what the rest of the engine sees of them.
+
+use glam::{DMat3, DVec3};
+
+use crate::formulations::total_lagrangian::{BodyKernel, Bonds, Cracks, Frame, Site};
+use crate::neighbors::NeighborSearch;
+use crate::parallel::Lanes4;
+use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
+use crate::symmetry::{Ghost, Ghosts, Repeat};
+use crate::world::{Mobility, Velocity};
+
+/// What the systems of the formulation share.
+pub(super) struct UpdatedRows {
+    /// Neighbours, weights and moments of the reference.
+    pub bonds: Bonds,
+    pub ghosts: Ghosts,
+    /// Of every body, in the order of rows.
+    pub repeats: Vec<Vec<Repeat>>,
+    /// Where the positions of sites are measured from, m.
+    pub origin: DVec3,
+    /// Position in the reference with the volume V there, and displacement since.
+    pub sites: Vec<Site>,
+    /// Original position with the volume V where the particle holds, and displacement since the start: what hourglass control compares.
+    pub originals: Vec<Site>,
+    /// F_r of the real rows.
+    pub gradient: Vec<DMat3>,
+    /// Volume V_0 det F_r of the real rows, m3; zero for removed ones.
+    pub volume: Vec<f64>,
+    /// Corrected stress A.
+    pub stresses: Vec<CorrectedStress>,
+    /// What hourglass control adds for the original pair vectors.
+    pub control: Vec<CorrectedStress>,
+    /// Weight of every bond in the control.
+    pub control_weights: Vec<f32>,
+    /// The part of the force on each particle that comes from its own corrected stress, over its volume.
+    pub self_force: Vec<DVec3>,
+    pub frames: Vec<Frame>,
+    /// None: particles that have failed leave the sums of the control.
+    pub cracks: Cracks,
+    pub kernels: Vec<BodyKernel>,
+    /// Stable step of each body in the reference, s.
+    pub stable_step: Vec<f64>,
+    /// Stable step of each body at the start, s.
+    pub first_stable_step: Vec<f64>,
+    /// Whether the phase has folded terms.
+    pub has_control: bool,
+    /// Kept for the next update.
+    pub search: NeighborSearch,
+}
+
+impl UpdatedRows {
+    /// Fills the sites of the ghosts.
+    pub fn fill_ghost_sites(&mut self) {
+        let Self { ghosts, sites, originals, origin, has_control, .. } = self;
+        let image = |origin: DVec3| {
+            move |ghost: Ghost<'_>, site: &Site| {
+                let reference = ghost.map.place(site.reference.xyz() + origin) - origin;
+                Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
+            }
+        };
+        ghosts.fill(sites, image(*origin));
+        if *has_control {
+            ghosts.fill(originals, image(DVec3::ZERO));
+        }
+    }
+
+    /// Fills the stresses of the ghosts, which have their sites.
+    pub fn fill_ghost_stresses(&mut self) {
+        let Self { ghosts, frames, sites, stresses, control, has_control, .. } = self;
+        let Some(frame) = frames.first() else { return };
+        ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
+            let mut stress = mirrored(own, ghost.map.signs);
+            frame.complete(&mut stress, &sites[ghost.row]);
+            stress
+        });
+        if *has_control {
+            ghosts.fill(control, |ghost, own: &CorrectedStress| mirrored(own, ghost.map.signs));
+        }
+    }
+}
+
+/// The mirror image S A S of a corrected stress; the last lane is no component of A and keeps its sign.
+fn mirrored(own: &CorrectedStress, signs: DVec3) -> CorrectedStress {
+    let mut stress = *own;
+    for (axis, column) in stress.columns.iter_mut().enumerate() {
+        *column = Lanes4::new(own.columns[axis].xyz() * signs * signs[axis], own.columns[axis].0[3]);
+    }
+    stress
+}
+
+impl SolidPhase for UpdatedRows {
+    fn ghosts(&self) -> &Ghosts {
+        &self.ghosts
+    }
+
+    fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
+        for (j, weight) in self.bonds.row(row).filter(|(j, _)| self.sites[*j].is_present()) {
+            f(j, f64::from(weight));
+        }
+    }
+
+    fn local_motion(
+        &self,
+        row: usize,
+        velocity: &[Velocity],
+        mobility: Mobility,
+        moving: bool,
+    ) -> LocalMotion {
+        let inverse = &self.bonds.inverse_moment[row];
+        let mut sum = DMat3::ZERO;
+        if moving {
+            for (j, weight) in self.bonds.row(row) {
+                let signs = self.ghosts.mirror(j).unwrap_or(DVec3::ONE);
+                let v_ij = velocity[self.ghosts.source(j)].0 * signs - velocity[row].0;
+                let (own, other) = (&self.sites[row].reference, &self.sites[j].reference);
+                let r_ij = (other.xyz() - own.xyz()) * (f64::from(weight) * other.0[3]);
+                sum += DMat3::from_cols(v_ij * r_ij.x, v_ij * r_ij.y, v_ij * r_ij.z);
+            }
+        }
+        // A point A of the original configuration lies at F_r A in the reference.
+        let f_r = self.gradient[row];
+        LocalMotion {
+            velocity: velocity[row].0,
+            rate: sum * inverse.to_matrix() * f_r,
+            mobility: mobility.0,
+            own: f_r.transpose() * (*inverse * self.bonds.reach[row]),
+        }
+    }
+
+    fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
+        for (&node, couple) in nodes.iter().zip(couples).filter(|(_, couple)| **couple != DMat3::ZERO) {
+            let row = first + node as usize;
+            let site = &self.sites[row].reference;
+            let pulled = *couple * self.gradient[row].transpose();
+            let stress = pulled * self.bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
+            self.stresses[row].add(&stress, site.xyz());
+            self.self_force[row] += stress * self.bonds.reach[row];
+        }
+    }
+
+    fn renew_ghosts(&mut self) {
+        self.fill_ghost_stresses();
+    }
+}

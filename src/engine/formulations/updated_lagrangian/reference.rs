@@ -1,0 +1,204 @@
+//! The reference: neighbours, weights and moments at the positions of the last update.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+
+use super::columns::{UpdatedGradient, UpdatedReference};
+use super::parameters::UpdatedLagrangian;
+use super::phase::UpdatedRows;
+use crate::formulations::total_lagrangian::{BodyBonds, BodyKernel, BondError, Bonds, Cracks, Site};
+use crate::kernels::Kernel;
+use crate::neighbors::NeighborSearch;
+use crate::plugin::{Setup, SetupError};
+use crate::schedule::StepError;
+use crate::solids::{CorrectedStress, StepEstimate};
+use crate::symmetry::{Ghosts, Repeat};
+use crate::world::{
+    BodyId, DeformationGradient, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
+};
+
+/// Fills the columns of the reference with those of the start, and makes its lists.
+pub(super) fn set_up(
+    bodies: &[(BodyId, UpdatedLagrangian)],
+    estimates: &[StepEstimate],
+    repeats: Vec<Vec<Repeat>>,
+    phase: PhaseId,
+    has_control: bool,
+    setup: &mut Setup<'_>,
+) -> Result<(), SetupError> {
+    let view = setup.world.phase(phase);
+    let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
+    let dimension = setup.world.dimension().count();
+    let mut kernels = Vec::with_capacity(bodies.len());
+    {
+        let original = view.read::<ReferencePosition>().map_err(missing)?;
+        let mut reference = view.write::<UpdatedReference>().map_err(missing)?;
+        let mut support = view.write::<SupportRadius>().map_err(missing)?;
+        reference.iter_mut().zip(original.iter()).for_each(|(now, start)| now.0 = start.0);
+        view.write::<UpdatedGradient>().map_err(missing)?.fill(UpdatedGradient(DMat3::IDENTITY));
+        view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
+        for (id, parameters) in bodies {
+            let body = setup.world.body(*id);
+            let radius = parameters.support * body.spacing;
+            support[body.rows.clone()].fill(SupportRadius(radius));
+            let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
+                unreachable!("every kernel has a two- and a three-dimensional form");
+            };
+            kernels.push(BodyKernel { body: *id, kernel, support: Some(radius) });
+        }
+    }
+    let mut rows = UpdatedRows {
+        bonds: Bonds::default(),
+        ghosts: Ghosts::default(),
+        repeats,
+        origin: DVec3::ZERO,
+        sites: Vec::new(),
+        originals: Vec::new(),
+        gradient: Vec::new(),
+        volume: Vec::new(),
+        stresses: Vec::new(),
+        control: Vec::new(),
+        control_weights: Vec::new(),
+        self_force: vec![DVec3::ZERO; view.len()],
+        frames: Vec::with_capacity(bodies.len()),
+        cracks: Cracks::default(),
+        kernels,
+        stable_step: Vec::with_capacity(bodies.len()),
+        first_stable_step: Vec::new(),
+        has_control,
+        search: NeighborSearch::default(),
+    };
+    rows.renew(setup.world, phase, estimates, &[]).map_err(|RenewError { body, error }| {
+        let help = "use a larger `support`, or more particles across the body";
+        SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
+    })?;
+    rows.first_stable_step.clone_from(&rows.stable_step);
+    for kernel in &rows.kernels {
+        let body = setup.world.body(kernel.body);
+        let free = rows.bonds.free.iter().filter(|&&row| body.rows.contains(&(row as usize))).count();
+        if free > 0 {
+            let name = &body.name;
+            let text =
+                format!("{free} particles of body `{name}` have too few neighbours and carry no stress");
+            setup.warnings.push(text);
+        }
+    }
+    setup.resources.insert_solid(phase, rows);
+    Ok(())
+}
+
+/// Why the lists of a body cannot be made.
+pub(super) struct RenewError {
+    pub body: BodyId,
+    pub error: BondError,
+}
+
+impl RenewError {
+    /// The error of a step.
+    pub fn in_step(self, world: &World) -> StepError {
+        let Self { body, error } = self;
+        let message = format!("the reference of body `{}` cannot be updated: {error}", world.body(body).name);
+        StepError::System { system: "updated_lagrangian_gradient".to_owned(), message }
+    }
+}
+
+impl UpdatedRows {
+    /// Makes neighbours, weights, moments and ghosts of the reference that the columns hold, without `removed` rows.
+    pub fn renew(
+        &mut self,
+        world: &World,
+        phase: PhaseId,
+        estimates: &[StepEstimate],
+        removed: &[u32],
+    ) -> Result<(), RenewError> {
+        let view = world.phase(phase);
+        let internal =
+            |_| RenewError { body: self.kernels[0].body, error: BondError::NoStiffness { most: 0 } };
+        let reference = view.read::<UpdatedReference>().map_err(internal)?;
+        let gradient = view.read::<UpdatedGradient>().map_err(internal)?;
+        let volume = view.read::<ReferenceVolume>().map_err(internal)?;
+        let support = view.read::<SupportRadius>().map_err(internal)?;
+        self.gradient.clear();
+        self.gradient.extend(gradient.iter().map(|gradient| gradient.0));
+        self.volume.clear();
+        self.volume
+            .extend(volume.iter().zip(&self.gradient).map(|(volume, f_r)| volume.0 * f_r.determinant()));
+        removed.iter().for_each(|&row| self.volume[row as usize] = 0.0);
+        let position: &[DVec3] = bytemuck::cast_slice(&reference);
+        let support: &[f64] = bytemuck::cast_slice(&support);
+        let bounds = |rows: Range<usize>| {
+            let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            position[rows].iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
+        };
+        let (low, high) = bounds(0..position.len());
+        self.origin = 0.5 * (low + high);
+        self.bonds = Bonds::default();
+        self.ghosts = Ghosts::new(view.len());
+        self.stable_step.clear();
+        for ((kernel, repeats), estimate) in self.kernels.iter().zip(&self.repeats).zip(estimates) {
+            let rows = world.body(kernel.body).rows.clone();
+            let (low, high) = bounds(rows.clone());
+            let (repeats, reach) = follow(repeats, low, high, kernel.support.unwrap_or_default());
+            let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
+            let (dimension, ghosts) = (kernel.kernel.dimension(), &self.ghosts);
+            let volume = &self.volume[..];
+            let body = BodyBonds {
+                rows: rows.clone(),
+                position,
+                volume,
+                support,
+                kernel: kernel.kernel,
+                ghosts,
+                ghost_rows,
+            };
+            let made = self.bonds.append(&body, &mut self.search);
+            made.map_err(|error| RenewError { body: kernel.body, error })?;
+            self.stable_step.push(self.bonds.stable_step(rows, dimension, estimate));
+        }
+        let all = view.len() + self.ghosts.len();
+        self.sites.resize(all, Site::default());
+        self.stresses.resize(all, CorrectedStress::default());
+        if self.has_control {
+            self.originals.resize(all, Site::default());
+            self.control.resize(all, CorrectedStress::default());
+            let original = view.read::<ReferencePosition>().map_err(internal)?;
+            self.weigh_control(world, bytemuck::cast_slice(&original), support);
+        }
+        Ok(())
+    }
+
+    /// Makes the weights of the control.
+    fn weigh_control(&mut self, world: &World, original: &[DVec3], support: &[f64]) {
+        let Self { bonds, ghosts, gradient, kernels, control_weights, .. } = self;
+        control_weights.clear();
+        for BodyKernel { body, kernel, .. } in kernels.iter() {
+            let ratio = kernel.smoothing_length(1.0);
+            for i in world.body(*body).rows.clone() {
+                control_weights.extend(bonds.row(i).map(|(j, _)| {
+                    let source = ghosts.source(j);
+                    let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
+                    let x_ij = ghosts.pair(original, i, j);
+                    let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
+                    let h = 0.5 * (support[i] + support[source]) * ratio;
+                    kernel.pair_weight(mean.length(), h) as f32
+                }));
+            }
+        }
+    }
+}
+
+/// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their sources: a body that fills a period goes along
+/// with its motion, and its sides need not be flat any more.
+fn follow(repeats: &[Repeat], low: DVec3, high: DVec3, support: f64) -> (Vec<Repeat>, f64) {
+    let mut reach = support;
+    let moved = repeats.iter().map(|repeat| match *repeat {
+        Repeat::Period { axis, length, .. } => {
+            reach = reach.max(support + high[axis] - low[axis] - length);
+            Repeat::Period { axis, min: low[axis], length }
+        }
+        mirror @ Repeat::Mirror { .. } => mirror,
+    });
+    let moved = moved.collect();
+    (moved, reach)
+}

@@ -1,0 +1,262 @@
+//! The system of the first pass, and of the updates of the reference.
+
+use super::columns::{UpdatedGradient, UpdatedReference};
+use super::gradient::{GradientPass, GradientRows};
+use super::parameters::{Update, UpdatedLagrangian};
+use super::phase::UpdatedRows;
+use crate::formulations::total_lagrangian::{Frame, Site};
+use crate::parallel::{Largest, sum_over_blocks};
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::solids::{SolidBodies, SolidColumns, SolidPart, SolidSum, StepEstimate};
+use crate::world::{
+    BodyId, Damage, DeformationGradient, MissingColumn, PhaseId, Position, ReferencePosition,
+    ReferenceVolume, Removed, World,
+};
+
+/// Account of what an update of the reference changes of the stored energies.
+const ACCOUNT: &str = "reference_update";
+/// Steps between two looks at the lengths of pairs: they change slowly against the stable step.
+const INTERVAL: u64 = 4;
+
+/// The system.
+pub(super) struct UpdatedSolids {
+    phase: PhaseId,
+    /// Plane strain.
+    plane: bool,
+    solids: SolidBodies,
+    /// Of every body: when its reference is updated, and the smoothing length, m.
+    updates: Vec<(Update, f64)>,
+    /// Removed rows that the reference knows of, ascending.
+    removed: Vec<u32>,
+    /// Number of failed particles that it knows of.
+    failed: u64,
+    /// Whether the lists are those of another reference than that of the columns: after a restart.
+    is_stale: bool,
+}
+
+impl UpdatedSolids {
+    pub fn new(
+        phase: PhaseId,
+        plane: bool,
+        solids: SolidBodies,
+        bodies: &[(BodyId, UpdatedLagrangian)],
+        spacing: impl Fn(BodyId) -> f64,
+    ) -> Self {
+        let update = |(id, own): &(BodyId, UpdatedLagrangian)| (own.update, 0.5 * own.support * spacing(*id));
+        let updates = bodies.iter().map(update).collect();
+        Self { phase, plane, solids, updates, removed: Vec::new(), failed: 0, is_stale: false }
+    }
+
+    /// What the stable step of each body depends on.
+    pub fn estimates(&self) -> Vec<StepEstimate> {
+        self.solids.iter().map(|body| body.estimate).collect()
+    }
+
+    /// Whether plugins have handed in folded terms.
+    pub fn has_control(&self) -> bool {
+        self.solids.has_terms()
+    }
+
+    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    fn pass(
+        &mut self,
+        world: &World,
+        packed: &mut UpdatedRows,
+        (dt, is_short): (f64, bool),
+    ) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        pack(world, self.phase, packed)?;
+        let reference_volume = view.read::<ReferenceVolume>()?;
+        let mut columns = SolidColumns::of(&view)?;
+        let UpdatedRows {
+            bonds,
+            sites,
+            originals,
+            gradient,
+            stresses,
+            control,
+            control_weights,
+            self_force,
+            frames,
+            ..
+        } = &mut *packed;
+        frames.clear();
+        self.solids.begin();
+        for k in 0..self.solids.len() {
+            let rows = world.body(self.solids.id(k)).rows.clone();
+            let frame = Frame::at_rest(rows.end);
+            frames.push(frame);
+            let reference_volume = bytemuck::cast_slice(&reference_volume);
+            let plane = self.plane;
+            let pass = GradientPass {
+                bonds,
+                control_weights,
+                sites,
+                originals,
+                gradient,
+                reference_volume,
+                frame: &frame,
+                plane,
+            };
+            let own = GradientRows {
+                stresses: &mut stresses[rows.clone()],
+                control: if control.is_empty() { &mut [] } else { &mut control[rows.clone()] },
+                self_force: &mut self_force[rows.clone()],
+            };
+            let part = SolidPart { dt, is_short, refits: None };
+            self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
+                pass.block(law, rows, own, block)
+            });
+        }
+        packed.fill_ghost_stresses();
+        Ok(())
+    }
+
+    /// Whether the reference of body `k` is to be updated after the pass of this step.
+    fn is_due(&self, k: usize, step: &Step<'_>, packed: &UpdatedRows) -> bool {
+        let (update, h) = self.updates[k];
+        let number = step.turn.number();
+        match update {
+            Update::Never => false,
+            Update::Every(steps) => number > 0 && number.is_multiple_of(steps),
+            Update::Adaptive { change } => {
+                let rows = step.world.body(self.solids.id(k)).rows.clone();
+                number.is_multiple_of(INTERVAL) && largest_change(rows, packed) > change * h
+            }
+        }
+    }
+
+    /// Makes the present configuration the reference: of the bodies that are due, and of all where particles have been removed or have failed.
+    fn update(
+        &mut self,
+        step: &mut Step<'_>,
+        packed: &mut UpdatedRows,
+        is_due: &[bool],
+    ) -> Result<(), StepError> {
+        let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
+        let view = step.world.phase(self.phase);
+        {
+            let position = view.read::<Position>()?;
+            let deformation = view.read::<DeformationGradient>()?;
+            let mut reference = view.write::<UpdatedReference>()?;
+            let mut gradient = view.write::<UpdatedGradient>()?;
+            for (k, _) in is_due.iter().enumerate().filter(|(_, due)| **due) {
+                for row in step.world.body(self.solids.id(k)).rows.clone() {
+                    reference[row].0 = position[row].0;
+                    gradient[row].0 = deformation[row].0;
+                }
+            }
+        }
+        let estimates = self.estimates();
+        packed
+            .renew(step.world, self.phase, &estimates, &self.removed)
+            .map_err(|error| error.in_step(step.world))?;
+        // States of laws have advanced by this step already.
+        self.pass(step.world, packed, (0.0, false))?;
+        self.solids.book(step)?;
+        let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+        for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
+            step.ledger.add(account, body.id, held - sum.stored());
+        }
+        Ok(())
+    }
+}
+
+impl UpdatedSolids {
+    /// Takes up what has been removed or has failed since the last update; returns whether anything has.
+    fn take_up_lost(&mut self, world: &World) -> Result<bool, MissingColumn> {
+        let view = world.phase(self.phase);
+        let removed = view.read::<Removed>()?;
+        let count = removed.iter().filter(|row| **row != Removed::NO).count();
+        let damage = view.read::<Damage>().ok();
+        let failed = damage.map_or(0, |damage| damage.iter().filter(|damage| has_failed(damage)).count());
+        let has_lost = count != self.removed.len() || failed as u64 != self.failed;
+        if has_lost {
+            self.removed.clear();
+            self.removed
+                .extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
+            self.failed = failed as u64;
+        }
+        Ok(has_lost)
+    }
+}
+
+impl Run for UpdatedSolids {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let resources = step.resources;
+        let mut packed = resources.solid_rows_mut::<UpdatedRows>(self.phase);
+        if std::mem::take(&mut self.is_stale) {
+            let renewed = packed.renew(step.world, self.phase, &self.estimates(), &self.removed);
+            renewed.map_err(|error| error.in_step(step.world))?;
+        }
+        self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+        self.solids.book(step)?;
+        // From the first step on, so that it has its place among the energies.
+        step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+        let has_lost = self.take_up_lost(step.world)?;
+        let is_due: Vec<bool> =
+            (0..self.solids.len()).map(|k| has_lost || self.is_due(k, step, &packed)).collect();
+        if is_due.contains(&true) {
+            self.update(step, &mut packed, &is_due)?;
+        }
+        let UpdatedRows { stable_step, first_stable_step, .. } = &*packed;
+        let stable: Vec<f64> =
+            stable_step.iter().zip(first_stable_step).map(|(now, first)| now.min(*first)).collect();
+        self.solids.limit(step, &stable)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed, self.failed)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        type Saved = (Vec<f64>, Vec<u32>, u64);
+        let Ok((factors, removed, failed)) = postcard::from_bytes::<Saved>(state) else {
+            return false;
+        };
+        (self.removed, self.failed) = (removed, failed);
+        self.is_stale = true;
+        self.solids.restore_stretch_factors(&factors)
+    }
+}
+
+fn has_failed(damage: &Damage) -> bool {
+    damage.0 >= 1.0
+}
+
+/// Fills the sites from the columns.
+fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), MissingColumn> {
+    let view = world.phase(phase);
+    let position = view.read::<Position>()?;
+    let original = view.read::<ReferencePosition>()?;
+    let reference = view.read::<UpdatedReference>()?;
+    let damage = view.read::<Damage>().ok();
+    for row in 0..view.len() {
+        let (x, r, volume) = (position[row].0, reference[row].0, packed.volume[row]);
+        packed.sites[row] = Site::new(r - packed.origin, x - r, volume);
+        if packed.has_control {
+            let holds = damage.as_ref().is_none_or(|damage| !has_failed(&damage[row]));
+            let start = original[row].0;
+            packed.originals[row] = Site::new(start, x - start, if holds { volume } else { 0.0 });
+        }
+    }
+    packed.fill_ghost_sites();
+    Ok(())
+}
+
+/// The largest change of the length of a pair since the last update, m.
+fn largest_change(rows: std::ops::Range<usize>, packed: &UpdatedRows) -> f64 {
+    let UpdatedRows { sites, bonds, .. } = packed;
+    let first_row = rows.start;
+    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+        let changes = own.iter().enumerate().flat_map(|(k, site)| {
+            bonds.row(first_row + first + k).map(move |(j, _)| {
+                let reference = sites[j].reference.xyz() - site.reference.xyz();
+                let present = reference + (sites[j].displacement.xyz() - site.displacement.xyz());
+                (present.length() - reference.length()).abs()
+            })
+        });
+        Largest::of(changes)
+    });
+    largest.0
+}
