@@ -8,7 +8,8 @@ use meshless_engine::record::{
     BodyFrame, BodyInfo, Existing, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 };
 use meshless_engine::scene::Dimension;
-use rerun::{ChunkStore, ChunkStoreConfig, EntityPath, StoreKind};
+use re_chunk_store::{ChunkStore, ChunkStoreConfig};
+use rerun::{EntityPath, StoreKind};
 use rerun_recorder::{RerunFile, RerunRecorder};
 use tempfile::TempDir;
 

@@ -3,16 +3,16 @@
 //! The layout builder of the rerun crate cannot set cameras, backgrounds and bounds of views, and does not tell the
 //! names of its views to those who would set them; the archetypes beneath it can be logged by anyone.
 
-use rerun::external::re_sdk_types::blueprint::archetypes::{
+use re_sdk_types::blueprint::archetypes::{
     ContainerBlueprint, PanelBlueprint, TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,
 };
-use rerun::external::re_sdk_types::blueprint::components::{
+use re_sdk_types::blueprint::components::{
     AutoLayout, AutoViews, ColumnShare, ContainerKind, IncludedContent, LoopMode, PanelState, PlayState,
     PlaybackSpeed, QueryExpression, RootContainer, RowShare, TimelineName, ViewClass,
 };
-use rerun::external::re_sdk_types::components::Name;
-use rerun::external::re_sdk_types::datatypes::{Bool, Float32, Float64};
-use rerun::external::uuid::Uuid;
+use re_sdk_types::components::Name;
+use re_sdk_types::datatypes::{Bool, Float32, Float64};
+use re_sdk_types::external::uuid::Uuid;
 use rerun::log::LogMsg;
 use rerun::sink::MemorySinkStorage;
 use rerun::{AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};

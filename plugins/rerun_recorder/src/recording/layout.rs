@@ -1,15 +1,15 @@
 //! What the viewer shows when a recording is opened: particles with their colour bar on the left, plots on the right.
 
 use meshless_engine::scene::Dimension;
-use rerun::RecordingStreamResult;
-use rerun::external::re_sdk_types::blueprint::archetypes::{
+use re_sdk_types::blueprint::archetypes::{
     Background, EyeControls3D, LineGrid3D, PlotLegend, TextDocumentFormat, VisualBounds2D,
 };
-use rerun::external::re_sdk_types::blueprint::components::{
+use re_sdk_types::blueprint::components::{
     BackgroundKind, ContainerKind, Corner2D, Enabled, VisualBounds2D as Visible2D,
 };
-use rerun::external::re_sdk_types::components::{Color, Position3D, Vector3D};
-use rerun::external::re_sdk_types::datatypes::{Bool, Range2D};
+use re_sdk_types::components::{Color, Position3D, Vector3D};
+use re_sdk_types::datatypes::{Bool, Range2D};
+use rerun::RecordingStreamResult;
 use rerun::log::LogMsg;
 
 use super::blueprint::{Blueprint, Tile, View, only, with_children, without};

@@ -1,6 +1,8 @@
 //! The colour bar: a strip of the colours with five values under it.
 
-use rerun::{Color, EntityPath, Image, Points2D};
+use re_sdk_types::archetypes::{Image, Points2D};
+use re_sdk_types::components::Color;
+use rerun::EntityPath;
 
 use super::color_scale::ColorScale;
 use super::error::RerunError;

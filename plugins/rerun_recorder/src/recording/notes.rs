@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use meshless_engine::record::RunInfo;
-use rerun::TextDocument;
+use re_sdk_types::archetypes::TextDocument;
 
 /// Title, bodies and sources of a run.
 pub struct Notes {

@@ -5,11 +5,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use meshless_engine::record::{Existing, WriteError};
+use re_sdk_types::archetypes::Scalars;
 use rerun::external::{re_log_types, re_uri};
+use rerun::log::TimeColumn;
 use rerun::sink::{FileSink, GrpcSink, GrpcSinkConnectionState};
 use rerun::{
-    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, Scalars,
-    TimeCell, TimeColumn,
+    AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, TimeCell,
 };
 
 use super::error::RerunError;

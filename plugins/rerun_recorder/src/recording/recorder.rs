@@ -2,10 +2,9 @@
 
 use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder, RunInfo, Sample};
 use meshless_engine::scene::Dimension;
-use rerun::external::re_sdk_types::components::MediaType;
-use rerun::{
-    Color, EntityPath, Points3D, Radius, Scalars, TextDocument, Transform3D, archetypes::ViewCoordinates,
-};
+use re_sdk_types::archetypes::{Points3D, Scalars, TextDocument, Transform3D, ViewCoordinates};
+use re_sdk_types::components::{Color, MediaType, Radius};
+use rerun::EntityPath;
 
 use super::camera::Bounds;
 use super::color_scale::{ColorScale, RunningScale};

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rerun::components::{Color, Name, StrokeWidth};
-use rerun::{EntityPath, SeriesLines};
+use re_sdk_types::archetypes::SeriesLines;
+use re_sdk_types::components::{Color, Name, StrokeWidth};
+use rerun::EntityPath;
 
 use meshless_engine::record::Sample;
 use meshless_engine::scene::Dimension;
