@@ -3,9 +3,10 @@
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;
 
+use meshless_engine::assembly::build;
 use meshless_engine::glam::DVec3;
 use meshless_engine::kernels::{Kernel, KernelName};
-use meshless_engine::plugin::{Registry, build};
+use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::Position;
