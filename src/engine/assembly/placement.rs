@@ -30,7 +30,7 @@ fn problem(body: &BodyPlan, axis: Axis, domain: &Domain) -> Option<Problem> {
             number(period)
         );
         let help = "make the domain as long as the body, or the body as long as the domain";
-        return (extent > period + 0.5 * body.spacing).then(|| Problem::at_path(at, message).help(help));
+        return (extent > period + 0.9 * body.spacing).then(|| Problem::at_path(at, message).help(help));
     }
     let outside = places.filter(|x| !(min..=max).contains(x)).count();
     let of = count(body.sites.len() as u64, "particle");

@@ -17,8 +17,12 @@ const NEAR: f64 = 1.5;
 pub(super) struct NearSkins {
     /// How far the bodies may still move until there are others, m.
     left: f64,
+    /// Whether there is room for all that facets near each other need.
+    has_room: bool,
     places: Vec<(u32, DVec3)>,
     centers: [Vec<DVec3>; 2],
+    /// Facets that have others near them.
+    near: Vec<u32>,
     search: NeighborSearch,
     lists: [NeighborList; 2],
     /// Facets of each side that may touch, and those around them, ascending.
@@ -61,6 +65,9 @@ impl NearSkins {
             self.candidates[side].clear();
             self.facets[side].clear();
         }
+        if !std::mem::replace(&mut self.has_room, true) {
+            self.make_room(skins, points, reach)?;
+        }
         if is_far {
             return Ok(());
         }
@@ -78,14 +85,30 @@ impl NearSkins {
             let (skin, list) = (skins[side], &self.lists[side]);
             let near =
                 (0..skin.facets.corners.len() as u32).filter(|facet| !list.row(*facet as usize).is_empty());
-            let near: Vec<u32> = near.collect();
+            self.near.clear();
+            self.near.extend(near);
             let count = points as u32;
-            let points = near.iter().flat_map(|facet| (0..count).map(move |k| (facet * count + k, 0)));
+            let points = self.near.iter().flat_map(|facet| (0..count).map(move |k| (facet * count + k, 0)));
             self.candidates[side].extend(points);
-            let vertices = near.iter().flat_map(|&facet| skin.corners_of(facet));
+            let vertices = self.near.iter().flat_map(|&facet| skin.corners_of(facet));
             self.facets[side].extend(vertices.flat_map(|&vertex| skin.facets_at(vertex)));
             self.facets[side].sort_unstable();
             self.facets[side].dedup();
+        }
+        Ok(())
+    }
+
+    /// Asks for memory before the bodies meet: each facet may have as many of the other skin near it as it has of its own.
+    fn make_room(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
+        for side in 0..2 {
+            let facets = skins[side].facets.corners.len();
+            let vertices = 0..skins[side].vertices() as u32;
+            let around: usize = vertices.map(|vertex| skins[side].facets_at(vertex).len().pow(2)).sum();
+            self.near.reserve(facets);
+            self.candidates[side].reserve(facets * points);
+            self.facets[side].reserve(around);
+            let own = Cloud::uniform(&self.centers[side], reach);
+            self.search.between(own, own, 0.0, &Periodic::NONE, &mut self.lists[side])?;
         }
         Ok(())
     }

@@ -11,7 +11,6 @@ pub mod probe;
 pub mod recorder;
 pub mod series;
 mod stop;
-pub mod trigger;
 pub mod vtk;
 pub mod watchdog;
 

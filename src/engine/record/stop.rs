@@ -6,11 +6,11 @@
 use std::sync::Arc;
 
 use super::probe::{EnergyColumns, Gauge, Probe};
-use super::trigger::Trigger;
 use crate::fields::FieldTable;
 use crate::notation::{number, quantity};
 use crate::plugin::SimBuilder;
 use crate::scene::{Problem, StopWhen};
+use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 
 /// Label of the system.

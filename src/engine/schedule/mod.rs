@@ -8,6 +8,7 @@ mod resources;
 mod stage;
 mod step;
 mod system;
+mod trigger;
 mod turn;
 
 pub use each::{Adds, EachRow};
@@ -18,4 +19,5 @@ pub use resources::Resources;
 pub use stage::Stage;
 pub use step::{Clock, Step, StepError};
 pub use system::{Access, Mode, Run, System};
+pub use trigger::Trigger;
 pub use turn::{Pace, Turn};

@@ -5,7 +5,7 @@ use super::filling::Filling;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
 use crate::plugin::SimBuilder;
-use crate::record::trigger::Trigger;
+use crate::schedule::Trigger;
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{ParticleId, PhaseId, Position, ReferencePosition};
 

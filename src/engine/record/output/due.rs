@@ -8,9 +8,9 @@ use super::folder::{CHECKPOINT, OutputFolder, SUMMARY};
 use super::frames::{Frames, FramesState};
 use super::table::Extreme;
 use super::track::{OwnedSample, Track, TrackState, failed};
-use crate::record::trigger::Trigger;
 use crate::record::{BodyInfo, NamedUnit, RecordError, Recorder, RunInfo, Sample, WriteError};
 use crate::scene::Problem;
+use crate::schedule::Trigger;
 use crate::schedule::{Clock, Ledger, Step, StepError};
 use crate::world::World;
 

@@ -7,11 +7,11 @@ use super::present::Present;
 use super::track::failed;
 use crate::fields::ChosenField;
 use crate::neighbors::Periodic;
-use crate::record::trigger::Trigger;
 use crate::record::{
     BodyFrame, FieldValues, Frame, NamedUnit, PointArray, PointValues, PvdFrame, PvdWriter, RecordError,
     Recorder,
 };
+use crate::schedule::Trigger;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Position};
 

@@ -6,7 +6,7 @@ use super::folder::OutputFolder;
 use super::table::{Table, TableState};
 use crate::record::RecordError;
 use crate::record::probe::{EnergyColumns, Gauge, Probe};
-use crate::record::trigger::Trigger;
+use crate::schedule::Trigger;
 use crate::schedule::{Ledger, Step, StepError};
 
 /// A number for recorders: path of the series, unit, value.

@@ -5,7 +5,7 @@ use super::energy_growth::EnergyGrowth;
 use super::hourglass::HourglassShare;
 use super::wrong_sign::{WrongSign, work_of_weight};
 use crate::plugin::SimBuilder;
-use crate::record::trigger::Trigger;
+use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Position};
 

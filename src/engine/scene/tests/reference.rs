@@ -68,7 +68,7 @@ fn parameters_of_a_plugin() {
             "from: number = None; Start [s].",
             "value: (x, y) or (x, y, z), each a number or text = (None, None, None); Motion [m/s].",
             "axis: (x, y) or (x, y, z) = (0.0, 0.0, 0.0); Direction [-].",
-            "on: Select = (body: None, within: None, face: None, nearest: None); Where.",
+            "on: Select = (body: None, within: None, face: None, nearest: None, surface: None); Where.",
         ]
     );
 }

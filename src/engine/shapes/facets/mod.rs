@@ -1,6 +1,7 @@
 //! Surfaces in flat facets: segments in two dimensions, triangles in three, with outward normals, about as long as asked for.
 
 mod cut;
+mod facet;
 mod grids;
 mod outline;
 mod refine;
@@ -8,77 +9,4 @@ mod round;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
-
-use glam::DVec3;
-
-use super::shape::Shape;
-use crate::space::Dimension;
-
-/// A closed surface in flat facets.
-#[derive(Clone, Debug, Default)]
-pub struct Facets {
-    /// 2 or 3.
-    pub axes: usize,
-    /// Vertices, on the surface \[m\].
-    pub points: Vec<DVec3>,
-    /// Vertices of every facet, of which segments use the first two; the outward normal is to the right of a segment, and that of triangles that
-    /// go round counter-clockwise.
-    pub corners: Vec<[u32; 3]>,
-}
-
-impl Facets {
-    /// The ends of a facet at these places.
-    fn ends(&self, facet: usize) -> [DVec3; 3] {
-        self.corners[facet].map(|k| self.points[k as usize])
-    }
-
-    /// Middle of a facet \[m\].
-    pub fn center(&self, facet: usize) -> DVec3 {
-        let [a, b, c] = self.ends(facet);
-        if self.axes == 2 { 0.5 * (a + b) } else { (a + b + c) / 3.0 }
-    }
-
-    /// Unit normal, and length (area in three dimensions) \[m; m2\].
-    pub fn normal_and_measure(&self, facet: usize) -> (DVec3, f64) {
-        let directed = directed_area(self.axes, &self.ends(facet));
-        let measure = directed.length();
-        (directed.normalize_or_zero(), measure)
-    }
-
-    /// Puts another surface beside this one; turned inside out if it bounds a hole.
-    fn join(&mut self, other: &Self, is_hole: bool) {
-        let first = self.points.len() as u32;
-        self.points.extend_from_slice(&other.points);
-        self.corners.extend(other.corners.iter().map(|&[a, b, c]| {
-            let [a, b, c] = [a + first, b + first, c + first];
-            match (is_hole, other.axes) {
-                (false, _) => [a, b, c],
-                (true, 2) => [b, a, a],
-                (true, _) => [a, c, b],
-            }
-        }));
-    }
-
-    fn moved(mut self, to: impl Fn(DVec3) -> DVec3) -> Self {
-        self.points.iter_mut().for_each(|point| *point = to(*point));
-        self
-    }
-}
-
-/// Outward normal times length (area) of a facet with these ends \[m; m2\].
-pub fn directed_area(axes: usize, [a, b, c]: &[DVec3; 3]) -> DVec3 {
-    let ab = b - a;
-    if axes == 2 { DVec3::new(ab.y, -ab.x, 0.0) } else { 0.5 * ab.cross(c - a) }
-}
-
-impl Shape {
-    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of particle files, and of combinations in three
-    /// dimensions whose parts cut each other.
-    pub fn facets(&self, dimension: Dimension, folder: &Path, length: f64) -> Option<Facets> {
-        match dimension {
-            Dimension::Two => outline::of_shape(self, folder, length),
-            Dimension::Three => grids::of_shape(self, folder, length),
-        }
-    }
-}
+pub use facet::{Facets, directed_area};
