@@ -247,7 +247,7 @@ fn imports_of_the_engine_go_down_the_list_of_modules() {
         let first = inside.iter().next().expect("a name").to_string_lossy().into_owned();
         let Some(own) = rank(first.trim_end_matches(".rs")) else { continue };
         let Some(text) = without_tests(path) else { continue };
-        for other in words_after(&text, "crate::").into_iter().filter_map(|word| rank(word)) {
+        for other in words_after(&text, "crate::").into_iter().filter_map(rank) {
             imports += 1;
             let (own_name, name) = (LAYERS[own], LAYERS[other]);
             assert!(own <= other, "{}: `{own_name}` is below `{name}` and imports it", shown(path));

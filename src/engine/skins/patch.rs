@@ -247,7 +247,7 @@ impl Patch {
 
     /// The couples on the particles of the patch.
     #[cfg(test)]
-    pub fn couples(&self) -> &[DMat3] {
+    pub fn couples_on_particles(&self) -> &[DMat3] {
         &self.couples_on_particles
     }
 

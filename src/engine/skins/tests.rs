@@ -114,7 +114,7 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
         let sum: DVec3 = on_particles.iter().map(|force| force.0).sum();
         let mut turn: DVec3 = rows.clone().map(|row| x[row].0.cross(on_particles[row].0)).sum();
         // At F = I the moment of a couple f (x) A is A x f.
-        for couple in patch.couples() {
+        for couple in patch.couples_on_particles() {
             turn +=
                 DVec3::X.cross(couple.x_axis) + DVec3::Y.cross(couple.y_axis) + DVec3::Z.cross(couple.z_axis);
         }
