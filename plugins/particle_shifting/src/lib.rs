@@ -1,7 +1,7 @@
 //! Particle shifting: moves fluid particles a little from where they are crowded to where there is room.
 //!
-//! Three passes over neighbours: [`local`] measures how the particles of a neighbourhood lie and move, [`displacement`] makes the displacement of each particle,
-//! and [`response`] computes how velocity and density respond. The README has the equations and the variants that were tried.
+//! Three passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, `displacement` makes the displacement of each particle,
+//! and `response` computes how velocity and density respond. The README has the equations and the variants that were tried.
 
 mod displacement;
 mod local;
