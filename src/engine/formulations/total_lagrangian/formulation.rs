@@ -7,8 +7,8 @@ use serde::Deserialize;
 use super::bonds::{BodyBonds, Bonds};
 use super::cracks::Cracks;
 use super::internal_force;
-use super::pairs::BondPairs;
-use super::phase::{BodyKernel, PackedRows};
+use super::pairs::{BodyKernel, BondPairs};
+use super::phase::PackedRows;
 use super::rows::Site;
 use super::support::choose_support;
 use super::system::Deformation;
@@ -112,7 +112,7 @@ impl Formulation for TotalLagrangian {
             .touches("corrected_stress", Mode::Reads)
             .writes::<Force>(),
         );
-        add_pair_systems(sim, phase, BondPairs { phase })?;
+        add_pair_systems(sim, phase, BondPairs::<PackedRows>::of(phase))?;
         Ok(())
     }
 }

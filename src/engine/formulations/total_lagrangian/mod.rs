@@ -30,7 +30,6 @@ pub use formulation::TotalLagrangian;
 pub(super) use frame::Frame;
 pub(super) use gather::{CorrectStress, Gather};
 pub(super) use internal_force::InternalForce;
-pub(super) use pairs::BodyPairs;
-pub(super) use phase::BodyKernel;
+pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
 pub use rows::Site;
 pub(super) use spread::fit;

@@ -1,26 +1,53 @@
 //! The bonds of a total-Lagrangian body as pairs for pair terms.
 
+use std::marker::PhantomData;
 use std::ops::Range;
 
 use glam::DVec3;
 
 use super::bonds::Bonds;
-use super::phase::{BodyKernel, PackedRows};
 use super::rows::Site;
 use crate::kernels::Kernel;
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
+use crate::solids::SolidPhase;
 use crate::symmetry::Ghosts;
 use crate::world::{BodyId, PhaseId, SupportRadius, Velocity};
 
-/// Gives pair terms the bonds of the phase.
-pub(in crate::formulations) struct BondPairs {
-    pub phase: PhaseId,
+/// The kernel of a body.
+pub(in crate::formulations) struct BodyKernel {
+    pub body: BodyId,
+    pub kernel: Kernel,
+    /// Support radius, m, where all particles have the same.
+    pub support: Option<f64>,
 }
 
-impl PairSource for BondPairs {
+/// Packed rows whose neighbours are bonds.
+pub(in crate::formulations) trait BondedRows: SolidPhase {
+    /// Neighbours and weights.
+    fn bonds(&self) -> &Bonds;
+    /// Place in the configuration of the weights, volume and displacement of every row.
+    fn sites(&self) -> &[Site];
+    /// Kernel of every body.
+    fn kernels(&self) -> &[BodyKernel];
+}
+
+/// Gives pair terms the bonds of a phase whose packed rows are of that type.
+pub(in crate::formulations) struct BondPairs<R> {
+    phase: PhaseId,
+    rows: PhantomData<fn() -> R>,
+}
+
+impl<R> BondPairs<R> {
+    /// The bonds of a phase.
+    pub fn of(phase: PhaseId) -> Self {
+        Self { phase, rows: PhantomData }
+    }
+}
+
+impl<R: BondedRows> PairSource for BondPairs<R> {
     fn with_rows(
         &self,
         step: &Step<'_>,
@@ -28,19 +55,19 @@ impl PairSource for BondPairs {
         reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
-        let packed = step.resources.solid_rows::<PackedRows>(self.phase);
+        let packed = step.resources.solid_rows::<R>(self.phase);
         let view = step.world.phase(self.phase);
         let support = view.read::<SupportRadius>()?;
         let velocity = if reads.velocity { Some(view.read::<Velocity>()?) } else { None };
-        let PackedRows { bonds, ghosts, sites, kernels, .. } = &*packed;
-        let Some(BodyKernel { kernel, support: uniform, .. }) = kernels.iter().find(|of| of.body == body)
+        let Some(BodyKernel { kernel, support: uniform, .. }) =
+            packed.kernels().iter().find(|of| of.body == body)
         else {
             return Ok(());
         };
         run(&BodyPairs {
-            bonds,
-            ghosts,
-            sites,
+            bonds: packed.bonds(),
+            ghosts: packed.ghosts(),
+            sites: packed.sites(),
             support: &support,
             uniform: *uniform,
             velocity: velocity.as_deref(),
@@ -51,18 +78,18 @@ impl PairSource for BondPairs {
 }
 
 /// The pairs of one body.
-pub(in crate::formulations) struct BodyPairs<'a> {
-    pub bonds: &'a Bonds,
-    pub ghosts: &'a Ghosts,
-    pub sites: &'a [Site],
-    pub support: &'a [SupportRadius],
+struct BodyPairs<'a> {
+    bonds: &'a Bonds,
+    ghosts: &'a Ghosts,
+    sites: &'a [Site],
+    support: &'a [SupportRadius],
     /// Support radius of all particles, m, where it is the same.
-    pub uniform: Option<f64>,
+    uniform: Option<f64>,
     /// Velocities, where they are read.
-    pub velocity: Option<&'a [Velocity]>,
+    velocity: Option<&'a [Velocity]>,
     /// Kernel, where its values are read.
-    pub kernel: Option<&'a Kernel>,
-    pub plane: bool,
+    kernel: Option<&'a Kernel>,
+    plane: bool,
 }
 
 impl PairRows for BodyPairs<'_> {

@@ -5,12 +5,12 @@ use glam::{DMat3, DVec3};
 use super::bonds::Bonds;
 use super::cracks::Cracks;
 use super::frame::{Frame, frame_of};
+use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
-use crate::kernels::Kernel;
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Picked, for_each_block, run_hot};
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
-use crate::world::{BodyId, Mobility, Velocity};
+use crate::world::{Mobility, Velocity};
 
 /// What the systems of the formulation share.
 pub(in crate::formulations) struct PackedRows {
@@ -28,14 +28,6 @@ pub(in crate::formulations) struct PackedRows {
     pub kernels: Vec<BodyKernel>,
     /// Stable step of each body in its reference configuration, s.
     pub stable_step: Vec<f64>,
-}
-
-/// The kernel of a body.
-pub(in crate::formulations) struct BodyKernel {
-    pub body: BodyId,
-    pub kernel: Kernel,
-    /// Support radius, m, where all particles have the same.
-    pub support: Option<f64>,
 }
 
 impl PackedRows {
@@ -66,6 +58,20 @@ impl PackedRows {
             frame.complete(&mut stress, &sites[ghost.row]);
             stress
         });
+    }
+}
+
+impl BondedRows for PackedRows {
+    fn bonds(&self) -> &Bonds {
+        &self.bonds
+    }
+
+    fn sites(&self) -> &[Site] {
+        &self.sites
+    }
+
+    fn kernels(&self) -> &[BodyKernel] {
+        &self.kernels
     }
 }
 

@@ -17,7 +17,6 @@ mod columns;
 mod control;
 mod force;
 mod gradient;
-mod pairs;
 mod parameters;
 mod phase;
 mod reference;

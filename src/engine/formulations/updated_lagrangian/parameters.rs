@@ -5,9 +5,10 @@ use serde::Deserialize;
 
 use super::columns::{UpdatedGradient, UpdatedReference};
 use super::force::InternalForce;
-use super::pairs::UpdatedPairs;
+use super::phase::UpdatedRows;
 use super::reference::set_up;
 use super::system::UpdatedSolids;
+use crate::formulations::total_lagrangian::BondPairs;
 use crate::kernels::KernelName;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
@@ -117,7 +118,7 @@ impl Formulation for UpdatedLagrangian {
         let force = InternalForce { phase, plane, gravity: sim.gravity() };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
         sim.add_system(force.touches("corrected_stress", Mode::Reads).writes::<Force>());
-        add_pair_systems(sim, phase, UpdatedPairs { phase })
+        add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::total_lagrangian::{BodyKernel, Bonds, Cracks, Frame, Site};
+use crate::formulations::total_lagrangian::{BodyKernel, BondedRows, Bonds, Cracks, Frame, Site};
 use crate::neighbors::NeighborSearch;
 use crate::parallel::Lanes4;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -86,6 +86,20 @@ fn mirrored(own: &CorrectedStress, signs: DVec3) -> CorrectedStress {
         *column = Lanes4::new(own.columns[axis].xyz() * signs * signs[axis], own.columns[axis].0[3]);
     }
     stress
+}
+
+impl BondedRows for UpdatedRows {
+    fn bonds(&self) -> &Bonds {
+        &self.bonds
+    }
+
+    fn sites(&self) -> &[Site] {
+        &self.sites
+    }
+
+    fn kernels(&self) -> &[BodyKernel] {
+        &self.kernels
+    }
 }
 
 impl SolidPhase for UpdatedRows {

@@ -26,6 +26,10 @@ pub(super) struct UpdatedSolids {
     solids: SolidBodies,
     /// Of every body: when its reference is updated, and the smoothing length, m.
     updates: Vec<(Update, f64)>,
+    /// Of every body: whether its reference is updated in this step.
+    due: Vec<bool>,
+    /// Stable step of every body, s.
+    stable: Vec<f64>,
     /// Removed rows that the reference knows of, ascending.
     removed: Vec<u32>,
     /// Number of failed particles that it knows of.
@@ -44,7 +48,17 @@ impl UpdatedSolids {
     ) -> Self {
         let update = |(id, own): &(BodyId, UpdatedLagrangian)| (own.update, 0.5 * own.support * spacing(*id));
         let updates = bodies.iter().map(update).collect();
-        Self { phase, plane, solids, updates, removed: Vec::new(), failed: 0, is_stale: false }
+        Self {
+            phase,
+            plane,
+            solids,
+            updates,
+            due: Vec::new(),
+            stable: Vec::new(),
+            removed: Vec::new(),
+            failed: 0,
+            is_stale: false,
+        }
     }
 
     /// What the stable step of each body depends on.
@@ -194,15 +208,17 @@ impl Run for UpdatedSolids {
         // From the first step on, so that it has its place among the energies.
         step.ledger.account(ACCOUNT, AccountKind::Dissipated);
         let has_lost = self.take_up_lost(step.world)?;
-        let is_due: Vec<bool> =
-            (0..self.solids.len()).map(|k| has_lost || self.is_due(k, step, &packed)).collect();
-        if is_due.contains(&true) {
-            self.update(step, &mut packed, &is_due)?;
+        let mut due = std::mem::take(&mut self.due);
+        due.clear();
+        due.extend((0..self.solids.len()).map(|k| has_lost || self.is_due(k, step, &packed)));
+        if due.contains(&true) {
+            self.update(step, &mut packed, &due)?;
         }
+        self.due = due;
         let UpdatedRows { stable_step, first_stable_step, .. } = &*packed;
-        let stable: Vec<f64> =
-            stable_step.iter().zip(first_stable_step).map(|(now, first)| now.min(*first)).collect();
-        self.solids.limit(step, &stable)
+        self.stable.clear();
+        self.stable.extend(stable_step.iter().zip(first_stable_step).map(|(now, first)| now.min(*first)));
+        self.solids.limit(step, &self.stable)
     }
 
     fn save(&self) -> Vec<u8> {
