@@ -44,6 +44,44 @@ fn one_two_and_seven_threads_give_the_same_bits() {
     }
 }
 
+/// The scene with every spacing divided by `factor`.
+fn refined(source: &Source, factor: f64) -> Source {
+    let mut parts = source.text.split("spacing: ");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end =
+            part.find(|c: char| !matches!(c, '0'..='9' | '.' | 'e' | '-')).expect("something after a number");
+        let spacing: f64 = part[..end].parse().expect("a number");
+        text += &format!("spacing: {:?}{}", spacing / factor, &part[end..]);
+    }
+    Source::new("refined.ron", text)
+}
+
+/// Loops over rows are handed out in tasks of 1 024: bodies of several tasks, so that every loop is really divided.
+#[test]
+fn bodies_of_many_tasks_give_the_same_bits_on_one_two_and_seven_threads() {
+    let scenes = [
+        all_plugins(2),
+        removal(),
+        flow(2),
+        flow(3),
+        coupled(),
+        thin(),
+        metals(),
+        failing(),
+        touching(),
+        tool_of_triangles(),
+    ];
+    for (n, coarse) in scenes.iter().enumerate() {
+        let finer = (2..).map(|factor| refined(coarse, factor.into()));
+        let large = |source: &Source| simulation(source).world().len() > 4096;
+        let source = finer.into_iter().find(large).expect("a body of many tasks");
+        let one = hash_after(&source, 1, 12);
+        assert_eq!(one, hash_after(&source, 2, 12), "scene {n}, two threads");
+        assert_eq!(one, hash_after(&source, 7, 12), "scene {n}, seven threads");
+    }
+}
+
 #[test]
 fn what_is_to_touch_and_to_flow_does() {
     for source in [touching(), tool_of_triangles()] {
