@@ -1,8 +1,7 @@
 //! The displacements.
 
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
+use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::Arithmetic;
 
 use crate::local::Local;
 
@@ -22,46 +21,42 @@ pub struct Shift {
     pub inside: bool,
 }
 
-/// The shifts of the particles of one body.
-pub struct Displacements<'a> {
-    cloud: &'a FlowCloud,
-    locals: &'a [Local],
+/// Marks the particles that have one at a free surface or beside a hole among their neighbours. These are few, so that it costs less to go out from them than to look
+/// at the neighbours of all particles.
+pub fn mark_surfaces(cloud: &FlowCloud, locals: &[Local], near_surface: &mut [bool]) {
+    near_surface.fill(false);
+    let outermost = |i: &usize| locals[*i].lambda < OUTERMOST && cloud.volume(*i) > 0.0;
+    for i in (0..locals.len()).filter(outermost) {
+        cloud.for_each_neighbor(i, |near| {
+            if let Some(mark) = near_surface.get_mut(near.row) {
+                *mark = true;
+            }
+        });
+    }
+}
+
+/// What the shifts of a body depend on beside its neighbourhoods.
+pub struct Displacements {
     /// Displacement over strain rate and first moment, `-4 s h^2 dt`, m2 s.
     factor: f64,
     /// Largest displacement, m.
     largest: f64,
 }
 
-impl<'a> Displacements<'a> {
-    /// The pass for a strength, a speed of sound, m/s, and a length of the step, s.
-    pub fn new(
-        cloud: &'a FlowCloud,
-        locals: &'a [Local],
-        (strength, sound_speed, dt): (f64, f64, f64),
-    ) -> Self {
+impl Displacements {
+    /// Those of a strength, a speed of sound, m/s, and a length of the step, s.
+    pub fn new(cloud: &FlowCloud, (strength, sound_speed, dt): (f64, f64, f64)) -> Self {
         let h = cloud.kernel.smoothing_length();
-        let largest = FASTEST * sound_speed * dt;
-        Self { cloud, locals, factor: -4.0 * strength * h * h * dt, largest }
+        Self { factor: -4.0 * strength * h * h * dt, largest: FASTEST * sound_speed * dt }
     }
-}
 
-impl RowPass for Displacements<'_> {
-    type Output = Shift;
-
-    #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Shift {
-        let Self { cloud, locals, .. } = *self;
-        let Local { lambda, first_moment, toward_walls, strain_rate, .. } = locals[i];
-        if lambda < INSIDE {
+    /// The shift of a particle.
+    pub fn of(&self, local: &Local, near_surface: bool) -> Shift {
+        let Local { lambda, first_moment, toward_walls, strain_rate, .. } = *local;
+        if lambda < INSIDE || near_surface {
             return Shift::default();
         }
-        for near in cloud.fours(a, i, &(0..cloud.fluid)) {
-            let weight = near.weight.lanes().0;
-            if (0..4).any(|k| weight[k] > 0.0 && locals[near.rows[k]].lambda < OUTERMOST) {
-                return Shift::default();
-            }
-        }
-        // The pressure of a wall works along its normal, and a shift along it would be work that nobody does.
+        // The pressure of a wall works along its normal, and a shift along it would be work that nobody does. Where walls pull, it keeps them from tearing the flow off.
         let normal = toward_walls.normalize_or_zero();
         let shift = first_moment * (self.factor * strain_rate);
         let along = shift - normal * normal.dot(shift);

@@ -1,6 +1,6 @@
 //! Particle shifting: moves fluid particles a little from where they are crowded to where there is room.
 //!
-//! Three passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, `displacement` makes the displacement of each particle,
+//! Two passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, from which `displacement` makes the displacement of each particle,
 //! and `response` computes how velocity and density respond. The README has the equations and the variants that were tried.
 
 mod displacement;
@@ -18,7 +18,7 @@ use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity}
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use displacement::{Displacements, Shift};
+use displacement::{Displacements, Shift, mark_surfaces};
 use local::{Local, Locals};
 use response::{Response, Responses};
 
@@ -105,6 +105,7 @@ struct Shifting {
 #[derive(Default)]
 struct Fields {
     locals: Vec<Local>,
+    near_surface: Vec<bool>,
     shifts: Vec<Shift>,
     moves: Vec<DVec3>,
     pending: Vec<f64>,
@@ -114,6 +115,7 @@ struct Fields {
 impl Fields {
     fn resize(&mut self, fluid: usize) {
         self.locals.resize(fluid, Local::default());
+        self.near_surface.resize(fluid, false);
         self.shifts.resize(fluid, Shift::default());
         self.moves.resize(fluid, DVec3::ZERO);
         self.pending.resize(fluid, 0.0);
@@ -128,17 +130,18 @@ impl Run for Shifting {
         let cloud: &FlowCloud = &cloud;
         let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
         self.fields.resize(cloud.fluid);
-        let Fields { locals, shifts, moves, pending, responses } = &mut self.fields;
+        let Fields { locals, near_surface, shifts, moves, pending, responses } = &mut self.fields;
         let dt = step.clock.dt;
         let spacing = bodies.iter().map(|(id, _)| step.world.body(*id).spacing).fold(0.0, f64::max);
         cloud.for_each_row(0, locals, &Locals::new(cloud, spacing));
+        mark_surfaces(cloud, locals, near_surface);
         for &(id, strength) in bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
-            let pass = Displacements::new(cloud, locals, (strength, sound_speed, dt));
-            cloud.for_each_row(rows.start, &mut shifts[rows.clone()], &pass);
+            let displacements = Displacements::new(cloud, (strength, sound_speed, dt));
             let old = view.read::<PendingDilation>()?;
             for row in rows {
+                shifts[row] = displacements.of(&locals[row], near_surface[row]);
                 (moves[row], pending[row]) = (shifts[row].displacement, old[row].0);
             }
         }

@@ -17,7 +17,7 @@ pub struct Local {
     pub excess: f64,
     /// First moment `S = sum_j V_j (1 + 0.2 (W_ij / W(dp))^4) w_ij x_ij`, 1/m: it points to where particles are crowded.
     pub first_moment: DVec3,
-    /// The part of `sum_j V_j w_ij x_ij` that walls and bodies contribute, 1/m.
+    /// The part of `sum_j V_j w_ij x_ij` that walls and bodies contribute, 1/m; zero in confined flows.
     pub toward_walls: DVec3,
     /// Strain rate sqrt(2 D : D), 1/s.
     pub strain_rate: f64,
@@ -28,12 +28,13 @@ pub struct Locals<'a> {
     cloud: &'a FlowCloud,
     /// One over the kernel at the spacing.
     usual: f64,
+    confined: bool,
 }
 
 impl<'a> Locals<'a> {
     /// The pass over particles of that spacing, m.
     pub fn new(cloud: &'a FlowCloud, spacing: f64) -> Self {
-        Self { cloud, usual: 1.0 / cloud.kernel.value(spacing) }
+        Self { cloud, usual: 1.0 / cloud.kernel.value(spacing), confined: cloud.is_confined() }
     }
 }
 
@@ -57,7 +58,7 @@ impl RowPass for Locals<'_> {
             lambda: smallest_eigenvalue(sums.moment.sum().matrix(), A::AXES == 2),
             excess: own + sums.filled.sum() - 1.0,
             first_moment: sums.first_moment.sum(),
-            toward_walls: toward_walls.sum(),
+            toward_walls: if self.confined { DVec3::ZERO } else { toward_walls.sum() },
             strain_rate: strain_rate(sums.gradient.map(Vector::sum)),
         }
     }

@@ -34,7 +34,11 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         return checks::walls_have_fluid(&walls, sim);
     };
     let (support, spacing) = (first.support, sim.body(first.id).spacing);
+    let dimension = sim.dimension().count();
     one_support(&fluids, support, sim)?;
+    let Some(kernel) = FluidKernel::new(first.parameters.kernel, support, dimension) else {
+        unreachable!("the formulation has refused other kernels");
+    };
     let periodic = sim.periodic();
     checks::periods_are_long(&periodic, support)?;
     for wall in &walls {
@@ -78,10 +82,8 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
     let skins = Skins::new(support, spacing, &periodic);
-    let dimension = sim.dimension().count();
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
-    let kernel = FluidKernel::new(support, dimension);
     let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
     let spin = viscosities.spin;
     let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
@@ -164,14 +166,20 @@ fn one_support(fluids: &[FluidBody], support: f64, sim: &SimBuilder<'_>) -> Resu
     let first = sim.body(fluids[0].id);
     let differs = |a: f64, b: f64| (a - b).abs() > 1e-9 * b;
     let spacing = |fluid: &FluidBody| sim.body(fluid.id).spacing;
-    let other =
-        |other: &&FluidBody| differs(other.support, support) || differs(spacing(other), first.spacing);
+    let kernel = fluids[0].parameters.kernel;
+    let other = |other: &&FluidBody| {
+        differs(other.support, support)
+            || differs(spacing(other), first.spacing)
+            || other.parameters.kernel != kernel
+    };
     let Some(other) = fluids.iter().find(other) else { return Ok(()) };
     let body = sim.body(other.id);
     let message = format!(
-        "the fluid `{}` has a support radius of {} m and a spacing of {} m, and `{}` one of {support} m and {} m",
-        body.name, other.support, body.spacing, first.name, first.spacing
+        "the fluid `{}` has the kernel `{}` with a support radius of {} m and a spacing of {} m, and `{}` has `{kernel}` with {support} m and {} m",
+        body.name, other.parameters.kernel, other.support, body.spacing, first.name, first.spacing
     );
     let problem = Problem::at_path(format!("bodies[{}].spacing", other.id.0), message);
-    Err(SetupError::Problems(vec![problem.help("give all fluids of a scene one spacing and one `support`")]))
+    Err(SetupError::Problems(vec![
+        problem.help("give all fluids of a scene one spacing, one `kernel` and one `support`"),
+    ]))
 }

@@ -134,6 +134,11 @@ pub struct FlowCloud {
 }
 
 impl FlowCloud {
+    /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
+    pub fn is_confined(&self) -> bool {
+        self.groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.suction))
+    }
+
     /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
     /// `i` is its row in the phase of fluids.
     #[inline]

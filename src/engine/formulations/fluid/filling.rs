@@ -30,13 +30,16 @@ pub(super) struct Filling {
 
 impl Filling {
     /// Looks at all fluids.
-    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
+    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
         self.told.resize(cloud.groups.len(), 0.0);
         for (group, told) in cloud.groups.iter().zip(&mut self.told) {
             if group.fluid().is_none() {
                 break;
             }
-            let Some(mean) = mean_filling(cloud, group.cloud.start, group.cloud.len()) else { continue };
+            scratch.clear();
+            scratch.resize(group.cloud.len(), None);
+            cloud.for_each_row(group.cloud.start, scratch, &FillingPass(cloud));
+            let Some(mean) = mean_filling(scratch) else { continue };
             let off = (mean - 1.0).abs();
             if off <= SHARE.max(GROWTH * *told) {
                 continue;
@@ -63,11 +66,9 @@ impl Filling {
 }
 
 /// Mean of the filling over the particles inside; none where there are too few.
-fn mean_filling(cloud: &FlowCloud, first: usize, count: usize) -> Option<f64> {
-    let mut rows = vec![None; count];
-    cloud.for_each_row(first, &mut rows, &FillingPass(cloud));
+fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
     let inside = rows.iter().flatten().count();
-    (inside as f64 > PART * count as f64).then(|| rows.iter().flatten().sum::<f64>() / inside as f64)
+    (inside as f64 > PART * rows.len() as f64).then(|| rows.iter().flatten().sum::<f64>() / inside as f64)
 }
 
 /// The filling about a particle; none near a surface.

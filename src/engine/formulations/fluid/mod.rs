@@ -69,6 +69,7 @@ mod systems;
 mod tests;
 #[cfg(test)]
 mod thin_tests;
+mod unevenness;
 mod viscosities;
 mod wall;
 mod wall_pressure;

@@ -125,6 +125,33 @@ fn a_body_that_passes_through_a_wall_is_named() {
 }
 
 #[test]
+fn rows_of_a_viscous_flow_that_break_up_are_warned_of() {
+    let channel = |lattice: &str, viscosity: f64| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, domain: (min: (0, -1), max: (0.8, 2), periodic: [X]),
+                materials: {{"oil": Fluid(density: 1.0, sound_speed: 10.0, viscosity: {viscosity})}},
+                bodies: [
+                    (name: "oil", material: "oil", shape: Box(min: (0, 0), max: (0.8, 1)), spacing: 0.1, lattice: {lattice}, formulation: Fluid),
+                    (name: "walls", material: "wall", spacing: 0.1, formulation: Wall(slip: No, suction: true),
+                     shape: Difference(Box(min: (0, -0.3), max: (0.8, 1.3)), Box(min: (-1, 0), max: (2, 1)))),
+                ],
+                conditions: [
+                    BodyForce(on: Select(body: "oil"), value: ({}, 0.0)),
+                    InitialVelocity(on: Select(body: "oil"), value: ("4*y*(1 - y)", 0.0)),
+                ],
+                time: (end: 3.0))"#,
+            8.0 * viscosity
+        ));
+        sim.run(|_| true).expect("a run");
+        warning(&sim, "particles of `oil` have become uneven").map(str::to_owned)
+    };
+    let relaxed = "Relaxed(seed: 1, iterations: 30)";
+    let text = channel(relaxed, 0.02).expect("a warning");
+    assert!(text.contains("particle_shifting()"), "{text}");
+    assert_eq!(channel("Square", 0.1), None);
+}
+
+#[test]
 fn walls_have_no_initial_velocity() {
     let more = r#"conditions: [InitialVelocity(on: Select(), value: (0.1, 0.0))], time: (end: 0.01)"#;
     let mut sim = simulation(&tank("", "", more));

@@ -1,9 +1,10 @@
-//! What a flow must not do, looked at on the way: particles inside of what bounds it, gaps and swelling.
+//! What a flow must not do, looked at on the way: particles inside of what bounds it, gaps and swelling, rows that break up.
 
 use super::cloud::FlowCloud;
 use super::filling::Filling;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
+use super::unevenness::Unevenness;
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Run, Stage, Step, StepError, System};
@@ -16,9 +17,12 @@ struct FlowWatch {
     intrusion: Intrusion,
     passing: Passing,
     filling: Filling,
-    /// The filling is looked at with the frames.
+    unevenness: Unevenness,
+    /// Filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
+    /// What the looks compute for each particle.
+    scratch: Vec<Option<f64>>,
 }
 
 /// Adds the system that looks.
@@ -27,8 +31,10 @@ pub(super) fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) 
         intrusion: Intrusion::new(sim, spacing),
         passing: Passing::new(sim),
         filling: Filling::default(),
+        unevenness: Unevenness::default(),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
+        scratch: Vec::new(),
     };
     sim.add_system(
         System::new(Stage::Record, "fluid_watch", watch)
@@ -49,19 +55,21 @@ impl Run for FlowWatch {
             self.passing.look(step)?;
         }
         if is_frame {
-            self.filling.look(&cloud, step);
+            self.filling.look(&cloud, &mut self.scratch, step);
+            self.unevenness.look(&cloud, &mut self.scratch, step);
         }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(&self.intrusion.told, &self.passing.told, &self.filling, self.frames))
-            .unwrap_or_default()
+        let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
+        postcard::to_stdvec(&(told, &self.filling, self.frames)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, passing, filling, frames)) = postcard::from_bytes(state) else { return false };
-        (self.intrusion.told, self.passing.told, self.filling) = (told, passing, filling);
+        let Ok((told, filling, frames)) = postcard::from_bytes(state) else { return false };
+        (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
+        self.filling = filling;
         self.frames.resume(frames);
         true
     }
