@@ -9,10 +9,11 @@ use meshless_engine::parallel::{Arithmetic, Matrix, Number};
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
-    BodyId, BodySet, Column, ColumnSet, Damage, HourglassGradient, HourglassModulus,
+    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassModulus,
 };
 
 use crate::ganzenmueller_2015::Ganzenmueller2015;
+use crate::stiffness::Stiffness;
 use crate::viscous::Viscous;
 
 /// Whether the material of a body can fail.
@@ -45,6 +46,10 @@ impl FoldedTerm for Measure {
     fn stiffness_factor(&self) -> f64 {
         0.0
     }
+
+    fn only_looks(&self) -> bool {
+        true
+    }
 }
 
 /// A pair form that does not act on bonds with a failed particle.
@@ -76,9 +81,9 @@ impl PairTerm for OffCracks<Ganzenmueller2015<HourglassGradient>> {
     }
 }
 
-impl PairTerm for OffCracks<Viscous<HourglassGradient>> {
-    type ReadI = (HourglassGradient, Damage);
-    type ReadJ = (HourglassGradient, Damage);
+impl<F: Column<Value = DMat3>> PairTerm for OffCracks<Viscous<F>> {
+    type ReadI = (F, Damage);
+    type ReadJ = (F, Damage);
 
     const READS_KERNEL: bool = false;
 
@@ -91,5 +96,23 @@ impl PairTerm for OffCracks<Viscous<HourglassGradient>> {
         rates: &mut Rates<A>,
     ) {
         self.0.pair(&off_cracks(pair, damage_i, damage_j), (f_i,), (f_j,), rates);
+    }
+}
+
+impl PairTerm for OffCracks<Stiffness> {
+    type ReadI = (DeformationGradient, HourglassModulus, Damage);
+    type ReadJ = (DeformationGradient, HourglassModulus, Damage);
+
+    const READS_VELOCITY: bool = false;
+
+    #[inline(always)]
+    fn pair<A: Arithmetic>(
+        &self,
+        pair: &Pair<A>,
+        (f_i, e_i, damage_i): (Matrix<A>, Number<A>, Number<A>),
+        (f_j, e_j, damage_j): (Matrix<A>, Number<A>, Number<A>),
+        rates: &mut Rates<A>,
+    ) {
+        self.0.pair(&off_cracks(pair, damage_i, damage_j), (f_i, e_i), (f_j, e_j), rates);
     }
 }

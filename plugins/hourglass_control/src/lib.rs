@@ -1,12 +1,14 @@
-//! Hourglass control of total-Lagrangian bodies.
+//! Hourglass control of solids.
 //!
 //! The deformation gradient of a particle is a mean over its neighbourhood; motions that leave the mean as it is, the
 //! zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of the mean,
 //! `e_ij = F_i X_ij - x_ij`.
 
 mod cracks;
+mod eulerian;
 mod ganzenmueller_2015;
 mod resistance;
+mod stiffness;
 mod variational;
 mod viscous;
 
@@ -15,10 +17,10 @@ use std::marker::PhantomData;
 use cracks::{OffCracks, add_off_cracks, can_fail};
 use ganzenmueller_2015::Ganzenmueller2015;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::plugin::{Offer, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
-    BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus,
+    BodyId, BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus,
 };
 pub use resistance::AfterYield;
 use resistance::Resistance;
@@ -38,8 +40,10 @@ pub fn register(registry: &mut Registry) {
 pub struct HourglassControl {
     /// How the error of the mean deformation is resisted.
     pub form: Form,
-    /// Coefficient alpha of the elastic resistance. Default: 5 of `Variational` and `Combined`, 25 of `Ganzenmueller2015`.
+    /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in Lagrangian bodies. Default: 5, 25 of the last.
     pub alpha: Option<f64>,
+    /// Coefficient xi of the elastic resistance of `Stiffness` and `Combined` in Eulerian bodies. Default: 10 of `Stiffness`, 20 of `Combined`.
+    pub xi: Option<f64>,
     /// Coefficient zeta of the viscous resistance, of `Viscous` and `Combined`.
     pub zeta: f64,
     /// Share chi of the viscous part of `Combined`, 0 to 1.
@@ -51,8 +55,9 @@ pub struct HourglassControl {
 impl Default for HourglassControl {
     fn default() -> Self {
         Self {
-            form: Form::Variational,
+            form: Form::Default,
             alpha: None,
+            xi: None,
             zeta: 10.0,
             chi: 0.5,
             after_yield: AfterYield::YieldStress,
@@ -63,38 +68,125 @@ impl Default for HourglassControl {
 /// Forms of the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Form {
-    /// The whole error vector, with the weights of the deformation gradient: the exact gradient of an energy.
+    /// `Variational` in Lagrangian bodies, `Combined` in Eulerian ones.
+    Default,
+    /// The whole error vector, with the weights of the deformation gradient: the exact gradient of an energy. Of Lagrangian bodies.
     Variational,
-    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work.
+    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of Lagrangian bodies.
     Ganzenmueller2015,
+    /// The error along the bond, with the kernel of the present places (Mohseni-Mofidi and Bierwisch 2020, eq. 32). It has no energy, and is booked as
+    /// work. Of Eulerian bodies.
+    Stiffness,
     /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
     Viscous,
-    /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016; eq. 34 of the above).
+    /// chi times `Viscous` and 1 - chi times `Variational` in Lagrangian bodies, `Stiffness` in Eulerian ones (Ganzenmueller and others 2016; eq. 34 of the above).
     Combined,
 }
+
+/// Account of the work of the forms without an energy.
+const WORK: &str = "hourglass_work";
+/// Account of what the viscous form takes.
+const VISCOSITY: &str = "hourglass_viscosity";
+/// Coefficient xi of `Stiffness` where the scene gives none.
+const USUAL_XI: f64 = 10.0;
 
 impl Plugin for HourglassControl {
     const NAME: &'static str = "hourglass_control";
     const REFERENCE: &'static str = "hourglass control: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106, in variational form";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let bodies = sim.scope_offering(Offer::FoldedTerms)?;
-        let default = if self.form == Form::Ganzenmueller2015 { 25.0 } else { 5.0 };
-        let alpha = self.alpha.unwrap_or(default);
-        ParameterError::require_not_negative("alpha", alpha)?;
+        self.check()?;
+        let (lagrangian, present) = split(sim)?;
+        self.check_fit(&lagrangian, &present, sim)?;
+        if !lagrangian.is_empty() {
+            self.add_to_lagrangian(lagrangian, sim)?;
+        }
+        // Half of twice the coefficient where the other half is viscous.
+        let (elastic, viscous, usual) = match self.form {
+            Form::Stiffness => (1.0, 0.0, USUAL_XI),
+            Form::Viscous => (0.0, 1.0, 0.0),
+            _ => (1.0 - self.chi, self.chi, 2.0 * USUAL_XI),
+        };
+        let xi = elastic * self.xi.unwrap_or(usual);
+        for id in present.iter() {
+            eulerian::add((xi, self.after_yield), viscous * self.zeta, id, sim)?;
+        }
+        Ok(())
+    }
+}
+
+/// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their weights are not those of a reference.
+fn split(sim: &SimBuilder<'_>) -> Result<(BodySet, BodySet), SetupError> {
+    let solids = sim.scope_of(BodyKind::Solid)?;
+    let folds = |id: &BodyId| sim.body(*id).offers(Offer::FoldedTerms);
+    let pairs = |id: &BodyId| !folds(id) && sim.body(*id).offers(Offer::PairTerms);
+    let (lagrangian, eulerian) =
+        (BodySet::new(solids.iter().filter(folds)), BodySet::new(solids.iter().filter(pairs)));
+    if lagrangian.is_empty() && eulerian.is_empty() {
+        // It says what they do not take.
+        return Ok((sim.scope_offering(Offer::FoldedTerms)?, eulerian));
+    }
+    Ok((lagrangian, eulerian))
+}
+
+impl HourglassControl {
+    fn check(&self) -> Result<(), SetupError> {
+        ParameterError::require_not_negative("alpha", self.alpha.unwrap_or_default())?;
+        ParameterError::require_not_negative("xi", self.xi.unwrap_or_default())?;
         ParameterError::require_not_negative("zeta", self.zeta)?;
         if !(0.0..=1.0).contains(&self.chi) {
             let message = format!("`chi` is {}, outside of 0 to 1", self.chi);
             return Err(SetupError::parameter("chi", message, "it is the share of the viscous part"));
         }
+        Ok(())
+    }
+
+    /// Whether form and coefficients are those of the bodies.
+    fn check_fit(
+        &self,
+        lagrangian: &BodySet,
+        eulerian: &BodySet,
+        sim: &SimBuilder<'_>,
+    ) -> Result<(), SetupError> {
+        let (wrong, help) = match self.form {
+            Form::Variational | Form::Ganzenmueller2015 => {
+                (eulerian, "such bodies have `Stiffness`, `Viscous` and `Combined`")
+            }
+            Form::Stiffness => (lagrangian, "such bodies have `Variational`, `Viscous` and `Combined`"),
+            _ => (&BodySet::default(), ""),
+        };
+        if let Some(id) = wrong.iter().next() {
+            let body = sim.body(id);
+            let message = format!(
+                "body `{}` moves by `{}`, which has no hourglass control of the form `{:?}`",
+                body.name, body.formulation, self.form
+            );
+            return Err(SetupError::parameter("form", message, help));
+        }
+        let unused = if self.alpha.is_some() && lagrangian.is_empty() && !eulerian.is_empty() {
+            Some(("alpha", "xi", "Lagrangian"))
+        } else if self.xi.is_some() && eulerian.is_empty() && !lagrangian.is_empty() {
+            Some(("xi", "alpha", "Eulerian"))
+        } else {
+            None
+        };
+        unused.map_or(Ok(()), |(given, meant, kind)| {
+            let message = format!("`{given}` is the coefficient of {kind} bodies, and there is none here");
+            Err(SetupError::parameter(given, message, format!("give `{meant}` instead, or neither")))
+        })
+    }
+
+    fn add_to_lagrangian(&self, bodies: BodySet, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let alpha = self.alpha.unwrap_or(if self.form == Form::Ganzenmueller2015 { 25.0 } else { 5.0 });
         match self.form {
-            Form::Variational => self.add_variational(alpha, bodies, sim),
+            Form::Default | Form::Variational => self.add_variational(alpha, bodies, sim),
             Form::Ganzenmueller2015 => self.add_ganzenmueller_2015(alpha, &bodies, sim),
             Form::Viscous => add_viscous(self.zeta, &bodies, sim),
             Form::Combined => {
                 add_viscous(self.chi * self.zeta, &bodies, sim)?;
                 self.add_variational((1.0 - self.chi) * alpha, bodies, sim)
             }
+            Form::Stiffness => Ok(()),
         }
     }
 }
@@ -142,10 +234,10 @@ impl HourglassControl {
             let density = sim.body(id).material.density;
             if can_fail(sim, id)? {
                 let term = Ganzenmueller2015::<HourglassGradient> { alpha, density, measure: PhantomData };
-                add_off_cracks(sim, id, "hourglass_work", OffCracks(term));
+                add_off_cracks(sim, id, WORK, OffCracks(term));
             } else {
                 let term = Ganzenmueller2015::<DeformationGradient> { alpha, density, measure: PhantomData };
-                sim.add_pair_term(BodySet::new([id]), "hourglass_work", term);
+                sim.add_pair_term(BodySet::new([id]), WORK, term);
             }
         }
         Ok(())
@@ -157,15 +249,12 @@ fn add_viscous(zeta: f64, bodies: &BodySet, sim: &mut SimBuilder<'_>) -> Result<
         return Ok(());
     }
     for id in bodies.iter() {
-        let body = sim.body(id);
-        let density = body.material.density;
-        let sound_speed = (body.solid_law()?.elastic().bulk / density).sqrt();
         if can_fail(sim, id)? {
-            let term = Viscous::<HourglassGradient> { zeta, sound_speed, density, measure: PhantomData };
-            add_off_cracks(sim, id, "hourglass_viscosity", OffCracks(term));
+            let term = Viscous::<HourglassGradient>::of(zeta, id, sim)?;
+            add_off_cracks(sim, id, VISCOSITY, OffCracks(term));
         } else {
-            let term = Viscous::<DeformationGradient> { zeta, sound_speed, density, measure: PhantomData };
-            sim.add_pair_term(BodySet::new([id]), "hourglass_viscosity", term);
+            let term = Viscous::<DeformationGradient>::of(zeta, id, sim)?;
+            sim.add_pair_term(BodySet::new([id]), VISCOSITY, term);
         }
     }
     Ok(())

@@ -40,4 +40,8 @@ impl FoldedTerm for Resistance {
     fn stiffness_factor(&self) -> f64 {
         0.0
     }
+
+    fn only_looks(&self) -> bool {
+        true
+    }
 }

@@ -10,7 +10,8 @@ use std::marker::PhantomData;
 use glam::DMat3;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Matrix};
-use meshless_engine::world::Column;
+use meshless_engine::plugin::{SetupError, SimBuilder};
+use meshless_engine::world::{BodyId, Column};
 
 /// The viscous form for one body; `F` is the column of the deformation gradient.
 pub struct Viscous<F> {
@@ -21,6 +22,18 @@ pub struct Viscous<F> {
     /// Density rho_0, kg/m3.
     pub density: f64,
     pub measure: PhantomData<F>,
+}
+
+impl<F> Viscous<F> {
+    /// The form for the material of a body.
+    ///
+    /// # Errors
+    /// It is not a solid.
+    pub fn of(zeta: f64, id: BodyId, sim: &SimBuilder<'_>) -> Result<Self, SetupError> {
+        let density = sim.body(id).material.density;
+        let sound_speed = (sim.body(id).solid_law()?.elastic().bulk / density).sqrt();
+        Ok(Self { zeta, sound_speed, density, measure: PhantomData })
+    }
 }
 
 impl<F: Column<Value = DMat3>> PairTerm for Viscous<F> {
@@ -40,9 +53,9 @@ impl<F: Column<Value = DMat3>> PairTerm for Viscous<F> {
         let error = (f_i + f_j) * pair.reference_x_ij * 0.5 - pair.x_ij;
         let moving = pair.v_ij.dot(pair.x_ij);
         let length = pair.reference_distance();
-        let slope = pair.weight * length;
         let share = error.length_squared().sqrt() / length;
-        let strength = self.zeta * self.sound_speed * pair.smoothing_length() * share * slope * pair.volume_j;
+        let strength =
+            self.zeta * self.sound_speed * pair.smoothing_length() * share * pair.slope() * pair.volume_j;
         let growing = moving * error.dot(pair.x_ij);
         let damping = growing.if_below(0.0, strength / pair.distance());
         rates.force +=

@@ -16,7 +16,7 @@ use super::surface::SurfaceContact;
 use super::system;
 use super::touching::Touching;
 use crate::materials::{ElasticConstants, Law};
-use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::rigid::sphere_of;
 use crate::scene::{Contact, ContactSurface, Item, Problem};
 use crate::skins::Skin;
@@ -50,6 +50,10 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
             );
             continue;
         }
+        if let Some(problem) = own_contact_not_offered(contact, k, sim) {
+            problems.push(problem);
+            continue;
+        }
         match pairs_of(
             contact,
             k,
@@ -74,6 +78,19 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
         system::add(sim, touching, numbers, &bodies);
     }
     Ok(())
+}
+
+/// The problem of a body that is to touch itself and whose formulation has no such contact.
+fn own_contact_not_offered(contact: &Contact, k: usize, sim: &SimBuilder<'_>) -> Option<Problem> {
+    let body = find(sim, &contact.between.0);
+    if contact.between.0 != contact.between.1 || body.offers(Offer::SelfContact) {
+        return None;
+    }
+    let BodyPlan { name, formulation, .. } = body;
+    let message =
+        format!("`{formulation}`, by which body `{name}` moves, has no {}", Offer::SelfContact.words());
+    let help = "leave this contact out: where its kernels overlap, the body joins with itself";
+    Some(Problem::at_path(format!("contacts[{k}].between"), message).help(help))
 }
 
 fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Problem> {

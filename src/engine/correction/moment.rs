@@ -1,6 +1,7 @@
 //! Moment matrix of a row of neighbours, and its inverse.
 
 use crate::linalg::Sym3;
+use crate::parallel::Lanes4;
 use glam::DVec3;
 
 /// Least determinant of a moment matrix in units of `(tr M / d)^d`: below it the neighbours lie on a line (or, in three
@@ -27,6 +28,15 @@ impl MomentMatrix {
         Self { matrix, dimension }
     }
 
+    /// The matrix with those columns, in as many dimensions as there are.
+    #[inline(always)]
+    pub fn of_columns<const D: usize>(columns: &[Lanes4; D]) -> Self {
+        let [x, y] = [columns[0].0, columns[1].0];
+        let plane = Sym3 { xx: x[0], yy: y[1], xy: x[1], ..Sym3::ZERO };
+        let solid = |z: &Lanes4| Sym3 { zz: z.0[2], xz: z.0[0], yz: z.0[1], ..plane };
+        Self::of(columns.get(2).map_or(plane, solid), D)
+    }
+
     /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their row.
     #[inline]
     pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {
@@ -44,6 +54,12 @@ impl MomentMatrix {
     /// such a particle has no deformation gradient and is free of stress.
     #[inline]
     pub fn inverse(&self) -> Option<Sym3> {
+        self.inverse_above(SINGULAR)
+    }
+
+    /// The same with another least determinant, in units of `(tr M / d)^d`.
+    #[inline]
+    pub fn inverse_above(&self, least: f64) -> Option<Sym3> {
         let m = &self.matrix;
         let (determinant, mean, inverse) = match self.dimension {
             1 => (m.xx, m.xx, Sym3 { xx: 1.0 / m.xx, ..Sym3::ZERO }),
@@ -55,7 +71,7 @@ impl MomentMatrix {
             }
             _ => (m.determinant(), m.trace() / 3.0, m.inverse()),
         };
-        let limit = SINGULAR * mean.powi(self.dimension.clamp(1, 3) as i32);
+        let limit = least * mean.powi(self.dimension.clamp(1, 3) as i32);
         // Strictly greater: without neighbours both sides are zero, and NaN is refused too.
         (determinant > limit && determinant.is_finite()).then_some(inverse)
     }

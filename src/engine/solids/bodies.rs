@@ -10,9 +10,9 @@ use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
 use super::stretches;
-use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows};
+use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block};
-use crate::plugin::{ForBodies, SetupError, SimBuilder};
+use crate::plugin::{BodyPlan, ForBodies, SetupError, SimBuilder};
 use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
@@ -111,6 +111,22 @@ impl SolidBodies {
         Ok(Self { phase, bodies, terms, columns, found: Vec::new(), sums: Vec::new() })
     }
 
+    /// That all folded terms only look, for formulations that apply none.
+    ///
+    /// # Errors
+    /// The first body with another term.
+    pub fn require_terms_that_look(&self, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+        let adds = |body: &&SolidBody| body.terms.iter().any(|&k| !self.terms[k].term.only_looks());
+        self.bodies.iter().find(adds).map_or(Ok(()), |own| {
+            let BodyPlan { name, formulation, .. } = sim.body(own.id);
+            let message = format!(
+                "body `{name}` is given a term that folds into the internal force, and its formulation `{formulation}` takes none"
+            );
+            let help = "leave out the plugin that adds it, or give the body a Lagrangian formulation";
+            Err(SetupError::parameter("", message, help).of_formulation(own.id))
+        })
+    }
+
     /// The bodies.
     pub fn iter(&self) -> impl Iterator<Item = &SolidBody> {
         self.bodies.iter()
@@ -205,14 +221,37 @@ impl SolidBodies {
     /// # Errors
     /// The phase has no deformation gradient.
     pub fn limit(&mut self, step: &mut Step<'_>, undeformed: &[f64]) -> Result<(), StepError> {
+        self.limit_seen(step, undeformed, |stretches| stretches)
+    }
+
+    /// The same for stable steps, s, with the weights of the present configuration: of the stretches, only the change of volume counts, as that of all
+    /// lengths alike.
+    ///
+    /// # Errors
+    /// The phase has no deformation gradient.
+    pub fn limit_from_present(&mut self, step: &mut Step<'_>, present: &[f64]) -> Result<(), StepError> {
+        let axes = step.world.dimension().count() as f64;
+        self.limit_seen(step, present, |Stretches { least_volume, .. }| {
+            let smallest = least_volume.max(0.0).powf(1.0 / axes);
+            Stretches { smallest, largest: 1.0, least_volume }
+        })
+    }
+
+    fn limit_seen(
+        &mut self,
+        step: &mut Step<'_>,
+        stable: &[f64],
+        seen: impl Fn(Stretches) -> Stretches,
+    ) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let gradient = view.read::<DeformationGradient>()?;
         let damage = view.read::<Damage>().ok();
-        for (own, stable_step) in self.bodies.iter_mut().zip(undeformed) {
+        for (own, stable_step) in self.bodies.iter_mut().zip(stable) {
             let body = step.world.body(own.id);
             if step.turn.number().is_multiple_of(STRETCH_INTERVAL) {
                 let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
-                own.refresh(&gradient[body.rows.clone()], damage);
+                let found = stretches::of_body(&gradient[body.rows.clone()], damage);
+                own.stretch_factor = own.law.stable_step_factor(&seen(found));
             }
             let by = fmt::from_fn(|f| own.write_cause(f, &body.name));
             step.limits.propose(stable_step * own.stretch_factor, by);
@@ -300,10 +339,6 @@ impl SolidBody {
                 ledger.add(released, self.id, energy.released);
             }
         }
-    }
-
-    fn refresh(&mut self, gradient: &[DeformationGradient], damage: Option<&[Damage]>) {
-        self.stretch_factor = self.law.stable_step_factor(&stretches::of_body(gradient, damage));
     }
 
     fn write_cause(&self, f: &mut fmt::Formatter<'_>, body: &str) -> fmt::Result {

@@ -100,6 +100,11 @@ pub trait FoldedTerm: Send + Sync + 'static {
     /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
     /// step follows from it.
     fn stiffness_factor(&self) -> f64;
+
+    /// Whether it adds nothing to the stress, and only leaves in columns what it has seen. Formulations without a reference configuration take no other.
+    fn only_looks(&self) -> bool {
+        false
+    }
 }
 
 /// A folded term as a plugin hands it in for bodies.

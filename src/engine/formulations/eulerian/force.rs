@@ -1,0 +1,70 @@
+//! The internal force, with gravity: the adjoint of the velocity gradient at the same places.
+
+use glam::DVec3;
+
+use super::rows::EulerianRows;
+use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::schedule::{Run, Step, StepError};
+use crate::world::{Force, Mass, PhaseId};
+
+/// The system of the pass.
+pub(super) struct InternalForce {
+    pub phase: PhaseId,
+    /// Acceleration of gravity, m/s2.
+    pub gravity: DVec3,
+}
+
+impl Run for InternalForce {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let view = step.world.phase(self.phase);
+        let packed = step.resources.solid_rows::<EulerianRows>(self.phase);
+        let mass = view.read::<Mass>()?;
+        let mut force = view.write::<Force>()?;
+        write(&packed, &mass, self.gravity, &mut force);
+        Ok(())
+    }
+}
+
+/// Writes the force of the stresses that are there, and of gravity, N.
+pub(super) fn write(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
+    for_each_block((force, mass), &mut Vec::new(), &|first, (force, mass): (&mut [Force], &[Mass])| {
+        run_hot_in(packed.plane, ForceRows { packed, first, force: &mut *force });
+        for (k, (force, mass)) in force.iter_mut().zip(mass).enumerate() {
+            // Nothing acts on a removed particle, not even gravity.
+            if packed.points[first + k].place.0[3] > 0.0 {
+                force.0 += gravity * mass.0;
+            }
+        }
+    });
+}
+
+struct ForceRows<'a> {
+    packed: &'a EulerianRows,
+    first: usize,
+    force: &'a mut [Force],
+}
+
+impl PlaneOrSolid for ForceRows<'_> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+        let EulerianRows { lists, near, points, stresses, .. } = self.packed;
+        for (k, force) in self.force.iter_mut().enumerate() {
+            let i = self.first + k;
+            let (place, own) = (points[i].place, &stresses[i]);
+            let (neighbors, weights) = near.row(lists.offsets[i], i);
+            let mut sum = Lanes4::ZERO;
+            for n in 0..neighbors.len() {
+                let j = neighbors[n] as usize;
+                let other = &stresses[j];
+                let arm = a.minus(points[j].place, place);
+                let mut traction = Lanes4::ZERO;
+                for axis in 0..D {
+                    let column = a.plus(own.columns[axis], other.columns[axis]);
+                    traction = a.scale_add(arm.0[axis], column, traction);
+                }
+                sum = a.scale_add(weights[n] * other.traction.0[3], traction, sum);
+            }
+            *force = Force(sum.xyz() * own.traction.0[3]);
+        }
+    }
+}

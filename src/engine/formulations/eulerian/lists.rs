@@ -1,0 +1,210 @@
+//! Lists of neighbours in the present configuration, with a skin, so that they live for several steps.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::symmetry::{Ghosts, Repeat};
+use crate::world::BodyId;
+
+/// Skin over the support radius: 0.4 smoothing lengths of a kernel whose support is two of them.
+const SKIN: f64 = 0.2;
+
+/// A body of the lists.
+pub(super) struct ListedBody {
+    pub id: BodyId,
+    /// Its rows in the phase.
+    pub rows: Range<usize>,
+    /// Support radius, m.
+    pub support: f64,
+    /// What it repeats itself by.
+    pub repeats: Vec<Repeat>,
+}
+
+/// The lists of all bodies of the phase, which are in the order of their rows.
+#[derive(Default)]
+pub(super) struct Lists {
+    pub bodies: Vec<ListedBody>,
+    /// The ghosts of pairs within support and skin.
+    pub ghosts: Ghosts,
+    /// Where the neighbours of each row start.
+    pub offsets: Vec<usize>,
+    /// Packed rows of the neighbours, ascending.
+    pub neighbors: Vec<u32>,
+    /// Places that the lists were built from, m.
+    built_from: Vec<DVec3>,
+    search: NeighborSearch,
+    list: NeighborList,
+    places: Vec<DVec3>,
+}
+
+impl Lists {
+    /// Lists of bodies, to be built by the first update.
+    pub fn new(bodies: Vec<ListedBody>) -> Self {
+        Self { bodies, ..Self::default() }
+    }
+
+    /// Builds the lists anew if a pair may have come within the support that is not in them; says whether it did.
+    ///
+    /// # Errors
+    /// The body whose places have no neighbours that could be found.
+    pub fn update(&mut self, position: &[DVec3]) -> Result<bool, (BodyId, NeighborError)> {
+        let is_stale = self.built_from.len() != position.len()
+            || self.bodies.iter().any(|body| {
+                let rows = body.rows.clone();
+                body.has_moved(&self.built_from[rows.clone()], &position[rows])
+            });
+        if is_stale {
+            self.build(position)?;
+        }
+        Ok(is_stale)
+    }
+
+    fn build(&mut self, position: &[DVec3]) -> Result<(), (BodyId, NeighborError)> {
+        self.built_from.clear();
+        self.ghosts = Ghosts::new(position.len());
+        self.offsets.clear();
+        self.offsets.push(0);
+        self.neighbors.clear();
+        for body in &self.bodies {
+            let (repeats, reach) = body.repeats_at(&position[body.rows.clone()]);
+            let ghost_rows = self.ghosts.add(body.rows.clone(), position, reach, &repeats);
+            self.places.clear();
+            self.places.extend_from_slice(&position[body.rows.clone()]);
+            self.places.extend(ghost_rows.clone().map(|row| self.ghosts.place(position, row)));
+            let cloud = Cloud::uniform(&self.places, body.support);
+            let found = self.search.within(cloud, SKIN * body.support, &Periodic::NONE, &mut self.list);
+            found.map_err(|error| (body.id, error))?;
+            // Ghosts have numbers behind those of the real rows of the body.
+            let row_of = |number: u32| {
+                let number = number as usize;
+                let ghost = number.checked_sub(body.rows.len());
+                ghost.map_or(body.rows.start + number, |ghost| ghost_rows.start + ghost) as u32
+            };
+            for k in 0..body.rows.len() {
+                self.neighbors.extend(self.list.row(k).iter().map(|&number| row_of(number)));
+                self.offsets.push(self.neighbors.len());
+            }
+        }
+        self.built_from.extend_from_slice(position);
+        Ok(())
+    }
+
+    /// Where the neighbours of some rows lie.
+    pub fn of_rows(&self, rows: Range<usize>) -> Range<usize> {
+        self.offsets[rows.start]..self.offsets[rows.end]
+    }
+}
+
+impl ListedBody {
+    /// Whether a particle has moved by more than half the skin. A body that flies takes its lists along; at a symmetry plane it meets its image, which
+    /// goes the other way.
+    fn has_moved(&self, before: &[DVec3], now: &[DVec3]) -> bool {
+        let is_mirrored = self.repeats.iter().any(|repeat| matches!(repeat, Repeat::Mirror { .. }));
+        type Rows<'a> = (&'a [DVec3], &'a [DVec3]);
+        let along = if is_mirrored {
+            DVec3::ZERO
+        } else {
+            let all: Extent = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
+                let moved = before.iter().zip(now).map(|(before, now)| *now - *before);
+                moved.fold(Extent::default(), |all, u| Extent(all.0.min(u), all.1.max(u)))
+            });
+            0.5 * (all.0 + all.1)
+        };
+        let farthest: Largest = sum_over_blocks((before, now), &|_, (before, now): Rows<'_>| {
+            Largest::of(before.iter().zip(now).map(|(before, now)| (*now - *before - along).length_squared()))
+        });
+        let limit = 0.5 * SKIN * self.support;
+        // What is not a number is far, too.
+        !(farthest.0 <= limit * limit)
+    }
+
+    /// What the body repeats itself by where it is now, and how far from a side its ghosts have their sources, m: a body that fills a period goes
+    /// along with its motion, and its sides need not be flat any more.
+    fn repeats_at(&self, position: &[DVec3]) -> (Vec<Repeat>, f64) {
+        let mut reach = self.support * (1.0 + SKIN);
+        if self.repeats.is_empty() {
+            return (Vec::new(), reach);
+        }
+        let bounds = position.iter().fold(Extent::default(), |all, x| Extent(all.0.min(*x), all.1.max(*x)));
+        let moved = self.repeats.iter().map(|repeat| match *repeat {
+            Repeat::Period { axis, length, .. } => {
+                let beyond = bounds.1[axis] - bounds.0[axis] - length;
+                reach = reach.max(self.support * (1.0 + SKIN) + beyond);
+                Repeat::Period { axis, min: bounds.0[axis], length }
+            }
+            mirror @ Repeat::Mirror { .. } => mirror,
+        });
+        (moved.collect(), reach)
+    }
+}
+
+/// Lower and upper corner of a box.
+#[derive(Clone, Copy)]
+struct Extent(DVec3, DVec3);
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self(DVec3::INFINITY, DVec3::NEG_INFINITY)
+    }
+}
+
+impl BlockSum for Extent {
+    fn add(&mut self, next: &Self) {
+        *self = Self(self.0.min(next.0), self.1.max(next.1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cloud() -> Vec<DVec3> {
+        (0..200).map(|k| DVec3::new((k % 20) as f64, (k / 20) as f64, 0.0)).collect()
+    }
+
+    fn lists(repeats: Vec<Repeat>) -> Lists {
+        Lists::new(vec![ListedBody { id: BodyId(0), rows: 0..200, support: 2.6, repeats }])
+    }
+
+    /// Pairs closer than the support, by brute force.
+    fn close(position: &[DVec3], i: usize) -> Vec<u32> {
+        let near = |j: &usize| *j != i && (position[*j] - position[i]).length() < 2.6;
+        (0..position.len()).filter(near).map(|j| j as u32).collect()
+    }
+
+    #[test]
+    fn no_pair_within_the_support_is_missed_between_builds() {
+        let (mut position, mut lists) = (cloud(), lists(Vec::new()));
+        let mut builds = 0;
+        for step in 0..60 {
+            for (k, x) in position.iter_mut().enumerate() {
+                *x += DVec3::new(
+                    0.3 + 0.02 * (0.7 * k as f64).sin(),
+                    0.02 * (1.3 * (k + step) as f64).cos(),
+                    0.0,
+                );
+            }
+            builds += usize::from(lists.update(&position).expect("lists"));
+            for i in 0..position.len() {
+                let row = &lists.neighbors[lists.of_rows(i..i + 1)];
+                assert!(row.is_sorted() && close(&position, i).iter().all(|j| row.contains(j)), "row {i}");
+            }
+        }
+        // It flies by 18 spacings, and is stirred by less than one.
+        assert!((2..20).contains(&builds), "{builds} builds");
+    }
+
+    #[test]
+    fn a_body_that_comes_near_a_symmetry_plane_meets_its_image() {
+        let (mut position, mut lists) = (cloud(), lists(vec![Repeat::Mirror { axis: 0, at: -4.0 }]));
+        lists.update(&position).expect("lists");
+        assert!(lists.ghosts.is_empty());
+        position.iter_mut().for_each(|x| x.x -= 3.5);
+        assert!(lists.update(&position).expect("lists"));
+        let ghosts = lists.neighbors[lists.of_rows(0..1)].iter().filter(|&&j| j >= 200).count();
+        assert!(ghosts > 0 && lists.ghosts.len() >= 30, "{ghosts} of {}", lists.ghosts.len());
+    }
+}

@@ -1,0 +1,29 @@
+//! Solids whose kernels live in the present configuration (Mohseni-Mofidi and Bierwisch 2020), with the corrections of docs/eulerian.md.
+//!
+//! Neighbours, weights and corrections are those of the present places; what the body remembers is the state of its particles. A step is
+//!
+//! ```text
+//! rates     L_i = (sum_j V_j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_j w_ij x_ij (x) x_ij      with the places at mid-step
+//!           F_i <- (I - dt/2 L_i)^-1 (I + dt/2 L_i) F_i ,  V_i = V_0,i det F_i
+//! stress    F_i -> P_i (any law) ,  A_i = sigma_i M_i^-1 ,  sigma = P F^T / det F                   with the places at the end of the step
+//! force     f_i = V_i sum_j V_j w_ij (A_i + A_j) x_ij
+//! ```
+//!
+//! The force is the exact adjoint of the velocity gradient at the same places: its power is that of the stress, it has no resultant and no
+//! torque. The lists have a skin; what a step reads of them are the neighbours within the support, in the order of rows, so that no bit
+//! depends on when they were built.
+
+mod artificial_stress;
+mod force;
+mod lists;
+mod near;
+mod pairs;
+mod parameters;
+mod phase;
+mod rates;
+mod rows;
+mod start;
+mod stress;
+
+pub use artificial_stress::{ArtificialStress, TensileStress};
+pub use parameters::{Divergence, Eulerian};

@@ -1,0 +1,143 @@
+//! The neighbours within the support at the end of a step, with their weights, and the sums that correct the gradient.
+
+use crate::correction::MomentMatrix;
+use crate::formulations::eulerian::rows::Point;
+use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
+use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, Split, run_hot_in};
+
+/// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or in space in a plane, that a gradient across
+/// it is noise: what is left of a body that has been torn to pieces. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
+pub(super) const LEAST_SPREAD: f64 = 0.02;
+
+/// What the pass finds of every row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Surroundings {
+    /// Number of neighbours within the support.
+    pub count: u32,
+    /// Inverse of M_i; zero for a particle with too few neighbours.
+    pub inverse_moment: Sym3,
+    /// `sum_j V_j w_ij x_ij`, 1/m.
+    pub reach: glam::DVec3,
+    /// `sum_j V_j w_ij`, 1/m2.
+    pub weight_sum: f64,
+    /// `sum_j V_j W_ij` with the particle itself: 1 inside of a body.
+    pub filled: f64,
+}
+
+/// The neighbours within the support: those of row i begin where its list does.
+#[derive(Default)]
+pub(super) struct Near {
+    pub neighbors: Vec<u32>,
+    pub weights: Vec<f64>,
+    pub around: Vec<Surroundings>,
+}
+
+impl Near {
+    /// Neighbours and weights of a row.
+    #[inline(always)]
+    pub fn row(&self, start: usize, i: usize) -> (&[u32], &[f64]) {
+        let part = start..start + self.around[i].count as usize;
+        (&self.neighbors[part.clone()], &self.weights[part])
+    }
+}
+
+/// The rows of [`Near`] that a block writes.
+pub(super) struct NearRows<'a> {
+    /// Where the lists of these rows start, and where the last one ends.
+    pub offsets: &'a [usize],
+    pub neighbors: &'a mut [u32],
+    pub weights: &'a mut [f64],
+    pub around: &'a mut [Surroundings],
+}
+
+impl Split for NearRows<'_> {
+    fn rows(&self) -> usize {
+        self.around.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let Self { offsets, neighbors, weights, around } = self;
+        let cut = offsets[at] - offsets[0];
+        let (neighbors, neighbors_rest) = neighbors.split_at_mut(cut);
+        let (weights, weights_rest) = weights.split_at_mut(cut);
+        let (around, around_rest) = around.split_at_mut(at);
+        (
+            Self { offsets: &offsets[..=at], neighbors, weights, around },
+            Self {
+                offsets: &offsets[at..],
+                neighbors: neighbors_rest,
+                weights: weights_rest,
+                around: around_rest,
+            },
+        )
+    }
+}
+
+/// Looks at the lists of a block.
+pub(super) struct Look<'a, 'r> {
+    pub kernel: Kernel,
+    /// Support radius, m.
+    pub support: f64,
+    /// Lists of all rows.
+    pub lists: &'a [u32],
+    pub points: &'a [Point],
+    pub first: usize,
+    pub plane: bool,
+    pub rows: &'r mut NearRows<'a>,
+}
+
+impl KernelVisitor for Look<'_, '_> {
+    type Output = ();
+
+    fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
+        let kernel = kernel.scaled(self.kernel.smoothing_length(self.support));
+        run_hot_in(self.plane, LookLoop { kernel, look: self });
+    }
+}
+
+struct LookLoop<'a, 'r, K: KernelProfile> {
+    kernel: ScaledKernel<K>,
+    look: Look<'a, 'r>,
+}
+
+impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
+    #[inline(always)]
+    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+        let Self { kernel, look: Look { support, lists, points, first, rows, .. } } = self;
+        let limit = support * support;
+        let itself = kernel.w(0.0);
+        let begin = rows.offsets[0];
+        for k in 0..rows.around.len() {
+            let own = points[first + k].place;
+            let (mut moment, mut reach) = ([Lanes4::ZERO; D], Lanes4::ZERO);
+            let (mut weight_sum, mut filled) = (0.0, itself * own.0[3]);
+            let start = rows.offsets[k] - begin;
+            let mut at = start;
+            let list = if own.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
+            for &j in &lists[list] {
+                let other = points[j as usize].place;
+                let arm = a.minus(other, own);
+                let square = arm.dot3(arm);
+                let volume = other.0[3];
+                if square < limit && volume > 0.0 {
+                    let distance = square.sqrt();
+                    let weight = kernel.pair_weight(distance);
+                    (rows.neighbors[at], rows.weights[at]) = (j, weight);
+                    at += 1;
+                    let weighted = a.scale(volume * weight, arm);
+                    for axis in 0..D {
+                        moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
+                    }
+                    reach = a.plus(reach, weighted);
+                    weight_sum += volume * weight;
+                    filled += volume * kernel.w(distance);
+                }
+            }
+            let inverse_moment =
+                MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
+            let count = (at - start) as u32;
+            rows.around[k] = Surroundings { count, inverse_moment, reach: reach.xyz(), weight_sum, filled };
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The formulation as scenes name it: its parameters, their check, its columns and systems.
+
+use glam::DMat3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::artificial_stress::{ArtificialStress, TensileStress};
+use super::force::InternalForce;
+use super::lists::{ListedBody, Lists};
+use super::near::{Look, Near, NearRows, Surroundings};
+use super::pairs::EulerianPairs;
+use super::rates::Rates;
+use super::rows::{BodyKernel, EulerianRows, PointColumns};
+use super::stress::Stress;
+use crate::kernels::{Kernel, KernelName};
+use crate::linalg::Sym3;
+use crate::pair::add_pair_systems;
+use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
+use crate::scene::Dimension;
+use crate::schedule::{Mode, Stage, System};
+use crate::solids::SolidBodies;
+use crate::symmetry::repeats_of;
+use crate::world::{
+    BodyId, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
+    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
+};
+
+/// Solid whose neighbours and kernels are those of the present configuration: it flows, mixes and tears as far as it likes.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Eulerian {
+    /// Kernel.
+    pub kernel: KernelName,
+    /// Support radius over spacing.
+    pub support: f64,
+    /// How the force comes from the stress.
+    pub divergence: Divergence,
+    /// Artificial stress against the tensile instability, for comparison; hourglass control does better.
+    pub artificial_stress: Option<ArtificialStress>,
+}
+
+/// How the force comes from the stress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Divergence {
+    /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are kept.
+    #[default]
+    Adjoint,
+    /// That of the paper (eqs. 10-11), with stresses over the sum of the kernel: momentum is kept, angular momentum and energy are not.
+    Shepard,
+}
+
+/// Support radius over spacing, where the scene gives none: a smoothing length of 1.3 spacings, as in the paper.
+const USUAL_SUPPORT: f64 = 2.6;
+
+impl Default for Eulerian {
+    fn default() -> Self {
+        Self {
+            kernel: KernelName::CubicSpline,
+            support: USUAL_SUPPORT,
+            divergence: Divergence::Adjoint,
+            artificial_stress: None,
+        }
+    }
+}
+
+/// Label of the system that makes velocity and deformation gradients.
+pub(super) const RATES: &str = "eulerian_rates";
+/// Label of the system that makes stress and corrected stress.
+const STRESS: &str = "eulerian_stress";
+/// Label of the system that makes the internal force.
+const FORCE: &str = "eulerian_force";
+
+impl Formulation for Eulerian {
+    const NAME: &'static str = "Eulerian";
+    const REFERENCE: &'static str =
+        "Eulerian-kernel SPH of solids: N. Mohseni-Mofidi, C. Bierwisch, Comput. Part. Mech. (2020)";
+    const KIND: BodyKind = BodyKind::Solid;
+    const OFFERS: &'static [Offer] =
+        &[Offer::PairTerms, Offer::MirrorImages, Offer::Contact, Offer::DeformedContact];
+
+    fn support(&self, body: &BodyPlan) -> Option<f64> {
+        Some(self.support * body.spacing)
+    }
+
+    fn columns(columns: &mut ColumnSet) {
+        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>();
+    }
+
+    fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let mut listed = Vec::with_capacity(bodies.len());
+        let mut kernels = Vec::with_capacity(bodies.len());
+        for (id, parameters) in &bodies {
+            parameters.check(sim.body(*id).spacing).map_err(|error| error.of_formulation(*id))?;
+            let support = parameters.support * sim.body(*id).spacing;
+            let repeats =
+                repeats_of(sim.body(*id), support, sim).map_err(|error| error.of_formulation(*id))?;
+            let kernel = Kernel::new(parameters.kernel, sim.dimension().count());
+            let Some(kernel) = kernel else {
+                unreachable!("every kernel has a two- and a three-dimensional form");
+            };
+            if let Some(artificial_stress) = parameters.artificial_stress {
+                artificial_stress.add(*id, &kernel, support, sim);
+            }
+            kernels.push(BodyKernel { kernel, divergence: parameters.divergence });
+            listed.push(ListedBody { id: *id, rows: sim.body(*id).rows.clone(), support, repeats });
+        }
+        let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
+        let phase = sim.body(ids[0]).phase;
+        let solids = SolidBodies::new(&ids, sim)?;
+        solids.require_terms_that_look(sim)?;
+        sim.add_setup(move |setup| set_up(listed, kernels, phase, setup));
+        add_systems(phase, solids, sim);
+        add_pair_systems(sim, phase, EulerianPairs(phase))
+    }
+}
+
+fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
+    let rates = System::new(Stage::Gradients, RATES, Rates { phase })
+        .on_phases([phase])
+        .reads::<Position>()
+        .reads::<ReferencePosition>()
+        .reads::<ReferenceVolume>()
+        .reads::<Removed>()
+        .reads::<Velocity>()
+        .writes::<DeformationGradient>();
+    sim.add_system(rates);
+    let state = solids.access();
+    let stress = System::new(Stage::Constitutive, STRESS, Stress::new(phase, solids))
+        .on_phases([phase])
+        .reads::<Position>()
+        .reads::<ReferenceVolume>()
+        .reads::<Removed>()
+        .reads::<Velocity>()
+        .reads::<Mass>()
+        .touches_all(state);
+    let has_tensile_stress = sim.columns(phase).get(TensileStress::NAME).is_some();
+    sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
+    let force = InternalForce { phase, gravity: sim.gravity() };
+    let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
+    sim.add_system(force.touches("corrected_stress", Mode::Reads).writes::<Force>());
+}
+
+impl Eulerian {
+    fn check(&self, spacing: f64) -> Result<(), SetupError> {
+        let fewest = 1.5;
+        if !(self.support.is_finite() && (fewest..=10.0).contains(&self.support)) {
+            return Err(SetupError::parameter(
+                "support",
+                format!(
+                    "`support` must be between {fewest} and 10 spacings, found {} ({} m)",
+                    self.support,
+                    self.support * spacing
+                ),
+                format!("{USUAL_SUPPORT} is usual"),
+            ));
+        }
+        self.artificial_stress.map_or(Ok(()), |own| own.check())?;
+        Ok(())
+    }
+}
+
+/// Fills the columns, and makes lists and sums of the reference configuration.
+fn set_up(
+    listed: Vec<ListedBody>,
+    kernels: Vec<BodyKernel>,
+    phase: PhaseId,
+    setup: &mut Setup<'_>,
+) -> Result<(), SetupError> {
+    let view = setup.world.phase(phase);
+    let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
+    let reference = view.read::<ReferencePosition>().map_err(missing)?;
+    {
+        let mut support = view.write::<SupportRadius>().map_err(missing)?;
+        for body in &listed {
+            support[body.rows.clone()].fill(SupportRadius(body.support));
+        }
+        view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
+    }
+    let mut packed = EulerianRows {
+        lists: Lists::new(listed),
+        kernels,
+        points: Vec::new(),
+        near: Near { around: vec![Surroundings::default(); view.len()], ..Near::default() },
+        deformation: vec![DMat3::IDENTITY; view.len()],
+        stresses: Vec::new(),
+        stable_step: Vec::new(),
+        plane: setup.world.dimension() == Dimension::Two,
+    };
+    packed.update_lists(bytemuck::cast_slice(&reference)).map_err(|(body, error)| {
+        let help = "use a larger `support`, or more particles across the body";
+        SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
+    })?;
+    let columns = PointColumns {
+        position: bytemuck::cast_slice(&reference),
+        velocity: &view.read::<Velocity>().map_err(missing)?,
+        volume: &view.read::<ReferenceVolume>().map_err(missing)?,
+        deformation: &view.read::<DeformationGradient>().map_err(missing)?,
+    };
+    packed.pack(&columns, 0.0, std::iter::empty());
+    look_at_reference(&mut packed, setup)?;
+    setup.resources.insert_solid(phase, packed);
+    Ok(())
+}
+
+/// Looks at the neighbours of the reference configuration: a body without any has no stiffness.
+fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+    let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
+    for (body, of) in lists.bodies.iter().zip(kernels) {
+        let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
+        let mut rows = NearRows {
+            offsets: &lists.offsets[rows.start..=rows.end],
+            neighbors: &mut near.neighbors[of_lists.clone()],
+            weights: &mut near.weights[of_lists],
+            around: &mut near.around[rows],
+        };
+        let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
+        let (lists, plane) = (&lists.neighbors[..], *plane);
+        kernel.dispatch(Look { kernel, support, lists, points, first, plane, rows: &mut rows });
+        let free = rows.around.iter().filter(|around| around.inverse_moment == Sym3::ZERO).count();
+        let name = &setup.world.body(body.id).name;
+        if free == rows.around.len() {
+            let most = rows.around.iter().map(|around| around.count).max().unwrap_or_default();
+            return Err(SetupError::parameter(
+                format!("bodies[{}].formulation", body.id.0),
+                format!(
+                    "no particle of body `{name}` has enough neighbours for a velocity gradient (at most {most})"
+                ),
+                "use a larger `support`, or more particles across the body",
+            ));
+        }
+        if free > 0 {
+            let text =
+                format!("{free} particles of body `{name}` have too few neighbours and carry no stress");
+            setup.warnings.push(text);
+        }
+    }
+    Ok(())
+}

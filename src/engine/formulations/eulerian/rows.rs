@@ -1,0 +1,116 @@
+//! The packed rows of the phase.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat3, DVec3};
+
+use super::lists::Lists;
+use super::near::Near;
+use super::parameters::Divergence;
+use crate::kernels::Kernel;
+use crate::parallel::{Lanes4, for_each_block};
+use crate::solids::CorrectedStress;
+use crate::symmetry::Map;
+use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
+
+/// A particle as its neighbours read it.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub(super) struct Point {
+    /// x, and the volume V in the last lane: zero for a removed particle.
+    pub place: Lanes4,
+    /// v.
+    pub velocity: Lanes4,
+}
+
+impl Point {
+    fn image(&self, map: &Map) -> Self {
+        Self {
+            place: Lanes4::new(map.place(self.place.xyz()), self.place.0[3]),
+            velocity: Lanes4::new(map.vector(self.velocity.xyz()), 0.0),
+        }
+    }
+}
+
+/// How the sums of a body are taken.
+#[derive(Clone, Copy)]
+pub(super) struct BodyKernel {
+    pub kernel: Kernel,
+    pub divergence: Divergence,
+}
+
+/// What the systems of the formulation share.
+pub(super) struct EulerianRows {
+    pub lists: Lists,
+    /// Of every body, as in the lists.
+    pub kernels: Vec<BodyKernel>,
+    pub points: Vec<Point>,
+    pub near: Near,
+    /// F of the real rows.
+    pub deformation: Vec<DMat3>,
+    /// Corrected stress sigma M^-1, and in the last lane of its traction what it is weighted with: the volume V.
+    pub stresses: Vec<CorrectedStress>,
+    /// Stable step of each body as it is now, s.
+    pub stable_step: Vec<f64>,
+    /// Plane strain.
+    pub plane: bool,
+}
+
+/// Columns that points are packed from.
+pub(super) struct PointColumns<'a> {
+    pub position: &'a [Position],
+    pub velocity: &'a [Velocity],
+    pub volume: &'a [ReferenceVolume],
+    pub deformation: &'a [DeformationGradient],
+}
+
+impl EulerianRows {
+    /// Brings the lists up to date, with room for all that hangs on them.
+    pub fn update_lists(
+        &mut self,
+        position: &[DVec3],
+    ) -> Result<(), (crate::world::BodyId, crate::neighbors::NeighborError)> {
+        if self.lists.update(position)? {
+            let pairs = self.lists.neighbors.len();
+            self.near.neighbors.resize(pairs, 0);
+            self.near.weights.resize(pairs, 0.0);
+            let all = position.len() + self.lists.ghosts.len();
+            self.points.resize(all, Point::default());
+            self.stresses.resize(all, CorrectedStress::default());
+        }
+        Ok(())
+    }
+
+    /// Packs the particles where they were `back` seconds ago, ghosts too; the rows that are `gone` have no volume.
+    pub fn pack(&mut self, columns: &PointColumns<'_>, back: f64, gone: impl Iterator<Item = usize>) {
+        let n = columns.position.len();
+        let PointColumns { position, velocity, volume, deformation } = *columns;
+        let rows = (&mut self.points[..n], position, velocity, volume, deformation);
+        type Rows<'a> = (
+            &'a mut [Point],
+            &'a [Position],
+            &'a [Velocity],
+            &'a [ReferenceVolume],
+            &'a [DeformationGradient],
+        );
+        for_each_block(rows, &mut Vec::new(), &|_, (points, x, v, volume, f): Rows<'_>| {
+            for (k, point) in points.iter_mut().enumerate() {
+                let volume = volume[k].0 * f[k].0.determinant();
+                *point = Point {
+                    place: Lanes4::new(x[k].0 - back * v[k].0, volume),
+                    velocity: Lanes4::new(v[k].0, 0.0),
+                };
+            }
+        });
+        gone.for_each(|row| self.points[row].place.0[3] = 0.0);
+        self.lists.ghosts.fill(&mut self.points, |ghost, point: &Point| point.image(ghost.map));
+    }
+
+    /// Hands the corrected stresses on to the ghosts.
+    pub fn fill_ghost_stresses(&mut self) {
+        self.lists.ghosts.fill(&mut self.stresses, |ghost, own: &CorrectedStress| {
+            let mut stress = own.image(ghost.map);
+            stress.traction = own.traction;
+            stress
+        });
+    }
+}

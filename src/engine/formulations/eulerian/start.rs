@@ -1,0 +1,38 @@
+//! The deformation gradient of bodies that start deformed: the fit of their places to those of the reference configuration.
+
+use glam::{DMat3, DVec3};
+
+use super::rows::EulerianRows;
+use crate::correction::MomentMatrix;
+use crate::world::DeformationGradient;
+
+/// Fits F to the places of all particles; the lists are those of the reference configuration. Bodies that start undeformed keep F = I, to the bit.
+pub(super) fn fit_gradients(
+    packed: &EulerianRows,
+    (reference, position): (&[DVec3], &[DVec3]),
+    volume: &[f64],
+    deformation: &mut [DeformationGradient],
+) {
+    let EulerianRows { lists, kernels, plane, .. } = packed;
+    let ghosts = &lists.ghosts;
+    for (body, of) in lists.bodies.iter().zip(kernels) {
+        if body.rows.clone().all(|row| reference[row] == position[row]) {
+            continue;
+        }
+        let h = of.kernel.smoothing_length(body.support);
+        for i in body.rows.clone() {
+            let (mut moment, mut spread) = (MomentMatrix::new(if *plane { 2 } else { 3 }), DMat3::ZERO);
+            for &j in &lists.neighbors[lists.of_rows(i..i + 1)] {
+                let j = j as usize;
+                let x_ij = ghosts.pair(reference, i, j);
+                let weight = volume[ghosts.source(j)] * of.kernel.pair_weight(x_ij.length(), h);
+                let change = ghosts.pair(position, i, j) - x_ij;
+                moment.add(weight, x_ij);
+                let arm = x_ij * weight;
+                spread += DMat3::from_cols(change * arm.x, change * arm.y, change * arm.z);
+            }
+            let inverse = moment.inverse().unwrap_or_default();
+            deformation[i].0 = DMat3::IDENTITY + spread * inverse.to_matrix();
+        }
+    }
+}

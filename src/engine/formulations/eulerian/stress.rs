@@ -1,0 +1,275 @@
+//! Stress at the end of the step: the neighbours that are near, the laws, the corrected stress that makes the force.
+
+use glam::{DMat3, DVec3};
+
+use super::artificial_stress;
+use super::force;
+use super::near::{Look, NearRows, Surroundings};
+use super::parameters::Divergence;
+use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
+use crate::linalg::Sym3;
+use crate::parallel::{Lanes4, Largest, Split, sum_over_blocks};
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::solids::{
+    Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows, SolidSum,
+};
+use crate::world::{
+    Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
+};
+
+/// The system.
+pub(super) struct Stress {
+    phase: PhaseId,
+    solids: SolidBodies,
+    /// Removed rows that the sums know of, ascending.
+    removed: Vec<u32>,
+}
+
+impl Run for Stress {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
+        self.pack(step.world, &mut packed)?;
+        self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+        self.solids.book(step)?;
+        self.take_up_removed(step, &mut packed)?;
+        artificial_stress::write(step.world, self.phase, &packed)?;
+        self.find_stable_steps(&mut packed);
+        let stable = std::mem::take(&mut packed.stable_step);
+        // Weights are those of the present places: of the stretches, only the change of volume stiffens what they see.
+        let limited = self.solids.limit_from_present(step, &stable);
+        packed.stable_step = stable;
+        limited
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok((factors, removed)) = postcard::from_bytes::<(Vec<f64>, Vec<u32>)>(state) else {
+            return false;
+        };
+        self.removed = removed;
+        self.solids.restore_stretch_factors(&factors)
+    }
+}
+
+impl Stress {
+    pub fn new(phase: PhaseId, solids: SolidBodies) -> Self {
+        Self { phase, solids, removed: Vec::new() }
+    }
+
+    fn pack(&self, world: &World, packed: &mut EulerianRows) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        let columns = PointColumns {
+            position: &view.read::<Position>()?,
+            velocity: &view.read::<Velocity>()?,
+            volume: &view.read::<ReferenceVolume>()?,
+            deformation: &view.read()?,
+        };
+        packed.pack(&columns, 0.0, self.removed.iter().map(|&row| row as usize));
+        Ok(())
+    }
+
+    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    fn pass(
+        &mut self,
+        world: &World,
+        packed: &mut EulerianRows,
+        (dt, is_short): (f64, bool),
+    ) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        let (volume, mass) = (view.read::<ReferenceVolume>()?, view.read::<Mass>()?);
+        let mut columns = SolidColumns::of(&view)?;
+        self.solids.begin();
+        for k in 0..self.solids.len() {
+            self.of_body(
+                k,
+                (&view, &volume, &mass),
+                &mut columns,
+                packed,
+                SolidPart { dt, is_short, refits: None },
+            );
+        }
+        packed.fill_ghost_stresses();
+        Ok(())
+    }
+
+    fn of_body(
+        &mut self,
+        k: usize,
+        (view, volume, mass): (&PhaseView<'_>, &[ReferenceVolume], &[Mass]),
+        columns: &mut SolidColumns<'_>,
+        packed: &mut EulerianRows,
+        part: SolidPart<'_>,
+    ) {
+        let EulerianRows { lists, kernels, points, near, deformation, stresses, plane, .. } = packed;
+        let (body, kernel) = (&lists.bodies[k], kernels[k]);
+        let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
+        let own = OwnRows {
+            near: NearRows {
+                offsets: &lists.offsets[rows.start..=rows.end],
+                neighbors: &mut near.neighbors[of_lists.clone()],
+                weights: &mut near.weights[of_lists],
+                around: &mut near.around[rows.clone()],
+            },
+            deformation: &mut deformation[rows.clone()],
+            stresses: &mut stresses[rows.clone()],
+        };
+        let pass = StressPass {
+            kernel,
+            support: body.support,
+            lists: &lists.neighbors,
+            points,
+            volume,
+            mass,
+            plane: *plane,
+        };
+        self.solids.run(k, (view, rows), columns, own, part, &|law, rows, own, block| {
+            pass.block(law, rows, own, block)
+        });
+    }
+
+    /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same places: what the removed particles held
+    /// leaves the books, and what the motion up to here, made by the old forces, loses by the new ones in the second kick goes with it.
+    fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
+        let view = step.world.phase(self.phase);
+        let removed = view.read::<Removed>()?;
+        if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.len() {
+            return Ok(());
+        }
+        let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
+        let before = self.forces(step.world, packed)?;
+        self.removed.clear();
+        self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
+        self.pack(step.world, packed)?;
+        // States of laws have advanced by this step already.
+        self.pass(step.world, packed, (0.0, false))?;
+        self.solids.book(step)?;
+        let after = self.forces(step.world, packed)?;
+        let velocity = view.read::<Velocity>()?;
+        let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+        for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
+            let rows = step.world.body(body.id).rows.clone();
+            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
+        }
+        Ok(())
+    }
+
+    /// The internal forces of the last pass.
+    fn forces(&self, world: &World, packed: &EulerianRows) -> Result<Vec<Force>, MissingColumn> {
+        let view = world.phase(self.phase);
+        let mut force = vec![Force::default(); view.len()];
+        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, &mut force);
+        Ok(force)
+    }
+
+    /// The stable step of each body with the weights that it has now, s.
+    fn find_stable_steps(&self, packed: &mut EulerianRows) {
+        let EulerianRows { lists, near, stable_step, plane, .. } = packed;
+        let axes = if *plane { 2.0 } else { 3.0 };
+        stable_step.clear();
+        for (own, body) in self.solids.iter().zip(&lists.bodies) {
+            let around = &near.around[body.rows.clone()];
+            let fastest: Largest = sum_over_blocks(around, &|_, around: &[Surroundings]| {
+                let step = |of: &Surroundings| {
+                    let inverse = of.inverse_moment.trace() / axes;
+                    1.0 / own.estimate.stable_step(of.weight_sum, inverse)
+                };
+                Largest::of(around.iter().filter(|of| of.inverse_moment != Sym3::ZERO).map(step))
+            });
+            stable_step.push(1.0 / fastest.0);
+        }
+    }
+}
+
+/// What the pass writes of packed rows, cut by rows of one body.
+struct OwnRows<'a> {
+    near: NearRows<'a>,
+    deformation: &'a mut [DMat3],
+    stresses: &'a mut [CorrectedStress],
+}
+
+impl Split for OwnRows<'_> {
+    fn rows(&self) -> usize {
+        self.stresses.len()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let (near, near_rest) = self.near.split(at);
+        let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
+        let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
+        (
+            Self { near, deformation, stresses },
+            Self { near: near_rest, deformation: deformation_rest, stresses: stresses_rest },
+        )
+    }
+}
+
+/// The pass over one body.
+struct StressPass<'a> {
+    kernel: BodyKernel,
+    support: f64,
+    lists: &'a [u32],
+    points: &'a [Point],
+    volume: &'a [ReferenceVolume],
+    mass: &'a [Mass],
+    plane: bool,
+}
+
+impl StressPass<'_> {
+    fn block(
+        &self,
+        constitutive: &Constitutive<'_>,
+        mut rows: SolidRows<'_>,
+        own: OwnRows<'_>,
+        block: &mut SolidBlock,
+    ) -> SolidSum {
+        let Self { kernel: BodyKernel { kernel, divergence }, support, lists, points, plane, .. } = *self;
+        let (n, first) = (rows.deformation.len(), block.first);
+        let OwnRows { mut near, deformation, stresses } = own;
+        kernel.dispatch(Look { kernel, support, lists, points, first, plane, rows: &mut near });
+        deformation.copy_from_slice(rows.deformation);
+        for (k, f) in deformation.iter().enumerate() {
+            block.gradient[k] = *f - DMat3::IDENTITY;
+            block.volume[k] = if points[first + k].place.0[3] > 0.0 { self.volume[first + k].0 } else { 0.0 };
+        }
+        block.misfit[..n].fill(0.0);
+        let around = &*near.around;
+        let is_free = |k: usize| around[k].inverse_moment == Sym3::ZERO;
+        let mut sum = SolidSum::default();
+        constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
+            for (k, out) in stresses.iter_mut().enumerate() {
+                let f = &deformation[k];
+                let cauchy = stress[k] * f.transpose() * (1.0 / f.determinant());
+                *out = match divergence {
+                    Divergence::Adjoint => weighted(
+                        &(cauchy * around[k].inverse_moment.to_matrix()),
+                        points[first + k].place.0[3],
+                    ),
+                    Divergence::Shepard => {
+                        let density = self.mass[first + k].0 / points[first + k].place.0[3];
+                        weighted(
+                            &(cauchy * (1.0 / (density * density * around[k].filled))),
+                            self.mass[first + k].0,
+                        )
+                    }
+                };
+                if points[first + k].place.0[3] <= 0.0 {
+                    *out = CorrectedStress::default();
+                }
+            }
+        });
+        // Terms that only look: they leave the stresses as they are.
+        constitutive.fold(&mut constitutive.folded(&mut rows, block, stresses), &mut sum);
+        sum.close(&rows, block);
+        sum
+    }
+}
+
+/// A corrected stress, and what it counts in the sums of the force.
+fn weighted(stress: &DMat3, measure: f64) -> CorrectedStress {
+    CorrectedStress { traction: Lanes4::new(DVec3::ZERO, measure), ..CorrectedStress::new(stress) }
+}

@@ -1,0 +1,387 @@
+//! Solids whose kernels live in the present configuration: what is exact, against sums over all pairs that are written out here.
+
+mod common;
+
+use common::{all_plugins, failing, failing_metals, metals, removal, simulation};
+use meshless::glam::{DMat3, DVec3};
+use meshless::kernels::{Kernel, KernelName};
+use meshless::linalg::Sym3;
+use meshless::scene::Source;
+use meshless::simulation::{Checkpoint, Simulation};
+use meshless::world::{
+    BodyId, DeformationGradient, Force, Mass, PiolaStress, Position, ReferenceVolume, Velocity,
+};
+
+/// A block of 1 x 0.4 m of irregular particles with a velocity, and in three dimensions 0.4 m deep.
+fn block(dimension: usize, formulation: &str, velocity: &str, more: &str) -> Source {
+    let (name, max) = if dimension == 2 { ("Two", "(1, 0.4)") } else { ("Three", "(1, 0.4, 0.4)") };
+    let spacing = if dimension == 2 { 0.05 } else { 0.1 };
+    let text = format!(
+        r#"(dimension: {name},
+            materials: {{"rubber": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+            bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0, 0), max: {max}), spacing: {spacing},
+                      lattice: Relaxed(seed: 5, iterations: 2), formulation: {formulation})],
+            conditions: [InitialVelocity(on: Select(body: "block"), value: {velocity})],
+            {more}
+            time: (end: 100.0))"#
+    );
+    Source::new("block.ron", text.replace("(0, 0, 0)", if dimension == 2 { "(0, 0)" } else { "(0, 0, 0)" }))
+}
+
+fn after(source: &Source, steps: u64) -> Simulation {
+    let mut sim = simulation(source);
+    sim.run(|sim| sim.clock().step < steps).expect("a run");
+    sim
+}
+
+/// What the sums over pairs need of a particle.
+#[derive(Clone, Copy)]
+struct Particle {
+    x: DVec3,
+    v: DVec3,
+    f: DVec3,
+    m: f64,
+    /// V_0.
+    volume: f64,
+    deformation: DMat3,
+    stress: DMat3,
+}
+
+fn particles(sim: &Simulation) -> Vec<Particle> {
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let (x, v) = (view.read::<Position>().expect("places"), view.read::<Velocity>().expect("velocities"));
+    let (f, m) = (view.read::<Force>().expect("forces"), view.read::<Mass>().expect("masses"));
+    let volume = view.read::<ReferenceVolume>().expect("volumes");
+    let deformation = view.read::<DeformationGradient>().expect("gradients");
+    let stress = view.read::<PiolaStress>().expect("stresses");
+    let of = |k: usize| Particle {
+        x: x[k].0,
+        v: v[k].0,
+        f: f[k].0,
+        m: m[k].0,
+        volume: volume[k].0,
+        deformation: deformation[k].0,
+        stress: stress[k].0,
+    };
+    rows.map(of).collect()
+}
+
+/// Sums over all pairs of one body.
+struct Naive {
+    all: Vec<Particle>,
+    kernel: Kernel,
+    h: f64,
+    plane: bool,
+}
+
+impl Naive {
+    fn of(sim: &Simulation, dimension: usize) -> Self {
+        let support = 2.6 * sim.world().body(BodyId(0)).spacing;
+        let kernel = Kernel::new(KernelName::CubicSpline, dimension).expect("a kernel");
+        Self { all: particles(sim), kernel, h: kernel.smoothing_length(support), plane: dimension == 2 }
+    }
+
+    fn volume(&self, i: usize) -> f64 {
+        self.all[i].volume * self.all[i].deformation.determinant()
+    }
+
+    /// Neighbours with V_j w_ij and x_ij.
+    fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64, DVec3)> {
+        (0..self.all.len()).filter(move |&j| j != i).map(move |j| {
+            let x_ij = self.all[j].x - self.all[i].x;
+            (j, self.volume(j) * self.kernel.pair_weight(x_ij.length(), self.h), x_ij)
+        })
+    }
+
+    fn inverse_moment(&self, i: usize) -> DMat3 {
+        let mut m = self.pairs(i).fold(DMat3::ZERO, |m, (_, w, x)| m + Sym3::dyad(x).to_matrix() * w);
+        if self.plane {
+            m.z_axis.z = 1.0;
+        }
+        m.inverse()
+    }
+
+    fn cauchy(&self, i: usize) -> DMat3 {
+        let f = self.all[i].deformation;
+        self.all[i].stress * f.transpose() * (1.0 / f.determinant())
+    }
+
+    fn velocity_gradient(&self, i: usize) -> DMat3 {
+        let sum = self.pairs(i).fold(DMat3::ZERO, |sum, (j, w, x)| {
+            let v = (self.all[j].v - self.all[i].v) * w;
+            sum + DMat3::from_cols(v * x.x, v * x.y, v * x.z)
+        });
+        sum * self.inverse_moment(i)
+    }
+
+    fn forces(&self) -> Vec<DVec3> {
+        let n = self.all.len();
+        let a: Vec<DMat3> = (0..n).map(|i| self.cauchy(i) * self.inverse_moment(i)).collect();
+        let force = |i| self.volume(i) * self.pairs(i).map(|(j, w, x)| (a[i] + a[j]) * x * w).sum::<DVec3>();
+        (0..n).map(force).collect()
+    }
+}
+
+impl Naive {
+    /// The stiffness form of the hourglass control with xi and Young's modulus 1.
+    fn control(&self, xi: f64, reference: &[DVec3]) -> Vec<DVec3> {
+        let force = |i: usize| {
+            let of_pair = |(j, _, x): (usize, f64, DVec3)| {
+                let original = reference[j] - reference[i];
+                let error = 0.5 * (self.all[i].deformation + self.all[j].deformation) * original - x;
+                let weight = self.volume(i) * self.volume(j) * self.kernel.w(x.length(), self.h)
+                    / original.length_squared();
+                -xi * weight * error.dot(x) / x.length_squared() * x
+            };
+            self.pairs(i).map(of_pair).sum()
+        };
+        (0..self.all.len()).map(force).collect()
+    }
+}
+
+#[test]
+fn the_stiffness_form_of_the_control_is_the_sum_over_all_pairs() {
+    for dimension in [2, 3] {
+        let plugins = "plugins: [hourglass_control(form: Stiffness, xi: 3)],";
+        let mut sim = simulation(&block(dimension, "Eulerian()", WILD[dimension - 2], plugins));
+        let reference: Vec<DVec3> = particles(&sim).iter().map(|p| p.x).collect();
+        sim.run(|sim| sim.clock().step < 60).expect("a run");
+        let naive = Naive::of(&sim, dimension);
+        let control = naive.control(3.0, &reference);
+        let size = control.iter().map(|f| f.length()).fold(0.0, f64::max);
+        assert!(size > 1e-7, "{size}");
+        for ((particle, force), control) in naive.all.iter().zip(naive.forces()).zip(control) {
+            assert!(
+                (particle.f - force - control).length() < 1e-9 * size,
+                "{} {force} {control}",
+                particle.f
+            );
+        }
+        assert!(sim.ledger().total_named("hourglass_work") > 0.0);
+    }
+}
+
+const WILD: [&str; 2] = [
+    r#"("0.3*sin(5*x)*y", "0.2*cos(4*x) - 0.1*y")"#,
+    r#"("0.3*sin(5*x)*z", "0.2*cos(4*x) - 0.1*y", "0.2*x*y")"#,
+];
+
+#[test]
+fn the_force_is_the_adjoint_of_the_velocity_gradient() {
+    for dimension in [2, 3] {
+        let sim = after(&block(dimension, "Eulerian()", WILD[dimension - 2], ""), 40);
+        let naive = Naive::of(&sim, dimension);
+        let forces = naive.forces();
+        let size = forces.iter().map(|f| f.length()).fold(0.0, f64::max);
+        assert!(size > 1e-6);
+        for (particle, force) in naive.all.iter().zip(&forces) {
+            assert!((particle.f - *force).length() < 1e-11 * size, "{} and {force}", particle.f);
+        }
+        let sum = |of: &dyn Fn(&Particle) -> DVec3| naive.all.iter().map(of).sum::<DVec3>().length();
+        assert!(sum(&|p| p.f) < 1e-12 * size && sum(&|p| p.x.cross(p.f)) < 1e-12 * size);
+        let power: f64 = naive.all.iter().map(|p| p.f.dot(p.v)).sum();
+        let stress_power: f64 = (0..naive.all.len())
+            .map(|i| {
+                let (s, l) = (naive.cauchy(i), naive.velocity_gradient(i));
+                naive.volume(i) * (0..3).map(|k| s.col(k).dot(l.col(k))).sum::<f64>()
+            })
+            .sum();
+        assert!((power + stress_power).abs() < 1e-11 * stress_power.abs(), "{power} W and {stress_power} W");
+    }
+}
+
+#[test]
+fn an_affine_motion_has_its_gradient_to_the_bit_of_rounding_and_no_net_force() {
+    for (dimension, velocity) in [
+        (2, r#"("0.3*x + 0.2*y", "-0.5*x + 0.1*y")"#),
+        (3, r#"("0.3*x + 0.2*y", "-0.5*x + 0.1*z", "0.2*y - 0.4*z")"#),
+    ] {
+        // Nothing has acted before the second step: after the first, places are an affine map of those of the start.
+        let sim = after(&block(dimension, "Eulerian()", velocity, ""), 1);
+        let t = sim.clock().time;
+        let rate = if dimension == 2 {
+            DMat3::from_cols(DVec3::new(0.3, -0.5, 0.0), DVec3::new(0.2, 0.1, 0.0), DVec3::ZERO)
+        } else {
+            DMat3::from_cols(
+                DVec3::new(0.3, -0.5, 0.0),
+                DVec3::new(0.2, 0.0, 0.2),
+                DVec3::new(0.0, 0.1, -0.4),
+            )
+        };
+        let all = particles(&sim);
+        let (size, net): (f64, DVec3) =
+            all.iter().fold((0.0, DVec3::ZERO), |(size, net), p| (size + p.f.length(), net + p.f));
+        assert!(net.length() < 1e-10 * size, "{net} of {size}");
+        for p in all {
+            assert!(p.deformation.abs_diff_eq(DMat3::IDENTITY + rate * t, 1e-12), "{}", p.deformation);
+        }
+    }
+}
+
+#[test]
+fn a_body_that_starts_deformed_knows_it() {
+    let place = r#"InitialDisplacement(on: Select(body: "block"), value: ("0.2*x + 0.1*y", "-0.1*y"))"#;
+    let source = block(2, "Eulerian()", r#"("0", "0")"#, "");
+    let text = source.text.replace("conditions: [", &format!("conditions: [{place}, "));
+    let mut sim = simulation(&Source::new("stretched.ron", text));
+    sim.start().expect("a start");
+    let f = DMat3::from_cols(DVec3::new(1.2, 0.0, 0.0), DVec3::new(0.1, 0.9, 0.0), DVec3::Z);
+    assert!(particles(&sim).iter().all(|p| p.deformation.abs_diff_eq(f, 1e-12)));
+    assert!(sim.ledger().total_named("strain") > 0.0);
+}
+
+/// Momentum and angular momentum about the origin.
+fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
+    let all = particles(sim);
+    (all.iter().map(|p| p.m * p.v).sum(), all.iter().map(|p| p.x.cross(p.m * p.v)).sum())
+}
+
+#[test]
+fn a_thrown_body_that_turns_and_swings_keeps_its_momenta_and_its_energy() {
+    let velocities = [
+        r#"("0.3 - 0.4*(y - 0.2)", "0.4*(x - 0.5) + 0.1*cos(5.2*x)")"#,
+        r#"("0.3 - 0.4*(y - 0.2)", "0.4*(x - 0.5) + 0.1*cos(5.2*x)", "0.1*x")"#,
+    ];
+    let controls = ["", "form: Combined", "form: Viscous"];
+    for (dimension, velocity) in [2, 3].into_iter().zip(velocities) {
+        for control in controls {
+            let plugins = format!("plugins: [hourglass_control({control})],");
+            let mut sim = simulation(&block(dimension, "Eulerian()", velocity, &plugins));
+            sim.run(|sim| sim.clock().step < 1).expect("a step");
+            let ((linear, angular), energy) = (momenta(&sim), sim.ledger().stored());
+            let end = if dimension == 2 { 10.0 } else { 3.0 };
+            sim.run(|sim| sim.clock().time < end).expect("a run");
+            let (now, turned) = momenta(&sim);
+            assert!((now - linear).length() < 1e-12 * linear.length(), "{control}: {linear} -> {now}");
+            assert!(
+                (turned - angular).length() < 1e-10 * angular.length(),
+                "{control}: {angular} -> {turned}"
+            );
+            let error = sim.ledger().balance_error();
+            assert!(error.abs() < 0.03 * energy, "{control}: balance {error} J of {energy} J");
+        }
+    }
+}
+
+/// The scene with Eulerian bodies in the place of the total-Lagrangian ones.
+fn eulerian(source: &Source) -> Source {
+    assert!(source.text.contains("formulation: TotalLagrangian"), "{}", source.name);
+    let text = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
+    let text = text.replace("formulation: TotalLagrangian", "formulation: Eulerian()");
+    let text = text.replace("form: Ganzenmueller2015", "form: Stiffness");
+    let text = text.replace("Contact(between: (\"b\", \"b\"), law: Penalty()),", "");
+    Source::new(source.name.clone(), text)
+}
+
+#[test]
+fn bits_do_not_depend_on_threads_or_on_a_restart() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("state.mlc");
+    let steps = 90;
+    for source in [all_plugins(2), all_plugins(3), removal(), failing(), failing_metals(), metals()] {
+        let source = eulerian(&source);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
+            pool.install(|| after(&source, steps).state_hash())
+        };
+        let one = on(1);
+        assert_eq!(one, on(3), "{}: threads", source.name);
+        after(&source, 41).save(&path, &source).expect("a checkpoint");
+        let checkpoint = Checkpoint::read(&path).expect("a checkpoint");
+        let mut second = simulation(&checkpoint.source());
+        second.restore(&checkpoint).expect("a restart");
+        second.run(|sim| sim.clock().step < steps).expect("a run");
+        assert_eq!(one, second.state_hash(), "{}: restart", source.name);
+    }
+}
+
+/// A metal block that is squeezed and turned, whole or its half above a symmetry plane.
+fn squeezed(half: bool) -> Simulation {
+    let (low, plane) = if half { ("0", "Symmetry(plane: Y, at: 0.0, side: Above),") } else { ("-0.005", "") };
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"metal": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Linear(yield_stress: 2e8, modulus: 5e8))}},
+            bodies: [(name: "block", material: "metal", shape: Box(min: (0, {low}), max: (0.02, 0.005)), spacing: 1e-3,
+                      formulation: Eulerian(), plugins: [hourglass_control(form: Combined), artificial_viscosity()])],
+            conditions: [{plane} InitialVelocity(on: Select(body: "block"), value: ("-8000*(x - 0.01)", "2e4*y*cos(300*x)"))],
+            time: (end: 1, step: Fixed(5e-8)))"#
+    );
+    after(&Source::new("squeezed.ron", text), 300)
+}
+
+#[test]
+fn half_a_body_at_a_symmetry_plane_moves_as_half_of_the_whole() {
+    let (whole, half) = (squeezed(false), squeezed(true));
+    let upper: Vec<Particle> = particles(&whole).into_iter().filter(|p| p.x.y > 0.0).collect();
+    let half = particles(&half);
+    assert_eq!(upper.len(), half.len());
+    let mut moved = 0.0f64;
+    for a in &half {
+        let b = upper.iter().map(|b| b.x.distance(a.x)).fold(f64::INFINITY, f64::min);
+        assert!(b < 1e-10, "{b} m apart");
+        moved = moved
+            .max((a.deformation - DMat3::IDENTITY).abs().to_cols_array().into_iter().fold(0.0, f64::max));
+    }
+    assert!(moved > 0.03, "{moved}");
+    assert!(whole.ledger().relative_error().abs() < 5e-3, "{}", whole.ledger().relative_error());
+}
+
+#[test]
+fn a_body_that_fills_a_period_has_no_sides() {
+    let text = r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X]),
+        materials: {"rubber": NeoHookean(density: 1, young: 1, poisson: 0.3)},
+        bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0.2), max: (1, 0.8)), spacing: 0.05, formulation: Eulerian())],
+        conditions: [InitialVelocity(on: Select(body: "block"), value: ("5", "0.05*sin(20*y)"))],
+        time: (end: 100.0))"#;
+    let sim = after(&Source::new("period.ron", text.to_owned()), 200);
+    // It has flown through several periods, all columns alike.
+    let all = particles(&sim);
+    assert!(all[0].x.x > 2.0, "{}", all[0].x);
+    for row in all.chunks(20).take(1) {
+        let first = row[0].x.y;
+        assert!(row.iter().all(|p| (p.x.y - first).abs() < 1e-12 || (p.x.y - row[0].x.y).abs() > 0.02));
+    }
+    let (sum, size) = all.iter().fold((DVec3::ZERO, 0.0), |(sum, size), p| (sum + p.f, size + p.f.length()));
+    assert!(size > 0.0 && sum.length() < 1e-12 * size);
+    assert!(all.iter().all(|p| p.f.x.abs() < 1e-12 * size), "forces along the period");
+}
+
+/// What is wrong with a scene.
+fn fault(source: &Source) -> String {
+    let (scene, source) = meshless::scene::parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
+    match meshless::assembly::build(&scene, &source, &meshless::standard_plugins()) {
+        Ok(_) => panic!("no fault was found"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn what_it_does_not_offer_is_an_error_at_its_place() {
+    let at_rest = r#"("0", "0")"#;
+    for (plugin, words) in [
+        ("hourglass_control(form: Variational)", "no hourglass control of the form `Variational`"),
+        (
+            "hourglass_control(form: Ganzenmueller2015)",
+            "no hourglass control of the form `Ganzenmueller2015`",
+        ),
+        ("hourglass_control(alpha: 5)", "`alpha` is the coefficient of Lagrangian bodies"),
+        ("hourglass_control(form: Combined, chi: 1.5)", "`chi` is 1.5, outside of 0 to 1"),
+    ] {
+        let text = fault(&block(2, "Eulerian()", at_rest, &format!("plugins: [{plugin}],")));
+        assert!(text.contains(words), "{text}");
+    }
+    let plugins = "plugins: [hourglass_control(form: Stiffness)],";
+    let text = fault(&block(2, "TotalLagrangian", at_rest, plugins));
+    assert!(text.contains("no hourglass control of the form `Stiffness`"), "{text}");
+    for (formulation, words) in [
+        ("Eulerian(support: 1)", "`support` must be between 1.5 and 10 spacings"),
+        ("Eulerian(artificial_stress: (epsilon: -1))", "`artificial_stress.epsilon` must not be negative"),
+        ("Eulerian(artificial_stress: (exponent: 0))", "`artificial_stress.exponent` must be 1 to 16"),
+    ] {
+        let text = fault(&block(2, formulation, at_rest, ""));
+        assert!(text.contains(words), "{text}");
+    }
+    let contact = r#"contacts: [Contact(between: ("block", "block"), law: Penalty())],"#;
+    let text = fault(&block(2, "Eulerian()", at_rest, contact));
+    assert!(text.contains("contact of a body with itself"), "{text}");
+}
