@@ -118,7 +118,7 @@ impl ListedBody {
         });
         let limit = 0.5 * SKIN * self.support;
         // What is not a number is far, too.
-        !(farthest.0 <= limit * limit)
+        farthest.0.is_nan() || farthest.0 > limit * limit
     }
 
     /// What the body repeats itself by where it is now, and how far from a side its ghosts have their sources, m: a body that fills a period goes

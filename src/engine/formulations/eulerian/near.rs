@@ -30,6 +30,8 @@ pub(super) struct Surroundings {
 pub(super) struct Near {
     pub neighbors: Vec<u32>,
     pub weights: Vec<f64>,
+    /// Kernel values W_ij.
+    pub kernels: Vec<f64>,
     pub around: Vec<Surroundings>,
 }
 
@@ -48,6 +50,7 @@ pub(super) struct NearRows<'a> {
     pub offsets: &'a [usize],
     pub neighbors: &'a mut [u32],
     pub weights: &'a mut [f64],
+    pub kernels: &'a mut [f64],
     pub around: &'a mut [Surroundings],
 }
 
@@ -57,17 +60,19 @@ impl Split for NearRows<'_> {
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        let Self { offsets, neighbors, weights, around } = self;
+        let Self { offsets, neighbors, weights, kernels, around } = self;
         let cut = offsets[at] - offsets[0];
         let (neighbors, neighbors_rest) = neighbors.split_at_mut(cut);
         let (weights, weights_rest) = weights.split_at_mut(cut);
+        let (kernels, kernels_rest) = kernels.split_at_mut(cut);
         let (around, around_rest) = around.split_at_mut(at);
         (
-            Self { offsets: &offsets[..=at], neighbors, weights, around },
+            Self { offsets: &offsets[..=at], neighbors, weights, kernels, around },
             Self {
                 offsets: &offsets[at..],
                 neighbors: neighbors_rest,
                 weights: weights_rest,
+                kernels: kernels_rest,
                 around: around_rest,
             },
         )
@@ -123,7 +128,8 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
                 if square < limit && volume > 0.0 {
                     let distance = square.sqrt();
                     let weight = kernel.pair_weight(distance);
-                    (rows.neighbors[at], rows.weights[at]) = (j, weight);
+                    let value = kernel.w(distance);
+                    (rows.neighbors[at], rows.weights[at], rows.kernels[at]) = (j, weight, value);
                     at += 1;
                     let weighted = a.scale(volume * weight, arm);
                     for axis in 0..D {
@@ -131,7 +137,7 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
                     }
                     reach = a.plus(reach, weighted);
                     weight_sum += volume * weight;
-                    filled += volume * kernel.w(distance);
+                    filled += volume * value;
                 }
             }
             let inverse_moment =

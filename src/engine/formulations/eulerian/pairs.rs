@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::rows::EulerianRows;
-use crate::kernels::Kernel;
-use crate::pair::{Extras, Neighbor, PairBatch, PairReads, PairRows, PairSource, WeightAt};
+use super::rows::{EulerianRows, Point};
+use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Step, StepError};
-use crate::world::{BodyId, PhaseId, ReferencePosition};
+use crate::world::{BodyId, PhaseId};
 
 /// Gives pair terms the neighbours of the phase.
 pub(super) struct EulerianPairs(pub PhaseId);
@@ -18,72 +18,114 @@ impl PairSource for EulerianPairs {
         &self,
         step: &Step<'_>,
         body: BodyId,
-        reads: PairReads,
+        _: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError> {
         let packed = step.resources.solid_rows::<EulerianRows>(self.0);
-        let reference = step.world.phase(self.0).read::<ReferencePosition>()?;
-        let Some(k) = packed.lists.bodies.iter().position(|of| of.id == body) else { return Ok(()) };
-        run(&BodyPairs {
-            packed: &packed,
-            reference: bytemuck::cast_slice(&reference),
-            support: packed.lists.bodies[k].support,
-            kernel: reads.kernel.then_some(packed.kernels[k].kernel),
-        })
+        let Some(body) = packed.lists.bodies.iter().find(|of| of.id == body) else { return Ok(()) };
+        run(&BodyPairs { packed: &packed, support: body.support })
     }
 }
 
 /// The pairs of one body.
 struct BodyPairs<'a> {
     packed: &'a EulerianRows,
-    reference: &'a [DVec3],
     /// Support radius, m.
     support: f64,
-    /// Kernel, where its values are read.
-    kernel: Option<Kernel>,
-}
-
-impl BodyPairs<'_> {
-    #[inline]
-    fn neighbor(&self, i: usize, j: usize, weight: f64) -> Neighbor {
-        let EulerianRows { lists, points, .. } = self.packed;
-        let (own, other) = (&points[i], &points[j]);
-        let current = other.place.xyz() - own.place.xyz();
-        let kernel = |kernel: Kernel| kernel.w(current.length(), kernel.smoothing_length(self.support));
-        Neighbor {
-            row: lists.ghosts.source(j) as u32,
-            signs: lists.ghosts.mirror(j).unwrap_or(DVec3::ONE),
-            current,
-            reference: lists.ghosts.pair(self.reference, i, j),
-            velocity: other.velocity.xyz() - own.velocity.xyz(),
-            weight,
-            kernel: self.kernel.map_or(0.0, kernel),
-            volume: other.place.0[3],
-            support: self.support,
-        }
-    }
 }
 
 impl PairRows for BodyPairs<'_> {
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch) {
-        let EulerianRows { lists, near, points, .. } = self.packed;
-        let extras = Extras {
-            reference: true,
-            weight_at: WeightAt::Current,
-            mirrors: !lists.ghosts.is_empty(),
-            supports: false,
-        };
-        batch.begin(extras, self.support);
+        run_hot_on(self.packed.plane, Fill { pairs: self, rows, batch });
+    }
+}
+
+/// Fills the rows of some particles.
+struct Fill<'a> {
+    pairs: &'a BodyPairs<'a>,
+    rows: Range<usize>,
+    batch: &'a mut PairBatch,
+}
+
+impl HotLoop for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        let Self { pairs: BodyPairs { packed, support }, rows, batch } = self;
+        let EulerianRows { lists, near, points, .. } = *packed;
+        let mirrors = !lists.ghosts.is_empty();
+        let extras = Extras { reference: true, weight_at: WeightAt::Current, mirrors, supports: false };
+        batch.begin(extras, *support);
         for i in rows {
             if batch.is_full() {
                 break;
             }
-            let (neighbors, weights) = near.row(lists.offsets[i], i);
+            let part = lists.offsets[i]..lists.offsets[i] + near.around[i].count as usize;
+            let neighbors = &near.neighbors[part.clone()];
             let mut room = batch.add_row(points[i].place.0[3], neighbors.len());
-            for (k, (&j, &weight)) in neighbors.iter().zip(weights).enumerate() {
-                room.put(k, self.neighbor(i, j as usize, weight));
+            let (fours, rest) = neighbors.as_chunks::<4>();
+            for n in 0..fours.len() {
+                put(a, packed, (i, fours[n], 4), part.start + 4 * n, n, &mut room);
             }
-            room.close(neighbors.len());
+            if !rest.is_empty() {
+                let mut four = [i as u32; 4];
+                four[..rest.len()].copy_from_slice(rest);
+                let n = fours.len();
+                put(a, packed, (i, four, rest.len()), part.start + 4 * n, n, &mut room);
+            }
         }
     }
+}
+
+/// Puts the first `count` of four neighbours of row `i`, whose weights begin at `at`, into place `n` of the room.
+#[inline(always)]
+fn put<A: Arithmetic>(
+    a: A,
+    packed: &EulerianRows,
+    (i, four, count): (usize, [u32; 4], usize),
+    at: usize,
+    n: usize,
+    room: &mut Room<'_>,
+) {
+    let EulerianRows { lists, near, points, originals, .. } = packed;
+    let [j, k, l, m] = four.map(|row| row as usize);
+    let of: [&Point; 4] = [&points[j], &points[k], &points[l], &points[m]];
+    let (own, original) = (&points[i], originals[i]);
+    let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
+    let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());
+    let [x, y, z, _] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
+    let passing = Vector::new(a, [x, y, z]) - Vector::splat(a, own.velocity.xyz());
+    let [x, y, z, _] = a.transpose([originals[j], originals[k], originals[l], originals[m]]);
+    let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
+    let (mut weight, mut kernel, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO, Lanes4::ZERO);
+    for lane in 0..count {
+        weight.0[lane] = near.weights[at + lane];
+        kernel.0[lane] = near.kernels[at + lane];
+        volume_j.0[lane] = volume.0[lane];
+    }
+    let pairs = &mut room.pairs[n];
+    pairs.current = four_vectors(a, now);
+    pairs.velocity = lanes(passing);
+    (pairs.weight, pairs.kernel, pairs.volume_j) = (weight, kernel, volume_j);
+    room.reference[n] = four_vectors(a, then);
+    room.rows[n] = four;
+    if !room.mirrors.is_empty() {
+        for lane in 0..4 {
+            room.mirrors[n][lane] = lists.ghosts.mirror(four[lane] as usize).unwrap_or(DVec3::ONE);
+            room.rows[n][lane] = lists.ghosts.source(four[lane] as usize) as u32;
+        }
+    }
+}
+
+/// Four vectors, with the squares of their lengths, above zero.
+#[inline(always)]
+fn four_vectors<A: Arithmetic>(a: A, vector: Vector<A>) -> FourVectors {
+    let square = vector.length_squared().lanes();
+    FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
+}
+
+#[inline(always)]
+fn lanes<A: Arithmetic>(vector: Vector<A>) -> [Lanes4; 3] {
+    [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }

@@ -180,16 +180,19 @@ fn set_up(
         lists: Lists::new(listed),
         kernels,
         points: Vec::new(),
+        originals: Vec::new(),
         near: Near { around: vec![Surroundings::default(); view.len()], ..Near::default() },
         deformation: vec![DMat3::IDENTITY; view.len()],
         stresses: Vec::new(),
         stable_step: Vec::new(),
         plane: setup.world.dimension() == Dimension::Two,
     };
-    packed.update_lists(bytemuck::cast_slice(&reference)).map_err(|(body, error)| {
-        let help = "use a larger `support`, or more particles across the body";
-        SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
-    })?;
+    packed.update_lists(bytemuck::cast_slice(&reference), bytemuck::cast_slice(&reference)).map_err(
+        |(body, error)| {
+            let help = "use a larger `support`, or more particles across the body";
+            SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
+        },
+    )?;
     let columns = PointColumns {
         position: bytemuck::cast_slice(&reference),
         velocity: &view.read::<Velocity>().map_err(missing)?,
@@ -210,7 +213,8 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
         let mut rows = NearRows {
             offsets: &lists.offsets[rows.start..=rows.end],
             neighbors: &mut near.neighbors[of_lists.clone()],
-            weights: &mut near.weights[of_lists],
+            weights: &mut near.weights[of_lists.clone()],
+            kernels: &mut near.kernels[of_lists],
             around: &mut near.around[rows],
         };
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);

@@ -3,7 +3,7 @@
 //! With the Cayley map the change of F over its mean is dt L to the bit of rounding, which is what hypoelastic laws take, and a rigid rotation
 //! stays one. Places at the end of the step would give a rotating body a spurious dilatation of omega^2 dt / 2.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use super::near::LEAST_SPREAD;
 use super::rows::{EulerianRows, Point, PointColumns};
@@ -27,14 +27,15 @@ impl Run for Rates {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
         let view = step.world.phase(self.phase);
         let position = view.read::<Position>()?;
+        let reference = view.read::<ReferencePosition>()?;
         let mut deformation = view.write::<DeformationGradient>()?;
         if step.clock.step == 0 && step.clock.dt == 0.0 {
-            let reference = view.read::<ReferencePosition>()?;
             let volume = view.read::<ReferenceVolume>()?;
             let places = (bytemuck::cast_slice(&reference), bytemuck::cast_slice(&position));
             start::fit_gradients(&packed, places, bytemuck::cast_slice(&volume), &mut deformation);
         }
-        update_lists(&mut packed, bytemuck::cast_slice(&position), step.world)?;
+        let places = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
+        update_lists(&mut packed, places, step.world)?;
         if step.clock.dt > 0.0 {
             let (velocity, volume) = (view.read::<Velocity>()?, view.read::<ReferenceVolume>()?);
             let columns = PointColumns {
@@ -53,8 +54,12 @@ impl Run for Rates {
 }
 
 /// Brings the lists up to date.
-fn update_lists(packed: &mut EulerianRows, position: &[glam::DVec3], world: &World) -> Result<(), StepError> {
-    packed.update_lists(position).map_err(|(body, error)| {
+fn update_lists(
+    packed: &mut EulerianRows,
+    (position, reference): (&[DVec3], &[DVec3]),
+    world: &World,
+) -> Result<(), StepError> {
+    packed.update_lists(position, reference).map_err(|(body, error)| {
         let message = format!("neighbours of body `{}` cannot be listed: {error}", world.body(body).name);
         StepError::System { system: super::parameters::RATES.to_owned(), message }
     })

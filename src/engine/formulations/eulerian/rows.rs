@@ -9,7 +9,7 @@ use super::parameters::Divergence;
 use crate::kernels::Kernel;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::solids::CorrectedStress;
-use crate::symmetry::Map;
+use crate::symmetry::{Ghost, Map};
 use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
 
 /// A particle as its neighbours read it.
@@ -44,6 +44,8 @@ pub(super) struct EulerianRows {
     /// Of every body, as in the lists.
     pub kernels: Vec<BodyKernel>,
     pub points: Vec<Point>,
+    /// X, for pair terms that compare with the start.
+    pub originals: Vec<Lanes4>,
     pub near: Near,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
@@ -64,18 +66,25 @@ pub(super) struct PointColumns<'a> {
 }
 
 impl EulerianRows {
-    /// Brings the lists up to date, with room for all that hangs on them.
+    /// Brings the lists up to date, with room for all that hangs on them. Positions and reference positions, m.
     pub fn update_lists(
         &mut self,
         position: &[DVec3],
+        reference: &[DVec3],
     ) -> Result<(), (crate::world::BodyId, crate::neighbors::NeighborError)> {
         if self.lists.update(position)? {
             let pairs = self.lists.neighbors.len();
             self.near.neighbors.resize(pairs, 0);
             self.near.weights.resize(pairs, 0.0);
+            self.near.kernels.resize(pairs, 0.0);
             let all = position.len() + self.lists.ghosts.len();
             self.points.resize(all, Point::default());
             self.stresses.resize(all, CorrectedStress::default());
+            self.originals.clear();
+            self.originals.extend(reference.iter().map(|x| Lanes4::new(*x, 0.0)));
+            self.originals.resize(all, Lanes4::ZERO);
+            let image = |ghost: Ghost<'_>, x: &Lanes4| Lanes4::new(ghost.map.place(x.xyz()), 0.0);
+            self.lists.ghosts.fill(&mut self.originals, image);
         }
         Ok(())
     }

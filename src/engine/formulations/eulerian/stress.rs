@@ -111,7 +111,8 @@ impl Stress {
             near: NearRows {
                 offsets: &lists.offsets[rows.start..=rows.end],
                 neighbors: &mut near.neighbors[of_lists.clone()],
-                weights: &mut near.weights[of_lists],
+                weights: &mut near.weights[of_lists.clone()],
+                kernels: &mut near.kernels[of_lists],
                 around: &mut near.around[rows.clone()],
             },
             deformation: &mut deformation[rows.clone()],
