@@ -63,11 +63,8 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: &[(Kind, &str)] = &[
-    (Kind::Formulation, "Eulerian"),
-    (Kind::Plugin, "hessian_stabilization"),
-    (Kind::Plugin, "artificial_stress"),
-];
+const LATER: &[(Kind, &str)] =
+    &[(Kind::Plugin, "hessian_stabilization"), (Kind::Plugin, "artificial_stress")];
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
 
@@ -91,6 +88,8 @@ type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 pub struct Registry {
     materials: BTreeMap<&'static str, BuildMaterial>,
     formulations: BTreeMap<&'static str, FormulationEntry>,
+    /// Formulations that stand in for others.
+    stand_ins: BTreeMap<&'static str, &'static str>,
     builders: BTreeMap<(Kind, &'static str), Box<dyn Any + Send + Sync>>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
     /// Names of the plugins that change the laws of materials.
@@ -162,6 +161,13 @@ impl Registry {
         self
     }
 
+    /// Gives every body that names one formulation another one, with the parameters that it has in the scene: to run scenes with another method.
+    #[must_use]
+    pub fn with_stand_in(mut self, named: &'static str, other: &'static str) -> Self {
+        self.stand_ins.insert(named, other);
+        self
+    }
+
     /// Whether a plugin changes the laws of materials.
     pub(crate) fn changes_materials(&self, item: &Item) -> bool {
         self.of_materials.contains(item.name())
@@ -217,7 +223,8 @@ impl Registry {
     }
 
     pub(crate) fn find_formulation(&self, item: &Item) -> Result<&FormulationEntry, Vec<Problem>> {
-        self.formulations.get(item.name()).ok_or_else(|| self.unknown(Kind::Formulation, item))
+        let name = self.stand_ins.get(item.name()).copied().unwrap_or(item.name());
+        self.formulations.get(name).ok_or_else(|| self.unknown(Kind::Formulation, item))
     }
 
     /// What [`Registry::add_builder`] was given for a name.
