@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use meshless_engine::plugin::{Kind, Registry};
-use meshless_engine::scene::{Scene, TypeDoc, schema_markdown, type_docs};
+use meshless_engine::scene::{Scene, TypeDoc, expression_names, schema_markdown, type_docs};
 
 use super::failure::Failure;
 use super::plugins::KINDS;
@@ -44,8 +44,23 @@ pub fn execute(_: &Arguments, registry: &Registry) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The names of expressions and of fields.
+fn names(registry: &Registry) -> String {
+    let mut text = "\n# Names in expressions\n\n| name | meaning |\n|---|---|\n".to_owned();
+    for (name, meaning) in expression_names() {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "| `{name}` | {meaning} |");
+    }
+    text += "\n# Fields\n\nWhat probes, recordings and ParaView files can show, by body as far as its particles have it. `velocity.x` is a \
+        component of a vector, `stress.xy` one of a tensor. Plugins may add fields.\n\n| field | unit |\n|---|---|\n";
+    for (name, unit) in meshless_engine::assembly::fields(registry) {
+        let _ = writeln!(text, "| `{name}` | {} |", if unit == "1" { "-" } else { unit });
+    }
+    text
+}
+
 fn reference(registry: &Registry) -> String {
-    let mut page = format!("{INTRODUCTION}\n{}", schema_markdown());
+    let mut page = format!("{INTRODUCTION}\n{}{}", schema_markdown(), names(registry));
     let mut told: Vec<TypeDoc> = type_docs::<Scene>();
     for kind in KINDS {
         // Writing to a String cannot fail.

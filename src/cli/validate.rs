@@ -31,6 +31,8 @@ mod measure;
 mod neighbor_lists;
 mod oscillating_plate;
 mod patch;
+mod plate_with_hole;
+mod pressurised;
 mod punch;
 mod random;
 mod rebound;

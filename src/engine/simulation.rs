@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use crate::record::probe::Probe;
 use crate::record::{OutputHandle, StateHash};
 use crate::scene::{self, Scene, Source};
 use crate::schedule::{
     Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits, Turn,
 };
-use crate::world::{PhaseId, World};
+use crate::world::{MissingColumn, PhaseId, World};
 
 mod checkpoint;
 mod closing;
@@ -40,6 +41,7 @@ pub struct Simulation {
     references: Vec<String>,
     started: bool,
     output: Option<OutputHandle>,
+    probes: Vec<Probe>,
     checkpoint_at_end: bool,
     source: Source,
     title: String,
@@ -59,6 +61,8 @@ pub(crate) struct SimulationParts {
     pub sub_cycled: Vec<PhaseId>,
     /// What it writes; none if it writes nothing.
     pub output: Option<OutputHandle>,
+    /// Probes of the scene.
+    pub probes: Vec<Probe>,
     /// The text of its scene.
     pub source: Source,
     pub warnings: Vec<String>,
@@ -83,7 +87,7 @@ pub enum RunError {
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
     /// The step has become too small to go on.
-    #[error("the time step has fallen to {dt:.3e} s, limited by {by}: the run would not end")]
+    #[error("the time step has fallen to {dt:.3e} s, limited by {by}: the run would never finish")]
     StepTooSmall {
         /// Proposed step, s.
         dt: f64,
@@ -103,6 +107,7 @@ impl Simulation {
             schedule,
             sub_cycled,
             output,
+            probes,
             source,
             warnings,
             references,
@@ -124,6 +129,7 @@ impl Simulation {
             references,
             started: false,
             output,
+            probes,
             checkpoint_at_end: scene.record.checkpoint_at_end,
             inputs: Inputs::of(&source, scene.parameter_values()),
             source,
@@ -133,6 +139,16 @@ impl Simulation {
             failure: None,
             pace: summary::Pace::default(),
         }
+    }
+
+    /// What a probe of the scene shows now: name and value of each of its columns; nothing for energies, and if no probe has the name.
+    ///
+    /// # Errors
+    /// A column is missing.
+    pub fn measure(&self, probe: &str) -> Result<Vec<(String, f64)>, MissingColumn> {
+        let Some(probe) = self.probes.iter().find(|known| known.name == probe) else { return Ok(Vec::new()) };
+        let values = probe.gauge.read(&self.world, &self.resources)?;
+        Ok(probe.gauge.columns().into_iter().map(|(name, _)| name).zip(values).collect())
     }
 
     /// Columns and bodies.

@@ -1,4 +1,4 @@
-//! Failure of solids: when a particle breaks, how fast, and what it then does. It is put about the material of a body,
+//! Failure of solids: when a particle breaks, how fast, and what it then does. It wraps the material of a body,
 //! whichever that is.
 
 mod criterion;
@@ -37,7 +37,7 @@ column! {
     pub struct DamagedEnergy(f64) = "damaged_energy", "psi_D", "J/m^3";
     /// Deformation gradient at the end of the last step; of a failed particle that at failure.
     pub struct DamagedDeformation(glam::DMat3) = "damaged_deformation", "F_D", "1";
-    /// Volume ratio of a failed particle at the end of the last step; infinite for one that has been torn to pieces.
+    /// Volume ratio of a failed particle at the end of the last step; infinite for one that has lost its integrity.
     pub struct FailedVolume(f64) = "failed_volume", "J_D", "1";
     /// Mean stress of a failed particle at the end of the last step.
     pub struct FailedStress(f64) = "failed_stress", "sigma_m", "Pa";

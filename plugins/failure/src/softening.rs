@@ -11,8 +11,8 @@ pub enum Then {
     /// It resists compression of its volume alone, like rubble. On the way there damage takes from positive principal stresses.
     #[default]
     NoTension,
-    /// It resists changes of its volume alone, like a liquid, tension included, until it is torn to pieces: blown up to twice its volume, turned inside
-    /// out, or with areas three times as large. It then bears nothing any more. On the way there damage takes from the deviator.
+    /// It resists changes of its volume alone, like a liquid, tension included, until it loses its integrity: volume ratio above 2,
+    /// inverted (det F <= 0), or areas three times as large. It then carries nothing any more. On the way there damage takes from the deviator.
     NoDeviator,
     /// It is taken out of the run. On the way there damage takes from positive principal stresses.
     Removed,
@@ -47,7 +47,7 @@ impl Then {
     }
 }
 
-/// Volume ratio, and mean ratio of areas, beyond which a liquid has been torn to pieces.
+/// Volume ratio, and mean ratio of areas, beyond which a liquid has lost its integrity.
 const TORN: [f64; 2] = [2.0, 3.0];
 
 /// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.

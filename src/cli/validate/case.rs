@@ -53,6 +53,9 @@ macro_rules! for_each_case {
             S21 upsetting::CASE;
             S22 bar_impact::CASE;
             S23 thick_ring::CASE;
+            S23b pressurised::TUBE;
+            S23c pressurised::SPHERE;
+            S23d plate_with_hole::CASE;
             C1 hertz::CASE;
             C2 incline::CASE;
             C3 restitution::CASE;

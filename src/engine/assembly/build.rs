@@ -81,6 +81,7 @@ fn build_in(
     crate::integrate::add_systems(&mut sim);
     crate::record::watchdog::add_system(&mut sim);
     let plan = OutputPlan::resolve(&mut sim, &recorder_items)?;
+    let probes = plan.probes();
     let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
     sim.refuse_leftovers()?;
     let world = spawn::spawn(&sim);
@@ -103,6 +104,7 @@ fn build_in(
         schedule,
         sub_cycled: sim.sub_cycled,
         output,
+        probes,
         source: source.clone(),
         warnings: sim.warnings,
         references: sim.references,

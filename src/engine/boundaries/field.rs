@@ -45,7 +45,7 @@ impl Field {
             return Err(SetupError::parameter(
                 "value",
                 "no axis has a value",
-                "give a number or an expression for at least one axis; `None` leaves an axis alone",
+                "give a number or an expression for at least one axis; `None` leaves an axis unconstrained",
             ));
         }
         Ok(Self { components })

@@ -17,6 +17,8 @@ mod prescribed;
 mod pressure;
 mod rigid_part;
 mod skin_load;
+#[cfg(test)]
+mod surface_tests;
 mod symmetry;
 #[cfg(test)]
 mod tests;

@@ -74,7 +74,11 @@ impl ElasticConstants {
             }
             _ => {
                 let field = if bulk.is_some() { "bulk" } else { "shear" };
-                Err(ParameterError::new(field, "elastic constants of two kinds are mixed", pair_help))
+                Err(ParameterError::new(
+                    field,
+                    "the elastic constants must be one pair, `young` and `poisson` or `bulk` and `shear`",
+                    pair_help,
+                ))
             }
         }
     }

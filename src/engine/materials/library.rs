@@ -172,7 +172,7 @@ macro_rules! linear_hardening {
 }
 
 linear_hardening!(
-    /// Copper of the usual Taylor bar, J2 with linear hardening.
+    /// Copper, standard Taylor-bar parameters: J2 with linear hardening.
     Copper, "Taylor bar of J. Bonet and A. J. Burton, Commun. Numer. Methods Engrg. 14 (1998) 437-449", {
         density: 8930.0,
         young: 117.0e9,

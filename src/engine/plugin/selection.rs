@@ -49,8 +49,7 @@ pub(super) fn resolve(
         return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
     }
     if select.surface.is_some() {
-        let help =
-            "select particles by `within`, `face` or `nearest`; `surface` is for `Traction` and `Pressure`";
+        let help = "select particles by `within`, `face` or `nearest`; `surface` is for `Traction`, `Pressure` and probes of fields";
         return Err(SetupError::parameter(path("surface"), "a surface has no particles of its own", help));
     }
     let within = match &select.within {

@@ -19,7 +19,7 @@ pub const STOP: &str = "stop_when";
 /// A condition with what it looks at.
 struct Condition {
     when: StopWhen,
-    gauge: Gauge,
+    gauge: Arc<Gauge>,
     trigger: Trigger,
     /// Whether the last sample was beyond the value; none before the first one.
     beyond: Option<bool>,
@@ -39,7 +39,7 @@ impl Condition {
             return Err(Vec::new());
         };
         let Probe { interval, gauge, .. } = Probe::resolve(index, probe, sim, table)?;
-        let names: Vec<String> = match &gauge {
+        let names: Vec<String> = match &*gauge {
             Gauge::Energies(_) => Vec::new(),
             gauge => gauge.columns().into_iter().map(|(name, _)| name).collect(),
         };
@@ -62,7 +62,7 @@ impl Condition {
     /// Value and unit of the column; none for an energy account that is not open yet.
     fn read(&self, step: &Step<'_>) -> Result<Option<(f64, &'static str)>, StepError> {
         let wanted = |name: &str| self.when.column.as_deref().is_none_or(|column| column == name);
-        let (columns, values) = match &self.gauge {
+        let (columns, values) = match &*self.gauge {
             Gauge::Energies(energies) => {
                 let accounts = EnergyColumns::accounts(step.ledger);
                 (energies.names(&accounts), energies.values(&accounts, step.ledger))

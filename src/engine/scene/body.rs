@@ -12,7 +12,7 @@ use crate::shapes::{Lattice, Shape};
 pub struct Body {
     /// Name by which conditions, contacts, probes and files refer to the body.
     pub name: String,
-    /// Name of one of the scene's materials. A `Wall` has none of its own; any name will do.
+    /// Name of one of the scene's materials. The name is ignored for a `Wall`, which has none.
     pub material: String,
     /// The space that the body fills at the start.
     pub shape: Shape,

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::names::unknown;
-use super::{Axis, Dimension, Face, Probe, Problem, Quantity, Scene, Select, Step};
+use super::{Axis, Dimension, Face, Problem, Scene, Select, Step, probe_check};
 use crate::notation::number;
 
 /// All that is wrong with the values of a scene.
@@ -19,7 +19,7 @@ pub(super) fn check(scene: &Scene) -> Vec<Problem> {
     in_plane(scene, scene.gravity.0, "gravity", &mut problems);
     check_bodies(scene, &mut problems);
     check_contacts(scene, &mut problems);
-    check_probes(scene, &mut problems);
+    probe_check::check(scene, &mut problems);
     for (field, every) in [("every", scene.record.every), ("checkpoint_every", scene.record.checkpoint_every)]
     {
         positive_time(every, &format!("record.{field}"), &mut problems);
@@ -142,50 +142,6 @@ fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
     }
 }
 
-fn check_probes(scene: &Scene, problems: &mut Vec<Problem>) {
-    for (i, probe) in scene.probes.iter().enumerate() {
-        let at = |field: &str| format!("probes[{i}].{field}");
-        usable_name("probe", &probe.name, at("name"), problems);
-        if scene.probes[..i].iter().any(|other| other.name == probe.name) {
-            problems.push(twice("probe", &probe.name, at("name")));
-        }
-        if probe.name == "energy" {
-            let message = "the name `energy` is reserved: the energy balance is written to `energy.csv`";
-            problems
-                .push(Problem::at_path(at("name"), message).help("choose another name, such as `energies`"));
-        }
-        problems.extend(place_of_probe(probe, i));
-        for (field, message, help) in probe.on.iter().flat_map(|on| on.problems(scene)) {
-            problems.push(Problem::at_path(at(&format!("on.{field}")), message).helps(help));
-        }
-        if let Some(point) = probe.at {
-            in_plane(scene, point.0, &at("at"), problems);
-        }
-        positive_time(probe.every, &at("every"), problems);
-    }
-}
-
-fn place_of_probe(probe: &Probe, i: usize) -> Option<Problem> {
-    let (field, message) = match (&probe.on, probe.at, &probe.quantity) {
-        (Some(_), Some(_), _) => ("at", "a probe has either `on` or `at`, not both"),
-        (None, Some(_), Quantity::Energy) => ("at", "`Energy` is measured on a selection, not at a point"),
-        (None, Some(_), Quantity::Force) => ("at", "`Force` is measured on a selection, not at a point"),
-        (None, Some(_), Quantity::Torque) => ("at", "`Torque` is measured on a selection, not at a point"),
-        (None, Some(_), Quantity::FluidForce | Quantity::FluidTorque { .. }) => {
-            ("at", "forces are measured on a selection, not at a point")
-        }
-        (Some(_), None, quantity) if quantity.at_point() == Some(true) => {
-            ("on", "this quantity is measured at a point, not on a selection")
-        }
-        (None, None, Quantity::Energy) | (Some(_), None, _) | (None, Some(_), _) => return None,
-        (None, None, _) => ("name", "the probe needs `on` or `at`"),
-    };
-    Some(
-        Problem::at_path(format!("probes[{i}].{field}"), message)
-            .help("`on: Select(...)` averages over particles, `at: (x, y, z)` measures at a point"),
-    )
-}
-
 impl Select {
     /// What is wrong with the selection in this scene: for each the field, the message and what would be right.
     pub fn problems(&self, scene: &Scene) -> Vec<(&'static str, String, Vec<String>)> {
@@ -206,12 +162,12 @@ impl Select {
     }
 }
 
-fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
+pub(super) fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
     let names: Vec<_> = scene.bodies.iter().map(|body| &body.name).collect();
     scene.body(name).is_none().then(|| unknown("body", name, &names))
 }
 
-fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) {
+pub(super) fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) {
     let fits = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+' | ' ');
     let what = if name.is_empty() {
         format!("the name of the {kind} is empty")
@@ -228,11 +184,11 @@ fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) 
         .push(Problem::at_path(at, what).help("names are made of letters, digits, spaces, `_`, `-`, `+`"));
 }
 
-fn twice(kind: &str, name: &str, at: String) -> Problem {
+pub(super) fn twice(kind: &str, name: &str, at: String) -> Problem {
     Problem::at_path(at, format!("two {kind} names are the same: `{name}`")).help("names must differ")
 }
 
-fn positive_time(every: Option<f64>, at: &str, problems: &mut Vec<Problem>) {
+pub(super) fn positive_time(every: Option<f64>, at: &str, problems: &mut Vec<Problem>) {
     if let Some(every) = every.filter(|every| *every <= 0.0) {
         problems
             .push(Problem::at_path(at, format!("the interval must be positive, found {} s", number(every))));
@@ -245,7 +201,7 @@ fn out_of_plane(z: f64) -> String {
     format!("a vector of a two-dimensional scene has z = {}", number(z))
 }
 
-fn in_plane(scene: &Scene, vector: DVec3, at: &str, problems: &mut Vec<Problem>) {
+pub(super) fn in_plane(scene: &Scene, vector: DVec3, at: &str, problems: &mut Vec<Problem>) {
     if scene.dimension == Dimension::Two && vector.z != 0.0 {
         problems.push(Problem::at_path(at, out_of_plane(vector.z)).help(IN_PLANE));
     }

@@ -12,7 +12,7 @@ use crate::shapes::Shape;
 pub struct Probe {
     /// Name of the probe and of its file.
     pub name: String,
-    /// The particles that it averages over (for forces and torques: sums over). Either this or `at`.
+    /// The particles that it averages over (for forces and torques: sums over), or the `surface` of a body. Either this, `at` or `line`.
     #[serde(default)]
     pub on: Option<Select>,
     /// The point in space at which it measures \[m\]. Either this or `on`. A field there is interpolated from the bodies that have
@@ -20,11 +20,68 @@ pub struct Probe {
     /// particle nearest to the point belongs.
     #[serde(default)]
     pub at: Option<Vec3>,
+    /// A line along which it measures, a column for each of its places. Instead of `on` or `at`.
+    #[serde(default)]
+    pub line: Option<Line>,
+    /// With `at` or `line`: the solid or rigid body whose points these are, given in their places at the start. They move with the body, and
+    /// at its surface they show the values at the surface. Without it they are points of space.
+    #[serde(default)]
+    pub follows: Option<String>,
+    /// What is taken over the particles of `on`, or over its `surface`: without it the mean, of forces the sum.
+    #[serde(default)]
+    pub take: Option<Take>,
+    /// A second place: the same there is subtracted.
+    #[serde(default)]
+    pub relative_to: Option<RelativeTo>,
+    /// No error where nothing is at the point at the start: the probe shows NaN until something is.
+    #[serde(default)]
+    pub may_be_empty: bool,
     /// What is measured.
     pub quantity: Quantity,
-    /// Time between two samples \[s\]; without it a tenth of the interval of the recording.
+    /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken at the end of the first
+    /// step at or after the stated time, and the file has the time of that step.
     #[serde(default)]
     pub every: Option<f64>,
+}
+
+/// A straight line with places at equal distances, its ends among them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// First place \[m\].
+    pub from: Vec3,
+    /// Last place \[m\].
+    pub to: Vec3,
+    /// Number of places, 2 to 1000.
+    pub points: u32,
+}
+
+/// What is taken over a selection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Take {
+    /// The mean: of equal shares of particles, of areas of a `surface`.
+    Mean,
+    /// The sum over the particles.
+    Sum,
+    /// The minimum with its place; of vectors that of the magnitude.
+    Minimum,
+    /// The maximum with its place; of vectors that of the magnitude.
+    Maximum,
+}
+
+/// The place to which a probe is relative.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RelativeTo {
+    /// The mean over these particles. Either this or `at`.
+    #[serde(default)]
+    pub on: Option<Select>,
+    /// This point \[m\]. Either this or `on`.
+    #[serde(default)]
+    pub at: Option<Vec3>,
+    /// With `at`: the body whose point it is.
+    #[serde(default)]
+    pub follows: Option<String>,
 }
 
 /// What a probe measures.
@@ -42,6 +99,13 @@ pub enum Quantity {
     Force,
     /// Torque of the same forces about the centre of mass of the selection \[N m\].
     Torque,
+    /// Moment of the same forces about a fixed point \[N m\].
+    Moment {
+        /// The point \[m\].
+        about: Vec3,
+    },
+    /// Distance from the place of `relative_to` \[m\]: a strain gauge.
+    Distance,
     /// A field of the particles by name, such as `"pressure"`, `"velocity.x"` or `"stress.xy"`.
     Field(String),
     /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given \[J\].
@@ -84,10 +148,13 @@ impl Quantity {
     pub fn at_point(&self) -> Option<bool> {
         match self {
             Self::WaterLevel { .. } | Self::PressureSensor { .. } | Self::Flux { .. } => Some(true),
-            Self::Force | Self::Torque | Self::Energy | Self::FluidForce | Self::FluidTorque { .. } => {
-                Some(false)
-            }
-            Self::Displacement | Self::Position | Self::Velocity | Self::Field(_) => None,
+            Self::Force
+            | Self::Torque
+            | Self::Moment { .. }
+            | Self::Energy
+            | Self::FluidForce
+            | Self::FluidTorque { .. } => Some(false),
+            Self::Displacement | Self::Position | Self::Velocity | Self::Distance | Self::Field(_) => None,
         }
     }
 }

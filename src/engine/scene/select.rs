@@ -22,7 +22,7 @@ pub struct Select {
     /// The one particle, of those that meet the other criteria, that is nearest to this point \[m\].
     #[serde(default)]
     pub nearest: Option<Vec3>,
-    /// Of loads: that part of the surface of the body.
+    /// Of loads, and of probes of fields: that part of the surface of the body.
     #[serde(default)]
     pub surface: Option<SurfacePart>,
 }

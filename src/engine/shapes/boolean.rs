@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
@@ -119,6 +120,10 @@ impl<R: Region + ?Sized> Region for Difference<R> {
 
     fn box_faces(&self, faces: &mut [Vec<f64>; 3]) -> bool {
         self.whole.box_faces(faces) && self.hole.box_faces(faces)
+    }
+
+    fn rings(&self) -> Option<Rings> {
+        self.whole.rings()?.bored(self.hole.rings()?)
     }
 }
 

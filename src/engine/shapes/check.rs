@@ -13,6 +13,7 @@ use super::polygon::{Extrusion, Polygon};
 use super::region::Aabb;
 use super::ring::Ring;
 use super::shape::Shape;
+use super::shell::Shell;
 use super::sphere::Sphere;
 use super::surface::Surface;
 use crate::space::{Dimension, Vec3};
@@ -65,6 +66,12 @@ impl Check<'_> {
                 let (from, to) = self.axis(*from, *to)?;
                 let (inner, outer) = self.radii(*inner, *outer)?;
                 Box::new(Cylinder { from, to, inner, outer })
+            }
+            Shape::Shell { center, inner, outer } => {
+                self.exists("Shell", Dimension::Three, "`Ring`")?;
+                let center = self.point("center", *center)?;
+                let (inner, outer) = self.radii(*inner, *outer)?;
+                Box::new(Shell { center, inner, outer })
             }
             Shape::Polygon { points } => {
                 self.exists("Polygon", Dimension::Two, "`Extrusion`")?;

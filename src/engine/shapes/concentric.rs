@@ -30,13 +30,73 @@ pub enum Rings {
         /// Outer radius \[m\].
         outer: f64,
     },
-    /// A ball.
+    /// A ball or hollow sphere.
     Shells {
         /// Centre \[m\].
         center: DVec3,
-        /// Radius \[m\].
-        radius: f64,
+        /// Radius of the cavity, 0 for a ball \[m\].
+        inner: f64,
+        /// Outer radius \[m\].
+        outer: f64,
     },
+}
+
+impl Rings {
+    /// The same moved by a map that keeps lengths.
+    pub(super) fn moved(self, to: impl Fn(DVec3) -> DVec3) -> Self {
+        match self {
+            Self::Plane { center, inner, outer } => Self::Plane { center: to(center), inner, outer },
+            Self::Axial { from, to: end, inner, outer } => {
+                Self::Axial { from: to(from), to: to(end), inner, outer }
+            }
+            Self::Shells { center, inner, outer } => Self::Shells { center: to(center), inner, outer },
+        }
+    }
+
+    /// What is left of it without `hole`, if that is a solid one about the same centre or axis, and goes through from end to end.
+    pub(super) fn bored(self, hole: Self) -> Option<Self> {
+        match (self, hole) {
+            (
+                Self::Plane { center, inner, outer },
+                Self::Plane { center: other, inner: 0.0, outer: bore },
+            ) => {
+                let inner = bored_radius(inner, outer, bore)?;
+                (center.distance(other) <= SAME * outer).then_some(Self::Plane { center, inner, outer })
+            }
+            (
+                Self::Shells { center, inner, outer },
+                Self::Shells { center: other, inner: 0.0, outer: bore },
+            ) => {
+                let inner = bored_radius(inner, outer, bore)?;
+                (center.distance(other) <= SAME * outer).then_some(Self::Shells { center, inner, outer })
+            }
+            (
+                Self::Axial { from, to, inner, outer },
+                Self::Axial { from: first, to: last, inner: 0.0, outer: bore },
+            ) => {
+                let inner = bored_radius(inner, outer, bore)?;
+                let (axis, tolerance) = ((to - from).normalize(), SAME * (outer + from.distance(to)));
+                let is_on_axis = |end: DVec3| (end - from).reject_from_normalized(axis).length() <= tolerance;
+                let [a, b] = [first, last].map(|end| (end - from).dot(axis));
+                let goes_through = a.min(b) <= tolerance && a.max(b) >= from.distance(to) - tolerance;
+                (is_on_axis(first) && is_on_axis(last) && goes_through).then_some(Self::Axial {
+                    from,
+                    to,
+                    inner,
+                    outer,
+                })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Distance of two centres over the size of the shapes, up to which they are the same.
+const SAME: f64 = 1e-9;
+
+/// The inner radius with a bore; none where nothing is left.
+fn bored_radius(inner: f64, outer: f64, bore: f64) -> Option<f64> {
+    (bore < outer).then_some(inner.max(bore))
 }
 
 /// Particles of about the volume of a cube (square) of side `spacing`, each with the exact volume of its sector or part.
@@ -67,13 +127,12 @@ pub(super) fn sites(rings: &Rings, spacing: f64) -> Result<Vec<Site>, FillErrorK
             }
             Ok(sites)
         }
-        Rings::Shells { center, radius } => {
-            layers(2.0 * radius, spacing, "the radius")?;
-            let count = (radius / spacing).round().max(1.0) as usize;
+        Rings::Shells { center, inner, outer } => {
+            let count = radial_layers(inner, outer, spacing)?;
+            let width = (outer - inner) / count as f64;
             let shells = (0..count).flat_map(|shell| {
-                let (r0, r1) =
-                    (radius * shell as f64 / count as f64, radius * (shell + 1) as f64 / count as f64);
-                shell_parts(r0, r1, spacing, shell)
+                let r0 = inner + width * shell as f64;
+                shell_parts(r0, r0 + width, spacing, shell)
             });
             Ok(shells.map(|(position, volume)| Site { position: center + position, volume }).collect())
         }
@@ -88,14 +147,18 @@ fn layers(thickness: f64, spacing: f64, direction: &'static str) -> Result<usize
     Ok(layers as usize)
 }
 
+/// Number of rings or shells between two radii, of which the inner one is 0 where there is no hole.
+fn radial_layers(inner: f64, outer: f64, spacing: f64) -> Result<usize, FillErrorKind> {
+    if inner > 0.0 {
+        return layers(outer - inner, spacing, "the radius");
+    }
+    layers(2.0 * outer, spacing, "the radius")?;
+    Ok((outer / spacing).round().max(1.0) as usize)
+}
+
 /// Sectors of rings as (x, y, area): each particle at the centroid of its sector.
 fn sectors(inner: f64, outer: f64, spacing: f64) -> Result<Vec<(f64, f64, f64)>, FillErrorKind> {
-    let rings = if inner > 0.0 {
-        layers(outer - inner, spacing, "the radius")?
-    } else {
-        layers(2.0 * outer, spacing, "the radius")?;
-        (outer / spacing).round().max(1.0) as usize
-    };
+    let rings = radial_layers(inner, outer, spacing)?;
     let width = (outer - inner) / rings as f64;
     let mut sectors = Vec::new();
     for ring in 0..rings {

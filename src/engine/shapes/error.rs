@@ -196,7 +196,9 @@ impl FillErrorKind {
                     .into()
             }
             Self::NotConcentric => {
-                "it fits `Sphere`, `Ring`, `Cylinder` and `Tube`; use `Regular` here".into()
+                "it fits `Sphere`, `Ring`, `Cylinder`, `Tube` and `Shell`, and a `Difference` of two of them about one centre or \
+                 axis; use `BodyFitted` or `Regular` here"
+                    .into()
             }
             Self::Thin { thickness, .. } => {
                 format!("use a spacing of at most {} m", rounded_down(thickness / 2.0))

@@ -12,7 +12,7 @@ use super::region::Region;
 use super::shape::Shape;
 use super::surface::Surface;
 use super::transform::turned;
-use super::{concentric, morton_order, points, quadrature, relaxed};
+use super::{concentric, fitted, morton_order, points, quadrature, relaxed};
 use crate::space::Dimension;
 
 /// Steps of relaxation after which particles hardly move any more.
@@ -150,12 +150,20 @@ impl Filling<'_> {
         }
         let packing = if self.lattice == Lattice::Hexagonal { Packing::Hexagonal } else { Packing::Centered };
         let positions = cells::points(region, packing, spacing, axes).map_err(at)?;
-        if let Lattice::Relaxed { seed, iterations } = self.lattice {
-            if iterations > MAX_ITERATIONS {
-                let kind = FillErrorKind::Iterations { found: iterations, limit: MAX_ITERATIONS };
+        match self.lattice {
+            Lattice::Relaxed { iterations: found, .. } | Lattice::BodyFitted { iterations: found }
+                if found > MAX_ITERATIONS =>
+            {
+                let kind = FillErrorKind::Iterations { found, limit: MAX_ITERATIONS };
                 return Err(FillError::new("lattice.iterations", kind));
             }
-            return Ok(relaxed::sites(region, volume, spacing, axes, seed, iterations));
+            Lattice::Relaxed { seed, iterations } => {
+                return Ok(relaxed::sites(region, volume, spacing, axes, seed, iterations));
+            }
+            Lattice::BodyFitted { iterations } => {
+                return Ok(fitted::sites(region, positions, volume, spacing, axes, iterations));
+            }
+            _ => {}
         }
         let share = volume / positions.len() as f64;
         Ok(positions.into_iter().map(|position| Site { position, volume: share }).collect())

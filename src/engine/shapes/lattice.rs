@@ -16,9 +16,16 @@ pub enum Lattice {
     /// Densest packing: rows of triangles along x in two dimensions, hexagonal close packing (hcp, layers ABAB along
     /// z) in three. Nearest neighbours are 1.075 (two dimensions) or 1.122 (three) spacings apart.
     Hexagonal,
-    /// Rings about the axis of a disc, ring, cylinder or tube, shells about the centre of a sphere; each ring or shell
-    /// is divided into parts of equal volume.
+    /// Rings about the axis of a disc, ring, cylinder or tube, shells about the centre of a solid or hollow sphere; each ring or shell
+    /// is divided into parts of equal volume. A `Difference` of two such shapes about one centre or axis is one of them.
     Concentric,
+    /// Regular inside, and layers that follow the boundary of any shape: the outermost particles are half a spacing from it, along holes and
+    /// inclined sides as well. Stresses there are smooth, where those of other lattices have steps. Every particle has the volume of its own cell.
+    BodyFitted {
+        /// Steps of Lloyd's method: the more, the more even the particles near the boundary.
+        #[serde(default = "default_fitting")]
+        iterations: u32,
+    },
     /// Irregular: random points that keep a least distance, moved to the centroids of their Voronoi cells (Lloyd's method). Every
     /// particle has the volume of its own cell.
     Relaxed {
@@ -29,6 +36,10 @@ pub enum Lattice {
         #[serde(default = "default_iterations")]
         iterations: u32,
     },
+}
+
+const fn default_fitting() -> u32 {
+    50
 }
 
 const fn default_iterations() -> u32 {

@@ -122,6 +122,7 @@ mod tests {
             ("Ring(center: (1, -1), inner: 0.3, outer: 0.7)", two),
             ("Cylinder(from: (0, 0, 0), to: (1, 2, 1), radius: 0.8)", three),
             ("Tube(from: (1, 0, 0), to: (1, 0, 2), inner: 0.3, outer: 0.8)", three),
+            ("Shell(center: (1, 0, 2), inner: 0.3, outer: 0.8)", three),
             ("Polygon(points: [(0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (0, 2)])", two),
             ("Extrusion(polygon: [(0, 0), (0, 2), (1, 2), (1, 1), (3, 1), (3, 0)], from: 1, to: 4)", three),
             (

@@ -63,6 +63,15 @@ pub enum Shape {
         /// Outer radius \[m\].
         outer: f64,
     },
+    /// Hollow sphere (three dimensions; in two use `Ring`).
+    Shell {
+        /// Centre \[m\].
+        center: Vec3,
+        /// Radius of the cavity \[m\].
+        inner: f64,
+        /// Outer radius \[m\].
+        outer: f64,
+    },
     /// Polygon that does not cross itself (two dimensions; in three use `Extrusion`).
     Polygon {
         /// Corners (x, y) in order, either way round; the first is not repeated at the end \[m\].

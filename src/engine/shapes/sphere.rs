@@ -33,7 +33,7 @@ impl Region for Sphere {
 
     fn rings(&self) -> Option<Rings> {
         Some(if self.axes == 3 {
-            Rings::Shells { center: self.center, radius: self.radius }
+            Rings::Shells { center: self.center, inner: 0.0, outer: self.radius }
         } else {
             Rings::Plane { center: self.center, inner: 0.0, outer: self.radius }
         })

@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
+use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
@@ -59,6 +60,10 @@ impl<R: Region + ?Sized> Region for Translated<R> {
         }
         made_of_boxes
     }
+
+    fn rings(&self) -> Option<Rings> {
+        Some(self.region.rings()?.moved(|x| x + self.by))
+    }
 }
 
 impl<R: Region + ?Sized> Region for Rotated<R> {
@@ -76,6 +81,10 @@ impl<R: Region + ?Sized> Region for Rotated<R> {
 
     fn volume(&self) -> Option<f64> {
         self.region.volume()
+    }
+
+    fn rings(&self) -> Option<Rings> {
+        Some(self.region.rings()?.moved(|x| turned(self.turn, self.about, x)))
     }
 }
 

@@ -126,7 +126,7 @@ pub(super) fn wall_is_thick(
     let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
-        "`{}` is {:.0} layers of particles thick at {at}: a fluid of support {support} m sees through it",
+        "`{}` is {:.0} layers of particles thick at {at}, thinner than the kernel support of the fluid, {support} m",
         body.name,
         least / body.spacing
     );

@@ -73,7 +73,7 @@ impl Run for Continuity {
                 run_hot(Advance { state, dt, by_terms, shift, first, rows })
             });
             if change.broken > 0 {
-                return Err(step.unstable("density is not above zero", group.body, change.broken - 1));
+                return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
             }
             if change.removed != 0.0 {
                 let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::kernel::FluidKernel;
 use crate::kernels::KernelName;
+use crate::notation::number;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression};
 use crate::world::{BodyId, ColumnSet, Density, DensityRate, Pressure};
@@ -65,8 +66,11 @@ impl Formulation for Fluid {
             let share = parameters.support.unwrap_or(usual);
             let (fewest, most) = (2.0, unit.largest_support());
             if !(share >= fewest && share <= most) {
-                let message = format!("a support radius of {share} spacings does not work");
-                let help = format!("give a support of {fewest} to {most} spacings; {usual} is usual");
+                let message = format!(
+                    "the support radius must be {fewest} to {most} spacings, found {}",
+                    number(share)
+                );
+                let help = format!("{usual} spacings are usual");
                 return Err(SetupError::parameter("support", message, help).of_formulation(id));
             }
             let support = share * body.spacing;

@@ -14,6 +14,7 @@ use super::support::choose_support;
 use super::system::Deformation;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
+use crate::notation::{number, quantity};
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
@@ -142,11 +143,11 @@ impl TotalLagrangian {
         Err(SetupError::parameter(
             "support",
             format!(
-                "a support radius of {} spacings ({} m) does not work",
-                self.support,
-                self.support * spacing
+                "the support radius must be {fewest} to 10 spacings, found {} ({})",
+                number(self.support),
+                quantity(self.support * spacing, "m")
             ),
-            format!("give a support of {fewest} to 10 spacings; {USUAL_SUPPORT} is usual"),
+            format!("{USUAL_SUPPORT} spacings are usual"),
         ))
     }
 
@@ -154,12 +155,12 @@ impl TotalLagrangian {
         let fault = |message: String, help: &str| Err(SetupError::parameter("neighbors", message, help));
         if self.support != USUAL_SUPPORT {
             return fault(
-                "`support` and `neighbors` both say how far a particle sees".to_owned(),
+                "`support` and `neighbors` both set the support radius".to_owned(),
                 "give one of them",
             );
         }
         if !(4..=400).contains(&neighbors) {
-            let message = format!("{neighbors} neighbours do not work");
+            let message = format!("`neighbors` must be 4 to 400, found {neighbors}");
             return fault(message, "12 in two and 30 in three dimensions are usual");
         }
         if body.sites.len() < neighbors as usize + 2 {

@@ -18,7 +18,7 @@ pub enum ContainerError {
         source: io::Error,
     },
     /// The file is of another kind.
-    #[error("`{}` is not a checkpoint of this program: it does not begin with the mark of one", path.display())]
+    #[error("`{}` is not a checkpoint of this program: it has no checkpoint signature", path.display())]
     NotACheckpoint {
         /// The file.
         path: PathBuf,

@@ -67,9 +67,6 @@ impl OutputPlan {
                 Err(found) => problems.extend(found),
             }
         }
-        for warning in probes.iter().filter_map(|probe| probe.warning(sim)).collect::<Vec<_>>() {
-            sim.warn(warning);
-        }
         if problems.is_empty()
             && let Err(found) = stop::add_system(sim, &table)
         {
@@ -77,6 +74,11 @@ impl OutputPlan {
         }
         let plan = Self { probes, recorded, written, recorders };
         if problems.is_empty() { Ok(plan) } else { Err(problems) }
+    }
+
+    /// The probes of the scene.
+    pub fn probes(&self) -> Vec<Probe> {
+        self.probes.clone()
     }
 
     /// Makes the output that writes it, and adds its system.
@@ -89,7 +91,7 @@ impl OutputPlan {
         let ledger = Probe {
             name: "energy".to_owned(),
             interval: scene.record_interval() / 10.0,
-            gauge: Gauge::Energies(EnergyColumns::detailed(bodies)),
+            gauge: Arc::new(Gauge::Energies(EnergyColumns::detailed(bodies))),
         };
         let mut tracks = vec![Track::new("energy".to_owned(), ledger, folder.file(ENERGY))];
         tracks.extend(self.probes.into_iter().map(|probe| Track::of_probe(probe, &folder)));

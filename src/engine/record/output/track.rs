@@ -1,5 +1,7 @@
 //! A probe on its way: when it is due, what it measures, where that goes.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
@@ -18,7 +20,7 @@ pub(super) struct Track {
     pub path: String,
     /// Name of the probe.
     pub name: String,
-    gauge: Gauge,
+    gauge: Arc<Gauge>,
     trigger: Trigger,
     pub table: Table,
     /// Time of the last sample, s.
@@ -68,7 +70,7 @@ impl Track {
     /// Begins the file, or continues it; files of energies begin after the first step.
     pub fn open(&mut self, folder: &OutputFolder, state: Option<TrackState>) -> Result<(), RecordError> {
         let Some(state) = state else {
-            return if matches!(self.gauge, Gauge::Energies(_)) { Ok(()) } else { self.create(folder) };
+            return if matches!(*self.gauge, Gauge::Energies(_)) { Ok(()) } else { self.create(folder) };
         };
         self.trigger.resume(state.trigger);
         self.last = state.last;
@@ -95,7 +97,7 @@ impl Track {
 
     /// Name and unit of the columns of the file.
     fn columns(&self) -> Vec<(String, &'static str)> {
-        match &self.gauge {
+        match &*self.gauge {
             Gauge::Energies(energies) => energies.names(self.accounts.as_deref().unwrap_or_default()),
             gauge => gauge.columns(),
         }
@@ -103,7 +105,7 @@ impl Track {
 
     /// Path and unit of the series, as far as they are known now.
     pub fn series(&self, ledger: &Ledger) -> Vec<(String, &'static str)> {
-        let columns = match &self.gauge {
+        let columns = match &*self.gauge {
             Gauge::Energies(energies) => energies.names(&EnergyColumns::accounts(ledger)),
             gauge => gauge.columns(),
         };
@@ -112,7 +114,7 @@ impl Track {
 
     /// A column `plate.kinetic` of the ledger is the series `energy/plate/kinetic`.
     fn series_path(&self, column: &str) -> String {
-        match &self.gauge {
+        match &*self.gauge {
             Gauge::Energies(_) => format!("{}/{}", self.path, column.replacen('.', "/", 1)),
             _ => format!("{}/{column}", self.path),
         }
@@ -128,7 +130,7 @@ impl Track {
     ) -> Result<(), StepError> {
         let time = step.clock.time;
         let started = step.clock.step > 0 || at_end;
-        if started && self.accounts.is_none() && matches!(self.gauge, Gauge::Energies(_)) {
+        if started && self.accounts.is_none() && matches!(*self.gauge, Gauge::Energies(_)) {
             self.open_accounts(step.ledger, folder)?;
         }
         let due = self.trigger.is_due(time) || (at_end && self.last != Some(time));
@@ -136,7 +138,7 @@ impl Track {
             return Ok(());
         }
         self.last = Some(time);
-        let values = match &self.gauge {
+        let values = match &*self.gauge {
             Gauge::Energies(energies) => {
                 let now = EnergyColumns::accounts(step.ledger);
                 let values = energies.values(&now, step.ledger);
@@ -162,7 +164,7 @@ impl Track {
     fn open_accounts(&mut self, ledger: &Ledger, folder: &OutputFolder) -> Result<(), StepError> {
         self.accounts = Some(EnergyColumns::accounts(ledger));
         self.create(folder).map_err(failed)?;
-        if let (Some((time, ledger)), Gauge::Energies(energies)) = (self.held.take(), &self.gauge) {
+        if let (Some((time, ledger)), Gauge::Energies(energies)) = (self.held.take(), &*self.gauge) {
             let values = energies.values(self.accounts.as_deref().unwrap_or_default(), &ledger);
             self.table.push(time, &values).map_err(failed)?;
         }

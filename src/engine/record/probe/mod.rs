@@ -1,11 +1,20 @@
 //! Probes: what the particles of a selection do, or a field at a point, as functions of time.
 
+mod body_points;
 mod energies;
 mod flow;
+mod line;
 mod measure;
 mod particles;
+mod place;
+mod planar;
 mod point;
+mod relative;
 mod resolve;
+mod stencil;
+mod taken;
+#[cfg(test)]
+mod tests;
 mod torque;
 
 pub use energies::EnergyColumns;

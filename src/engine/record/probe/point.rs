@@ -56,21 +56,13 @@ impl PointGauge {
         Ok((0..self.field.width()).map(component).collect())
     }
 
-    /// A warning where none of the bodies that have the field is near the point at the start, and none of them flows there later.
-    pub(super) fn warning(&self, name: &str, bodies: &[BodyPlan]) -> Option<String> {
+    /// Whether none of the bodies that have the field is near the point at the start, and none of them flows there later.
+    pub(super) fn is_empty(&self, bodies: &[BodyPlan]) -> bool {
         let measured = || bodies.iter().filter(|body| self.field.is_in(body.id));
         let distance = |site: &Site| self.periodic.minimal_image(site.position - self.at).length();
         let is_near = |body: &BodyPlan| body.sites.iter().any(|site| distance(site) < REACH * body.spacing);
         let flows = measured().any(|body| matches!(body.material.law, Law::Fluid(_)));
-        (!flows && !measured().any(is_near)).then(|| {
-            let names: Vec<_> = measured().map(|body| format!("`{}`", body.name)).collect();
-            format!(
-                "probe `{name}`: no particle with `{}` is near {} at the start, of {}: the probe shows NaN where nothing is",
-                self.field.name(),
-                self.at,
-                names.join(", ")
-            )
-        })
+        !flows && !measured().any(is_near)
     }
 
     /// Particles of one phase within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.

@@ -6,11 +6,14 @@ use super::energies::EnergyColumns;
 use super::flow;
 use super::measure::Measure;
 use super::particles::ParticleGauge;
+use super::place::{Place, gauge_at};
+use super::planar::Planar;
 use super::point::PointGauge;
+use super::relative::Relative;
 use super::torque::TorqueGauge;
 use crate::fields::{ChosenField, FieldTable};
-use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
-use crate::scene::{self, Problem, Quantity, Select};
+use crate::plugin::{Selection, SetupError, SimBuilder};
+use crate::scene::{self, Dimension, Problem, Quantity, Select};
 use crate::schedule::Resources;
 use crate::world::{BodyId, BodySet, MissingColumn, World};
 
@@ -22,20 +25,21 @@ pub enum Gauge {
     Point(PointGauge),
     /// Torque of the forces on particles.
     Torque(TorqueGauge),
-    /// What is measured of a flow.
-    Flow(Box<dyn Measure>),
+    /// What is measured otherwise.
+    Measure(Box<dyn Measure>),
     /// Accounts of the energy ledger.
     Energies(EnergyColumns),
 }
 
 /// A probe of the scene, ready to measure.
+#[derive(Clone)]
 pub struct Probe {
     /// Name.
     pub name: String,
     /// Time between two samples, s.
     pub interval: f64,
     /// What it measures with.
-    pub gauge: Gauge,
+    pub gauge: Arc<Gauge>,
 }
 
 impl Gauge {
@@ -44,7 +48,7 @@ impl Gauge {
         if let Self::Torque(_) = self {
             return ["x", "y", "z"].map(|axis| (axis.to_owned(), "N m")).to_vec();
         }
-        if let Self::Flow(gauge) = self {
+        if let Self::Measure(gauge) = self {
             return gauge.columns();
         }
         let Some(field) = self.field() else { return Vec::new() };
@@ -55,7 +59,7 @@ impl Gauge {
     pub fn needs(&self) -> Vec<&'static str> {
         match self {
             Self::Torque(_) => TorqueGauge::NEEDS.to_vec(),
-            Self::Flow(gauge) => gauge.needs(),
+            Self::Measure(gauge) => gauge.needs(),
             _ => self.field().map(ChosenField::needs).unwrap_or_default(),
         }
     }
@@ -69,7 +73,7 @@ impl Gauge {
             Self::Particles(gauge) => gauge.read(world, resources),
             Self::Point(gauge) => gauge.read(world, resources),
             Self::Torque(gauge) => gauge.read(world),
-            Self::Flow(gauge) => gauge.read(world, resources),
+            Self::Measure(gauge) => gauge.read(world, resources),
             Self::Energies(_) => Ok(Vec::new()),
         }
     }
@@ -78,7 +82,7 @@ impl Gauge {
         match self {
             Self::Particles(gauge) => Some(&gauge.field),
             Self::Point(gauge) => Some(&gauge.field),
-            Self::Torque(_) | Self::Flow(_) | Self::Energies(_) => None,
+            Self::Torque(_) | Self::Measure(_) | Self::Energies(_) => None,
         }
     }
 }
@@ -96,26 +100,25 @@ impl Probe {
     ) -> Result<Self, Vec<Problem>> {
         let on = || select(k, &probe.on.clone().unwrap_or_default(), sim);
         if let Some(gauge) = flow::resolve(k, probe, on, sim)? {
-            return Ok(Self::new(probe, Gauge::Flow(gauge), sim));
+            return Ok(Self::new(probe, Gauge::Measure(gauge), sim));
         }
         let gauge = match field_name(&probe.quantity) {
-            None if probe.quantity == Quantity::Torque => Gauge::Torque(TorqueGauge { selection: on()? }),
+            None if probe.quantity == Quantity::Torque => {
+                Gauge::Torque(TorqueGauge { selection: on()?, about: None })
+            }
+            None if let Quantity::Moment { about } = &probe.quantity => {
+                Gauge::Torque(TorqueGauge { selection: on()?, about: Some(about.0) })
+            }
             Some(name) => field_gauge(k, probe, name, sim, table)?,
             None => Gauge::Energies(energies(k, probe.on.as_ref(), sim)?),
         };
         Ok(Self::new(probe, gauge, sim))
     }
 
-    /// A warning of a probe that measures nothing.
-    pub fn warning(&self, sim: &SimBuilder<'_>) -> Option<String> {
-        match &self.gauge {
-            Gauge::Point(gauge) => gauge.warning(&self.name, sim.bodies()),
-            _ => None,
-        }
-    }
-
     fn new(probe: &scene::Probe, gauge: Gauge, sim: &SimBuilder<'_>) -> Self {
-        Self { name: probe.name.clone(), interval: sim.scene().probe_interval(probe), gauge }
+        let interval = sim.scene().probe_interval(probe);
+        let gauge = if sim.dimension() == Dimension::Two { Planar::of(gauge) } else { gauge };
+        Self { name: probe.name.clone(), interval, gauge: Arc::new(gauge) }
     }
 }
 
@@ -123,7 +126,7 @@ impl Probe {
 fn field_name(quantity: &Quantity) -> Option<&str> {
     match quantity {
         Quantity::Displacement => Some("displacement"),
-        Quantity::Position => Some("position"),
+        Quantity::Position | Quantity::Distance => Some("position"),
         Quantity::Velocity => Some("velocity"),
         // The force column holds all that acts on a particle except its constraint: what it exerts on what holds it.
         Quantity::Force => Some("force"),
@@ -132,6 +135,7 @@ fn field_name(quantity: &Quantity) -> Option<&str> {
     }
 }
 
+/// The gauge of a field at the place of a probe, relative to a second one if the scene names one.
 fn field_gauge(
     k: usize,
     probe: &scene::Probe,
@@ -139,27 +143,19 @@ fn field_gauge(
     sim: &SimBuilder<'_>,
     table: &Arc<FieldTable>,
 ) -> Result<Gauge, Vec<Problem>> {
-    let choose = |bodies: &BodySet, all| {
-        table.choose(name, bodies, all).map_err(|problem| {
-            let place = match &probe.quantity {
-                Quantity::Field(_) => format!("probes[{k}].quantity[0]"),
-                _ => format!("probes[{k}].quantity"),
-            };
-            vec![Problem { at: scene::Place::Path(place), ..*problem }]
-        })
+    let path = match &probe.quantity {
+        Quantity::Field(_) => format!("probes[{k}].quantity[0]"),
+        _ => format!("probes[{k}].quantity"),
     };
-    let Some(on) = &probe.on else {
-        // The particles of walls have the pressure that the fluid beside them is to feel, which is not that at their places.
-        let all = || sim.bodies().iter();
-        let flows = all().any(|body| body.kind == BodyKind::Fluid);
-        let bodies = all().filter(|body| !(flows && body.kind == BodyKind::Boundary)).map(|body| body.id);
-        let bodies = BodySet::new(bodies);
-        let at = probe.at.map_or(glam::DVec3::ZERO, |point| point.0);
-        return Ok(Gauge::Point(PointGauge { at, field: choose(&bodies, false)?, periodic: sim.periodic() }));
+    let field = |bodies: &BodySet, all| {
+        let found = table.choose(name, bodies, all);
+        found.map_err(|problem| vec![Problem { at: scene::Place::Path(path.clone()), ..*problem }])
     };
-    let selection = select(k, on, sim)?;
-    let field = choose(&BodySet::new(selection.parts.iter().map(|(id, _)| *id)), true)?;
-    Ok(Gauge::Particles(ParticleGauge { selection, field, sum: probe.quantity == Quantity::Force }))
+    let first = gauge_at(&Place::of(k, probe), &field, sim)?;
+    let Some(to) = &probe.relative_to else { return Ok(first) };
+    let second = gauge_at(&Place::of_second(k, probe, to), &field, sim)?;
+    let distance = probe.quantity == Quantity::Distance;
+    Ok(Gauge::Measure(Box::new(Relative { first, second, distance })))
 }
 
 fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<EnergyColumns, Vec<Problem>> {
@@ -184,10 +180,15 @@ fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<Energ
 }
 
 fn select(k: usize, on: &Select, sim: &SimBuilder<'_>) -> Result<Selection, Vec<Problem>> {
-    sim.select(on, "on").map_err(|error| match error {
+    sim.select(on, "on").map_err(|error| at_probe(k, error))
+}
+
+/// The problems of a selection, at the place of the probe.
+pub(super) fn at_probe(k: usize, error: SetupError) -> Vec<Problem> {
+    match error {
         SetupError::Parameter { field, message, help } => {
             vec![Problem::at_path(format!("probes[{k}].{field}"), message).help(help)]
         }
         SetupError::Problems(problems) => problems,
-    })
+    }
 }

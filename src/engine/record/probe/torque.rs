@@ -1,4 +1,4 @@
-//! Torque of the forces on a selection about its centre of mass.
+//! Torque of the forces on a selection about its centre of mass, or about a fixed point.
 
 use glam::DVec3;
 
@@ -8,6 +8,8 @@ use crate::world::{Column, Force, Mass, MissingColumn, Position, World};
 /// The particles whose forces turn something.
 pub struct TorqueGauge {
     pub(super) selection: Selection,
+    /// The point about which they turn it \[m\]; without it the centre of mass.
+    pub(super) about: Option<DVec3>,
 }
 
 impl TorqueGauge {
@@ -27,6 +29,7 @@ impl TorqueGauge {
                 torque += x[row].0.cross(f[row].0);
             }
         }
-        Ok((torque - (moment / mass).cross(force)).to_array().to_vec())
+        let about = self.about.unwrap_or(moment / mass);
+        Ok((torque - about.cross(force)).to_array().to_vec())
     }
 }

@@ -6,7 +6,8 @@ use crate::schedule::{Ledger, Step};
 use crate::world::BodyId;
 
 /// Hourglass energy over strain energy plus plastic work that is worth a warning. In a beam of n particles across, the control holds the bending energy that the
-/// mean gradients miss, some 9/n^2 of the strain energy: 14 % at eight across, where the stiffness is right to 1 %, and half of it at four.
+/// mean gradients miss, some 9/n^2 of the strain energy: 14 % at eight across, where the stiffness is right to 1 %, and half of it at four (3 %). Cook's membrane at
+/// rest has 33, 8 and 4 % at 8, 16 and 32 across and is 7, 2 and .5 % off; thick rings and spheres at eight across the wall have 1 to 3 %, Taylor bars 3 to 8 %.
 const SHARE: f64 = 0.2;
 
 /// Hourglass energy, over the largest energy of any other kind that the body has had, below which its share says nothing: at

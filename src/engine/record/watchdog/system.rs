@@ -15,6 +15,9 @@ pub const WATCHDOG: &str = "watchdog";
 /// Steps between two looks at the domain: a particle that has left it stays outside.
 const DOMAIN_INTERVAL: u64 = 10;
 
+/// Share of the run in which hourglass energy is not judged.
+const START: f64 = 0.1;
+
 struct Watchdog {
     energy: EnergyGrowth,
     hourglass: HourglassShare,
@@ -52,7 +55,10 @@ impl Run for Watchdog {
         self.energy.look(step.ledger, step.world, step.clock)?;
         self.hourglass.look(step.ledger, step.world.bodies().len());
         if self.frames.is_due(step.clock.time) || at_end {
-            self.hourglass.warn(step);
+            // Waves of the first load have the control carry a part of them that the result has not.
+            if at_end || step.clock.time > START * self.end {
+                self.hourglass.warn(step);
+            }
             self.wrong_sign.warn(step, self.weight, at_end);
         }
         Ok(())

@@ -179,3 +179,12 @@ fn what_can_only_take_energy_and_gives_it_is_warned_of_with_the_largest_share() 
     assert!(given(1.0).is_empty());
     assert_eq!(given(-1.0).len(), 1);
 }
+
+#[test]
+fn hourglass_energy_of_the_first_load_is_not_judged() {
+    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2)],
+                 record: (every: 0.001), time: (end: 1.0),";
+    let mut sim = blocks(scene);
+    sim.run(|sim| sim.clock().time < 0.01).unwrap();
+    assert!(!sim.warnings().iter().any(|w| w.contains("hourglass energy")), "{:?}", sim.warnings());
+}

@@ -66,8 +66,8 @@ pub fn directed_area(axes: usize, [a, b, c]: &[DVec3; 3]) -> DVec3 {
 }
 
 impl Shape {
-    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of particle files, and of combinations in three
-    /// dimensions whose parts cut each other.
+    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of particle files, and of meshes that are
+    /// much finer.
     pub fn facets(&self, dimension: Dimension, folder: &Path, length: f64) -> Option<Facets> {
         match dimension {
             Dimension::Two => outline::of_shape(self, folder, length),

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Facets, refine, round};
+use super::{Facets, contour, refine, round};
 use crate::shapes::check::Check;
+use crate::shapes::concentric::Rings;
 use crate::shapes::mesh;
 use crate::shapes::shape::Shape;
 use crate::shapes::transform::turned;
@@ -14,12 +15,23 @@ use crate::space::Dimension;
 /// Triangles of a mesh over those of a new one, above which it is too fine to be carried by particles.
 const FINEST: f64 = 16.0;
 
-/// The surface of a shape; of combinations those whose parts are apart or hollow.
+/// The surface of a shape: exact where its parts are apart or hollow, else contoured.
 pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
+    if let Some(facets) = exact(shape, folder, length) {
+        return Some(facets);
+    }
+    let is_combination = matches!(shape, Shape::Union(_) | Shape::Difference(..) | Shape::Intersection(_));
+    let region = is_combination.then(|| shape.region(Dimension::Three, folder, "shape"))?.ok()?;
+    contour::of_region(&*region, length)
+}
+
+/// The surface of a single shape, and of combinations whose parts are apart or hollow.
+fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
     let check = Check { dimension: Dimension::Three, folder, path: "shape" };
     Some(match shape {
         Shape::Box { min, max } => block(min.0, max.0, length),
         Shape::Sphere { center, radius } => round::sphere(center.0, *radius, length),
+        Shape::Shell { center, inner, outer } => shell(center.0, *inner, *outer, length),
         Shape::Cylinder { from, to, radius } => round::cylinder(from.0, to.0, 0.0, *radius, length),
         Shape::Tube { from, to, inner, outer } => round::cylinder(from.0, to.0, *inner, *outer, length),
         Shape::Extrusion { polygon, from, to } => {
@@ -43,6 +55,16 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
             all
         }
         Shape::Difference(whole, hole) => {
+            let region = shape.region(Dimension::Three, folder, "shape").ok()?;
+            match region.rings() {
+                Some(Rings::Shells { center, inner, outer }) => {
+                    return Some(shell(center, inner, outer, length));
+                }
+                Some(Rings::Axial { from, to, inner, outer }) => {
+                    return Some(round::cylinder(from, to, inner, outer, length));
+                }
+                _ => {}
+            }
             shape.surface(Dimension::Three, folder, "shape").ok()?;
             let mut outer = of_shape(whole, folder, length)?;
             outer.join(&of_shape(hole, folder, length)?, true);
@@ -59,6 +81,12 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
         }
         _ => return None,
     })
+}
+
+fn shell(center: DVec3, inner: f64, outer: f64, length: f64) -> Facets {
+    let mut shell = round::sphere(center, outer, length);
+    shell.join(&round::sphere(center, inner, length), true);
+    shell
 }
 
 /// The six faces of a box, each a grid, whose vertices along common edges are the same.

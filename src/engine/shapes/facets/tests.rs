@@ -110,5 +110,59 @@ fn surfaces_close_around_the_volume_of_their_shapes() {
         7.0 / 48.0 * PI,
         1e-12,
     );
+    three("Shell(center: (0.2, 0.1, 0), inner: 0.25, outer: 0.5)", 7.0 / 48.0 * PI, 1e-12);
+    three(
+        "Difference(Cylinder(from: (0, 0, 0), to: (0, 1, 0), radius: 0.5), Cylinder(from: (0, 0, 0), to: (0, 1, 0), radius: 0.25))",
+        0.1875 * PI,
+        1e-12,
+    );
     assert!(facets("Points(file: \"none.csv\")", Dimension::Three, 0.1).is_none());
+}
+
+#[test]
+fn contoured_surfaces_of_combinations_close_around_their_volume() {
+    use std::f64::consts::PI;
+    let three =
+        |text: &str, expected: f64, tolerance: f64| check(text, Dimension::Three, expected, tolerance);
+    three(
+        "Difference(Box(min: (0, 0, 0), max: (1, 1, 0.3)), Cylinder(from: (0.5, 0.5, -1), to: (0.5, 0.5, 1), radius: 0.2))",
+        0.3 * (1.0 - 0.04 * PI),
+        3e-3,
+    );
+    three(
+        "Union([Box(min: (0, 0, 0), max: (1, 1, 0.5)), Box(min: (0.2, 0.2, 0.5), max: (0.6, 0.6, 1))])",
+        0.58,
+        1e-3,
+    );
+    three(
+        "Intersection([Sphere(center: (0, 0, 0), radius: 0.5), HalfSpace(point: (0, 0, 0), normal: (1, 2, 2))])",
+        PI / 12.0,
+        1e-2,
+    );
+    three(
+        "Rotate(shape: Difference(Box(min: (0, 0, 0), max: (1, 1, 1)), Box(min: (0.5, 0.5, -1), max: (2, 2, 2))), axis: (1, 1, 0), angle_degrees: 20)",
+        0.75,
+        1e-3,
+    );
+}
+
+#[test]
+fn contoured_facets_lie_on_the_faces_and_the_bore() {
+    let text = "Difference(Box(min: (0, 0, 0), max: (1, 1, 0.3)), Cylinder(from: (0.5, 0.5, -1), to: (0.5, 0.5, 1), radius: 0.2))";
+    let mesh = facets(text, Dimension::Three, 0.05).unwrap();
+    let (mut bore, mut top) = (0.0, 0.0);
+    for facet in 0..mesh.corners.len() {
+        let (normal, area) = mesh.normal_and_measure(facet);
+        let center = mesh.center(facet);
+        let arm = (center - glam::DVec3::new(0.5, 0.5, center.z)).length();
+        if normal.z > 0.99 && center.z > 0.29 {
+            top += area;
+        } else if normal.z.abs() < 0.1 && arm < 0.25 {
+            bore += area;
+        }
+    }
+    let exact_bore = 0.4 * std::f64::consts::PI * 0.3;
+    let exact_top = 1.0 - 0.04 * std::f64::consts::PI;
+    assert!((bore / exact_bore - 1.0).abs() < 0.01, "{bore} {exact_bore}");
+    assert!((top / exact_top - 1.0).abs() < 0.01, "{top} {exact_top}");
 }

@@ -11,9 +11,7 @@ pub enum MeshFault {
     #[error("the name ends neither in `.stl` nor in `.obj`")]
     Extension,
     /// A text that is no STL, or a binary file of the wrong length.
-    #[error(
-        "not an STL file: it does not begin with `solid`, and it has {size} bytes where {expected} are due"
-    )]
+    #[error("not an STL file: expected `solid` at its start or {expected} bytes, found {size} bytes")]
     NotStl {
         /// Length of the file in bytes.
         size: usize,
@@ -59,7 +57,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Triangles that go through each other.
-    #[error("the mesh goes through itself: {pairs} pairs of triangles cross, the first at {at} m")]
+    #[error("the mesh intersects itself: {pairs} pairs of triangles cross, the first at {at} m")]
     Crossing {
         /// Number of pairs of triangles that cross.
         pairs: usize,
@@ -67,7 +65,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// A closed mesh that holds nothing.
-    #[error("the mesh holds no volume")]
+    #[error("the mesh encloses no volume")]
     NoVolume,
 }
 
@@ -86,7 +84,7 @@ impl MeshFault {
             }
             Self::Orientation { .. } => "let the normals be made consistent where the mesh was made",
             Self::Crossing { .. } => "unite the parts where the mesh was made",
-            Self::NoVolume => "a solid has an inside",
+            Self::NoVolume => "check that the triangles bound a solid",
         }
     }
 }

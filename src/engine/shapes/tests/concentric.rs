@@ -88,3 +88,52 @@ fn transforms_and_refusals() {
         try_fill("Ring(center: (0, 0), inner: 1, outer: 1.1)", Lattice::Concentric, 0.1, Two).unwrap_err();
     assert!(matches!(error.kind, FillErrorKind::Thin { direction: "the radius", .. }));
 }
+
+#[test]
+fn shells_of_a_hollow_sphere() {
+    let text = "Shell(center: (1, 0, 0), inner: 0.3, outer: 0.6)";
+    let sites = filled(text, Lattice::Concentric, 0.075, Three);
+    assert_close(total(&sites), 4.0 / 3.0 * PI * (0.6f64.powi(3) - 0.3f64.powi(3)), 1e-12);
+    assert!((moment(&sites) / total(&sites)).distance(DVec3::X) < 5e-3);
+    assert!(least_distance(&sites) > 0.045);
+    for site in &sites {
+        assert!((0.3..0.6).contains(&site.position.distance(DVec3::X)));
+        assert_close(site.volume, 0.075f64.powi(3), 0.1);
+    }
+}
+
+#[test]
+fn differences_of_like_shapes() {
+    for (difference, single, dimension) in [
+        (
+            "Difference(Sphere(center: (1, 0), radius: 1), Sphere(center: (1, 0), radius: 0.5))",
+            "Ring(center: (1, 0), inner: 0.5, outer: 1)",
+            Two,
+        ),
+        (
+            "Difference(Sphere(center: (0, 0, 0), radius: 1), Translate(shape: Sphere(center: (1, 0, 0), radius: 0.5), by: (-1, 0, 0)))",
+            "Shell(center: (0, 0, 0), inner: 0.5, outer: 1)",
+            Three,
+        ),
+        (
+            "Difference(Cylinder(from: (0, 0, 0), to: (0, 0, 1), radius: 1), Cylinder(from: (0, 0, 2), to: (0, 0, -1), radius: 0.5))",
+            "Tube(from: (0, 0, 0), to: (0, 0, 1), inner: 0.5, outer: 1)",
+            Three,
+        ),
+    ] {
+        let (found, expected) = (
+            filled(difference, Lattice::Concentric, 0.1, dimension),
+            filled(single, Lattice::Concentric, 0.1, dimension),
+        );
+        assert_eq!(found, expected, "{difference}");
+    }
+    for text in [
+        "Difference(Sphere(center: (1, 0), radius: 1), Sphere(center: (1.1, 0), radius: 0.5))",
+        "Difference(Sphere(center: (1, 0), radius: 1), Box(min: (0.9, -0.1), max: (1.1, 0.1)))",
+    ] {
+        let error = try_fill(text, Lattice::Concentric, 0.1, Two).unwrap_err();
+        assert!(matches!(error.kind, FillErrorKind::NotConcentric), "{text}");
+    }
+    let blind = "Difference(Cylinder(from: (0, 0, 0), to: (0, 0, 1), radius: 1), Cylinder(from: (0, 0, 0.5), to: (0, 0, 2), radius: 0.5))";
+    assert!(try_fill(blind, Lattice::Concentric, 0.1, Three).is_err());
+}

@@ -8,7 +8,7 @@ use crate::shapes::{FillErrorKind, Lattice, fill};
 
 #[test]
 fn numbers_that_cannot_be() {
-    let cases: [(&str, Dimension, &str, &str); 27] = [
+    let cases: [(&str, Dimension, &str, &str); 28] = [
         (
             "Box(min: (0, 0), max: (1, 0))",
             Two,
@@ -79,6 +79,12 @@ fn numbers_that_cannot_be() {
             Two,
             "shape",
             "`Tube` is a shape of three dimensions only; use `Ring`",
+        ),
+        (
+            "Shell(center: (0, 0), inner: 1, outer: 2)",
+            Two,
+            "shape",
+            "`Shell` is a shape of three dimensions only; use `Ring`",
         ),
         (
             "Polygon(points: [(0, 0), (1, 0), (0, 1)])",
@@ -298,6 +304,7 @@ proptest::proptest! {
             format!("Sphere(center: {}, radius: {:?})", three(0, 1, 2), v[3]),
             format!("Cylinder(from: {}, to: {}, radius: {:?})", three(0, 1, 2), three(3, 4, 5), v[6]),
             format!("Tube(from: {}, to: {}, inner: {:?}, outer: {:?})", three(0, 1, 2), three(3, 4, 5), v[6], v[7]),
+            format!("Shell(center: {}, inner: {:?}, outer: {:?})", three(0, 1, 2), v[3], v[4]),
             format!("Extrusion(polygon: [{}, {}, {}], from: {:?}, to: {:?})", two(0, 1), two(2, 3), two(4, 5), v[6], v[7]),
         ];
         for (shapes, dimension) in [(&plane[..], Two), (&space[..], Three)] {
@@ -308,7 +315,7 @@ proptest::proptest! {
                     format!("Rotate(shape: {simple}, axis: {}, angle_degrees: {:?})", three(5, 6, 7), v[4]),
                     format!("Scale(shape: {simple}, by: {})", three(5, 6, 7)),
                 ] {
-                    for lattice in [Lattice::Regular, Lattice::Hexagonal, Lattice::Concentric, Lattice::Relaxed { seed: 0, iterations: 1 }] {
+                    for lattice in [Lattice::Regular, Lattice::Hexagonal, Lattice::Concentric, Lattice::BodyFitted { iterations: 2 }, Lattice::Relaxed { seed: 0, iterations: 1 }] {
                         let filled = fill(&shape(&text), lattice, ODD[s], dimension, Path::new("."), 300);
                         for site in filled.unwrap_or_default() {
                             assert!(site.position.is_finite() && site.volume > 0.0, "{text} {lattice:?} {}", ODD[s]);

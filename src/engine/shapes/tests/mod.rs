@@ -2,6 +2,7 @@
 
 mod concentric;
 mod errors;
+mod fitted;
 mod hexagonal;
 mod mutation;
 mod order;

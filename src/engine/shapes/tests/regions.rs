@@ -38,7 +38,10 @@ const PLANE: [(&str, Inside); 9] = [
         (p.x - 0.2).hypot(2.0 * p.y) <= 1.0
     }),
 ];
-const SPACE: [(&str, Inside); 5] = [
+const SPACE: [(&str, Inside); 6] = [
+    ("Shell(center: (0.5, 0, 0), inner: 0.4, outer: 1)", |p| {
+        (0.4..=1.0).contains(&p.distance(0.5 * DVec3::X))
+    }),
     ("Sphere(center: (0.5, 0, 0), radius: 1)", |p| p.distance(0.5 * DVec3::X) <= 1.0),
     ("Cylinder(from: (0, 0, -1), to: (0, 0, 0.5), radius: 1)", |p| {
         p.x.hypot(p.y) <= 1.0 && p.z >= -1.0 && p.z <= 0.5

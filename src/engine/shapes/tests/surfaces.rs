@@ -134,11 +134,12 @@ fn of_combinations_is_refused_where_it_is_not_known() {
     }
 }
 
-const SPACE: [&str; 9] = [
+const SPACE: [&str; 10] = [
     "Box(min: (-1, -0.5, -0.2), max: (1, 1, 0.7))",
     "Sphere(center: (0.5, 0, 0), radius: 1)",
     "Cylinder(from: (0, 0, -1), to: (0, 0.5, 0.5), radius: 1)",
     "Tube(from: (1, 0, 0), to: (-1, 0, 0), inner: 0.4, outer: 1)",
+    "Shell(center: (1, 0, 0), inner: 0.4, outer: 1)",
     "Extrusion(polygon: [(-1, -1), (1, -1), (1, 1), (0, -0.5), (-1, 1)], from: -0.5, to: 0.5)",
     "HalfSpace(point: (0.1, 0.2, 0), normal: (1, 2, -2))",
     "Rotate(shape: Box(min: (0, 0, 0), max: (1, 1, 1)), axis: (1, 1, 1), angle_degrees: 45)",

@@ -30,6 +30,7 @@ fn every_form_reads_and_writes() {
         "Cylinder(from: (0, 0, 0), to: (0, 0, 1), radius: 0.5)",
         "Ring(center: (0, 0), inner: 1, outer: 2)",
         "Tube(from: (0, 0, 0), to: (0, 0, 1), inner: 0.5, outer: 1)",
+        "Shell(center: (0, 0, 1), inner: 0.5, outer: 1)",
         "Polygon(points: [(0, 0), (1, 0), (0, 1)])",
         "Extrusion(polygon: [(0, 0), (1, 0), (0, 1)], from: 0, to: 2)",
         "Union([Sphere(center: (0, 0), radius: 1), Sphere(center: (1, 0), radius: 1)])",
@@ -66,6 +67,7 @@ fn lattices() {
         ("Cubic", Lattice::Regular),
         ("Hexagonal", Lattice::Hexagonal),
         ("Concentric", Lattice::Concentric),
+        ("BodyFitted()", Lattice::BodyFitted { iterations: 50 }),
         ("Relaxed()", Lattice::Relaxed { seed: 0, iterations: 6 }),
         ("Relaxed(seed: 7, iterations: 2)", Lattice::Relaxed { seed: 7, iterations: 2 }),
     ] {

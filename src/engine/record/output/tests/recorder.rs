@@ -105,18 +105,14 @@ fn a_recorder_hears_all_in_order() {
     assert_eq!(told[1], "fields von_mises[Pa] velocity[m/s] pressure[Pa]");
     let series = "series energy/strain[J] energy/kinetic[J] energy/constraints[J] energy/beam/strain[J]";
     assert!(told[2].starts_with(series), "{}", told[2]);
-    assert!(
-        told[2].contains("probe/tip/x[m] probe/tip/y[m] probe/tip/z[m] probe/support/x[N]"),
-        "{}",
-        told[2]
-    );
+    assert!(told[2].contains("probe/tip/x[m] probe/tip/y[m] probe/support/x[N]"), "{}", told[2]);
     assert!(told[2].contains("probe/middle/stress.xx[Pa] probe/energies/strain[J]"), "{}", told[2]);
     let frames: Vec<&str> =
         told.iter().filter(|t| t.starts_with("frame")).map(|t| t.split(' ').nth(1).unwrap()).collect();
     assert_eq!(frames, ["0", "40", "80", "120", "160", "200"]);
     assert!(told.contains(&"frame 40 beam 24 0.005".to_owned()));
     // The tip alone has an interval of its own, 0.001 s; all others have 0.0004 s.
-    assert!(told.iter().any(|t| t.starts_with("samples 10 probe/tip/x probe/tip/y probe/tip/z")));
+    assert!(told.iter().any(|t| t.starts_with("samples 10 probe/tip/x probe/tip/y")));
     let flushed = told.windows(2).filter(|w| w[0].starts_with("frame") && w[1] == "flush").count();
     assert_eq!(flushed, 6);
     assert_eq!(told.last().unwrap(), "finish 0");

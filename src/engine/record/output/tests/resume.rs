@@ -98,7 +98,7 @@ fn files_that_are_not_those_of_the_checkpoint_are_refused() {
     let mut sim = built(&cantilever(|t| t), folder.path());
     sim.run(|sim| sim.clock().step < 50).unwrap();
     sim.finish().unwrap();
-    fs::write(folder.path().join("tip.csv"), "t[s],x[m],y[m],z[m]\n").unwrap();
+    fs::write(folder.path().join("tip.csv"), "t[s],x[m],y[m]\n").unwrap();
     let checkpoint = Checkpoint::read(&folder.path().join("checkpoint.mlc")).unwrap();
     let scene = parse(checkpoint.source()).unwrap();
     let mut sim = try_build(&scene, &options(folder.path(), Existing::Refuse, true)).unwrap();

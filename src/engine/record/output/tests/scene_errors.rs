@@ -73,11 +73,14 @@ fn all_faults_are_told_at_once() {
 }
 
 #[test]
-fn a_probe_where_nothing_is_is_warned_of_before_the_run() {
-    let warnings = |point: &str| {
+fn a_probe_where_nothing_is_is_refused() {
+    let error = |point: &str| {
         let scene = cantilever(|text| text.replace("at: (0.04, 0.012)", &format!("at: {point}")));
-        let sim = build(&scene.0, &scene.1, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
-        sim.warnings().iter().filter(|warning| warning.starts_with("probe `middle`")).count()
+        build(&scene.0, &scene.1, &Registry::standard())
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default()
     };
-    assert_eq!([warnings("(0.04, 0.012)"), warnings("(0.09, 0.012)"), warnings("(5.0, 5.0)")], [0, 0, 1]);
+    assert_eq!([error("(0.04, 0.012)"), error("(0.09, 0.012)")], ["", ""]);
+    assert!(error("(5.0, 5.0)").contains("no particle with `stress.xx` is near"));
 }

@@ -28,8 +28,8 @@ pub fn resolve(
         direction.ok_or_else(|| {
             problem(
                 field,
-                "this is no direction",
-                "give a vector that is not zero, without z in two dimensions",
+                "the direction must not be a zero vector",
+                "in two dimensions it has no z component",
             )
         })
     };
@@ -48,7 +48,7 @@ pub fn resolve(
             if !(*diameter >= 0.0 && diameter.is_finite()) {
                 return Err(problem(
                     ".diameter",
-                    "the diameter of the sensor is below zero",
+                    "`diameter` must be at least 0",
                     "give it in m, 0 for a point",
                 ));
             }

@@ -1,0 +1,70 @@
+//! Loads on parts of the surface of a body: bores, inclined and curved sides, all of it.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::assembly::build;
+use crate::plugin::Registry;
+use crate::scene::{Source, parse};
+use crate::world::{BodyId, Mass, Velocity};
+
+/// The momentum that a load gives to a free body in a step of 10 us over the time, N.
+fn force(dimension: &str, shape: &str, lattice: &str, load: &str) -> DVec3 {
+    let text = format!(
+        r#"(dimension: {dimension}, materials: {{"soft": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "b", material: "soft", shape: {shape}, spacing: 0.01, lattice: {lattice}, formulation: TotalLagrangian)],
+            conditions: [{load}], time: (end: 1e-5, step: Fixed(1e-5)))"#
+    );
+    let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+    sim.run(|_| true).unwrap();
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let (mass, velocity) = (view.read::<Mass>().unwrap(), view.read::<Velocity>().unwrap());
+    rows.map(|row| mass[row].0 * velocity[row].0).sum::<DVec3>() / 1e-5
+}
+
+const BORED: &str = "Difference(Box(min: (0, 0, 0), max: (0.1, 0.1, 0.05)), Cylinder(from: (0.05, 0.05, -1), to: (0.05, 0.05, 1), radius: 0.03))";
+
+#[test]
+fn a_traction_on_a_bore_acts_on_its_area() {
+    let area = 2.0 * PI * 0.03 * 0.05;
+    for (surface, lattice) in [
+        ("Of(Cylinder(from: (0.05, 0.05, -1), to: (0.05, 0.05, 1), radius: 0.03))", "Regular"),
+        ("Inner", "BodyFitted()"),
+    ] {
+        let load =
+            format!(r#"Traction(on: Select(body: "b", surface: {surface}), value: ("0", "0", "1000"))"#);
+        let found = force("Three", BORED, lattice, &load);
+        assert!((found.z / (1000.0 * area) - 1.0).abs() < 0.02, "{surface}: {found}");
+    }
+}
+
+#[test]
+fn a_pressure_all_around_a_body_has_no_resultant() {
+    let load = r#"Pressure(on: Select(body: "b", surface: All), value: "1000")"#;
+    for (dimension, shape) in [
+        ("Three", BORED),
+        ("Three", "Shell(center: (0, 0, 0), inner: 0.03, outer: 0.06)"),
+        (
+            "Three",
+            "Union([Box(min: (0, 0, 0), max: (0.06, 0.06, 0.03)), Sphere(center: (0.03, 0.03, 0.03), radius: 0.02)])",
+        ),
+        ("Two", "Difference(Box(min: (0, 0), max: (0.1, 0.1)), Sphere(center: (0.1, 0.1), radius: 0.05))"),
+    ] {
+        let found = force(dimension, shape, "Regular", load);
+        assert!(found.length() < 1e-9 * 1000.0 * 0.01, "{shape}: {found}");
+    }
+}
+
+#[test]
+fn a_pressure_on_an_inclined_side_is_along_its_normal() {
+    let wedge = "Extrusion(polygon: [(0, 0), (0.1, 0), (0.1, 0.05), (0.0, 0.1)], from: 0, to: 0.03)";
+    let load = r#"Pressure(on: Select(body: "b", surface: Facing((1, 2, 0))), value: "1000")"#;
+    let found = force("Three", wedge, "Regular", load);
+    let expected = -1000.0 * 0.03 * DVec3::new(0.05, 0.1, 0.0);
+    assert!(found.distance(expected) < 1e-6 * expected.length(), "{found} {expected}");
+    let cut = "Difference(Box(min: (0, 0, 0), max: (0.1, 0.1, 0.03)), HalfSpace(point: (0.1, 0.05, 0), normal: (-1, -2, 0)))";
+    let found = force("Three", cut, "BodyFitted()", load);
+    assert!(found.distance(expected) < 0.02 * expected.length(), "{found} {expected}");
+}

@@ -1,0 +1,99 @@
+//! A field at points of a body that move with it: a point, places on a line, or those of its surface.
+
+use glam::DVec3;
+
+use super::measure::Measure;
+use super::stencil::Stencil;
+use super::taken::{Extremum, of_number};
+use crate::fields::ChosenField;
+use crate::scene::Take;
+use crate::schedule::Resources;
+use crate::world::{BodyId, Column, MissingColumn, Position, Removed, World};
+
+/// What is made of the values at the points.
+pub(super) enum Made {
+    /// The value at the only point.
+    Value,
+    /// All of them, each with its distance from the first, m.
+    Line(Vec<f64>),
+    /// Something over points that stand for these areas, m2.
+    Taken(Take, Vec<f64>),
+}
+
+/// A field at points of a body.
+pub(super) struct BodyPoints {
+    pub body: BodyId,
+    pub field: ChosenField,
+    pub stencils: Vec<Stencil>,
+    pub made: Made,
+}
+
+impl Measure for BodyPoints {
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        let names = self.field.column_names();
+        match &self.made {
+            Made::Line(along) => line_columns(&self.field, along),
+            Made::Taken(Take::Minimum | Take::Maximum, _) => Extremum::columns(&self.field),
+            _ => names.into_iter().map(|name| (name, self.field.unit())).collect(),
+        }
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        let mut needs = self.field.needs();
+        needs.push(Position::NAME);
+        needs
+    }
+
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let (view, rows) = world.body_view(self.body);
+        let removed = &view.read::<Removed>()?[rows.clone()];
+        let ends = || self.stencils.iter().map(Stencil::ends);
+        let first = ends().map(|ends| ends.0).min().unwrap_or(0) as usize;
+        let last = ends().map(|ends| ends.1).max().unwrap_or(0) as usize;
+        let values =
+            self.field.read(world, resources, self.body, rows.start + first..rows.start + last + 1)?;
+        let width = self.field.width();
+        let axes = world.dimension().count();
+        let there = |particle: u32| removed[particle as usize] == Removed::NO;
+        let shares: Vec<Vec<(u32, f64)>> =
+            self.stencils.iter().map(|stencil| stencil.shares(axes, there)).collect();
+        let at = |shares: &Vec<(u32, f64)>| -> Vec<f64> {
+            let value = |c: usize| {
+                let of =
+                    |&(particle, share): &(u32, f64)| share * values[(particle as usize - first) * width + c];
+                if shares.is_empty() { f64::NAN } else { shares.iter().map(of).sum() }
+            };
+            (0..width).map(value).collect()
+        };
+        let all: Vec<Vec<f64>> = shares.iter().map(at).collect();
+        match &self.made {
+            Made::Value | Made::Line(_) => Ok(all.concat()),
+            Made::Taken(take @ (Take::Minimum | Take::Maximum), _) => {
+                let position = &view.read::<Position>()?[rows];
+                let mut extremum = Extremum::new(*take);
+                for (values, shares) in all.iter().zip(&shares) {
+                    let of = |&(particle, share): &(u32, f64)| share * position[particle as usize].0;
+                    extremum.look(of_number(values), || shares.iter().map(of).sum::<DVec3>());
+                }
+                Ok(extremum.values(axes))
+            }
+            Made::Taken(_, areas) => {
+                let there = || all.iter().zip(areas).filter(|(values, _)| !values[0].is_nan());
+                let total: f64 = there().map(|(_, area)| area).sum();
+                let mean = |c: usize| there().map(|(values, area)| values[c] * area).sum::<f64>() / total;
+                Ok((0..width).map(mean).collect())
+            }
+        }
+    }
+}
+
+/// The columns of a field at places along a line, by their distances from its first one.
+pub(super) fn line_columns(field: &ChosenField, along: &[f64]) -> Vec<(String, &'static str)> {
+    let names = field.column_names();
+    let at = |distance: &f64| {
+        let distance = format!("{distance:.9}");
+        let distance = distance.trim_end_matches('0').trim_end_matches('.').to_owned();
+        names.iter().map(move |name| format!("{name} at {distance} m")).collect::<Vec<_>>()
+    };
+    along.iter().flat_map(at).map(|name| (name, field.unit())).collect()
+}

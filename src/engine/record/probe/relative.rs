@@ -1,0 +1,35 @@
+//! What is measured at one place, less the same at another.
+
+use super::measure::Measure;
+use super::resolve::Gauge;
+use crate::schedule::Resources;
+use crate::world::{MissingColumn, World};
+
+/// Two gauges of the same columns.
+pub(super) struct Relative {
+    pub first: Gauge,
+    pub second: Gauge,
+    /// The length of the difference instead of its components.
+    pub distance: bool,
+}
+
+impl Measure for Relative {
+    fn columns(&self) -> Vec<(String, &'static str)> {
+        if self.distance { vec![("distance".to_owned(), "m")] } else { self.first.columns() }
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        let mut needs = self.first.needs();
+        needs.extend(self.second.needs());
+        needs
+    }
+
+    fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
+        let (first, second) = (self.first.read(world, resources)?, self.second.read(world, resources)?);
+        let difference: Vec<f64> = first.iter().zip(second).map(|(a, b)| a - b).collect();
+        if self.distance {
+            return Ok(vec![difference.iter().map(|part| part * part).sum::<f64>().sqrt()]);
+        }
+        Ok(difference)
+    }
+}
