@@ -318,7 +318,7 @@ fn a_benchmark_measures_a_work_and_names_the_works_there_are() {
     }
     let unknown = meshless(&folder, &["bench", "solid"]);
     assert_eq!(unknown.status.code(), Some(2));
-    assert!(err(&unknown).contains("there is no work `solid`") && err(&unknown).contains("solid-31"));
+    assert!(err(&unknown).contains("unknown benchmark `solid`") && err(&unknown).contains("solid-31"));
 }
 
 #[test]

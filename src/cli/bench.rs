@@ -1,4 +1,4 @@
-//! `meshless bench`: how fast the program is on the standard works, with everything on and output off.
+//! `meshless bench`: how fast the program is on the benchmark cases, with everything on and output off.
 //!
 //! A work is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
 //! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of works
@@ -20,11 +20,11 @@ use super::text::say;
 use measure::Measurement;
 use work::{WORKS, Work};
 
-/// Measure the speed on standard works: particle-steps/s, pairs/s, memory, share of each system
+/// Measure the speed on benchmark cases: particle-steps/s, pairs/s, memory, share of each system
 #[derive(Args)]
 pub struct Arguments {
     /// Works to run; all if none is given
-    #[arg(value_name = "WORK")]
+    #[arg(value_name = "CASE")]
     works: Vec<String>,
     /// Numbers of particles, about; with k or M for thousands and millions
     #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = count, value_name = "N")]
@@ -103,7 +103,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Work>, Failure> {
     let find = |name: &String| {
         WORKS.iter().find(|work| work.name == name).ok_or_else(|| {
             let known: Vec<&str> = WORKS.iter().map(|work| work.name).collect();
-            Failure::Usage(format!("there is no work `{name}`; there are: {}", known.join(", ")))
+            Failure::Usage(format!("unknown benchmark `{name}`; the benchmarks are {}", known.join(", ")))
         })
     };
     names.iter().map(find).collect()

@@ -35,7 +35,7 @@ enum Command {
 
 const EXIT_CODES: &str = "\
 exit codes: 0 success, 1 the run failed or a file could not be read or written, 2 the scene or the command line is wrong,
-130 stopped by Ctrl-C or by the system (SIGINT, SIGTERM, SIGHUP), with a checkpoint left";
+130 stopped by Ctrl-C (SIGINT), 143 by the system (SIGTERM), 129 as the terminal closed (SIGHUP), each with a checkpoint left";
 
 impl Command {
     fn execute(self, registry: &Registry) -> Result<(), Failure> {

@@ -94,7 +94,11 @@ impl Execution {
             return Err(Failure::Run(format!("{error}{}", state.unwrap_or_default())));
         }
         finished.map_err(|error| Failure::Run(error.to_string()))?;
-        if interrupt.asked() && !self.sim.is_finished() { Err(Failure::Interrupted) } else { Ok(()) }
+        if interrupt.asked() && !self.sim.is_finished() {
+            Err(Failure::Interrupted(interrupt.signal()))
+        } else {
+            Ok(())
+        }
     }
 
     fn steps(

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use meshless_engine::scene::SceneError;
 use thiserror::Error;
 
+use super::interrupt::exit_code;
 use super::text::{complain, in_colour};
 
 /// Why a command did not do what it was asked to.
@@ -19,9 +20,9 @@ pub enum Failure {
     /// The run failed, or a file could not be read or written. Exit code 1.
     #[error("error: {0}")]
     Run(String),
-    /// The user stopped the run. Exit code 130, as shells count a program that was ended by Ctrl-C.
+    /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that was ended by it.
     #[error("the run was interrupted")]
-    Interrupted,
+    Interrupted(u8),
 }
 
 impl Failure {
@@ -39,7 +40,7 @@ impl Failure {
         ExitCode::from(match self {
             Self::Scene(_) | Self::Usage(_) => 2,
             Self::Run(_) => 1,
-            Self::Interrupted => 130,
+            Self::Interrupted(signal) => exit_code(*signal),
         })
     }
 }

@@ -1,15 +1,15 @@
-//! Ctrl-C: the first one asks the run to end after its step, the second one ends the program.
+//! Signals: the first one asks the run to end after its step, the second one ends the program.
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use super::failure::Failure;
 use super::text::complain;
 
-/// Whether the user has asked to stop; one for the program, as there is one Ctrl-C.
-static ASKED: AtomicBool = AtomicBool::new(false);
+/// The signal by which the user or the system has asked to stop, 0 for none; one for the program.
+static ASKED: AtomicU8 = AtomicU8::new(0);
 
-/// Whether the user has asked to stop.
+/// Whether the run has been asked to stop.
 #[derive(Clone, Copy)]
 pub struct Interrupt(());
 
@@ -17,22 +17,64 @@ impl Interrupt {
     /// Listens for Ctrl-C and for the request of the system to end; once for all runs of the program.
     pub fn listen() -> Result<Self, Failure> {
         static LISTENING: OnceLock<Result<(), String>> = OnceLock::new();
-        let handler = || {
-            if ASKED.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-            complain("stopping after this step; a second Ctrl-C ends the program at once");
-        };
-        let listening =
-            LISTENING.get_or_init(|| ctrlc::set_handler(handler).map_err(|error| error.to_string()));
-        match listening {
+        match LISTENING.get_or_init(|| listen(stop).map_err(|error| error.to_string())) {
             Ok(()) => Ok(Self(())),
-            Err(error) => Err(Failure::Run(format!("cannot listen for Ctrl-C: {error}"))),
+            Err(error) => Err(Failure::Run(format!("cannot listen for signals: {error}"))),
         }
     }
 
-    /// Whether the user has asked to stop.
+    /// Whether the run has been asked to stop.
     pub fn asked(self) -> bool {
+        self.signal() != 0
+    }
+
+    /// The number of the signal that has asked it to stop, 0 for none.
+    pub fn signal(self) -> u8 {
         ASKED.load(Ordering::SeqCst)
     }
+}
+
+/// Takes note of a signal.
+fn stop(signal: u8) {
+    if ASKED.swap(signal, Ordering::SeqCst) != 0 {
+        std::process::exit(i32::from(exit_code(signal)));
+    }
+    complain("stopping after this step; a second Ctrl-C ends the program at once");
+}
+
+/// The exit code of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+pub fn exit_code(signal: u8) -> u8 {
+    128 + signal
+}
+
+/// Calls `then` with the number of each signal to stop, on a thread of its own. A signal that the program was started to ignore, as
+/// `nohup` starts it, stays ignored.
+#[cfg(unix)]
+fn listen(then: fn(u8)) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored();
+    let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut signals = signal_hook::iterator::Signals::new(heard)?;
+    std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        for signal in signals.forever() {
+            then(u8::try_from(signal).unwrap_or(u8::MAX - 128));
+        }
+    })?;
+    Ok(())
+}
+
+/// The signals that are ignored, a bit for each, as Linux tells; none where it is not known.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// The same where there is Ctrl-C alone.
+#[cfg(not(unix))]
+fn listen(then: fn(u8)) -> Result<(), ctrlc::Error> {
+    /// Number of the signal of Ctrl-C.
+    const SIGINT: u8 = 2;
+    ctrlc::set_handler(move || then(SIGINT))
 }

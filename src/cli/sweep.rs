@@ -69,7 +69,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     say(&report::text(&rows));
     say(&format!("table of all runs: {}", file.display()));
     if interrupt.asked() {
-        return Err(Failure::Interrupted);
+        return Err(Failure::Interrupted(interrupt.signal()));
     }
     match failures {
         0 => Ok(()),
@@ -89,7 +89,7 @@ fn run(
     let mut execution = Execution::new(scene, source, registry, options)?;
     let quiet = How { quiet: true, threads: None, ..*how };
     match execution.carry_out(&quiet) {
-        Ok(()) | Err(Failure::Interrupted) => {}
+        Ok(()) | Err(Failure::Interrupted(_)) => {}
         Err(failure) => failure.report(),
     }
     Ok(Row::new(case, execution.sim.summary()))

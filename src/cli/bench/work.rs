@@ -1,4 +1,4 @@
-//! The standard works: scenes at any number of particles.
+//! The benchmark cases: scenes at any number of particles.
 
 use anyhow::Result;
 

@@ -1,0 +1,146 @@
+//! Signals, output that cannot be written, moved scenes and slips of units, as users meet them; without recordings.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+/// A beam whose run takes minutes.
+const SCENE: &str = r#"(
+    dimension: Two,
+    gravity: (0.0, -9.81),
+    materials: {"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)},
+    bodies: [
+        Body(name: "beam", material: "rubber", shape: Box(min: (0.0, 0.0), max: (0.1, 0.03)), spacing: 0.01,
+             formulation: TotalLagrangian),
+    ],
+    conditions: [Fix(on: Select(face: MinX))],
+    time: (end: 1000.0),
+    probes: [Probe(name: "tip", on: Select(nearest: (0.1, 0.03)), quantity: Displacement, every: 0.001)],
+    record: (every: 1.0),
+)
+"#;
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("beam.ron"), SCENE).expect("a scene");
+    folder
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshless"));
+    command.args(arguments).current_dir(folder).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+fn meshless(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().expect("the program starts")
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[cfg(unix)]
+fn send(signal: &str, id: u32) {
+    let sent = Command::new("kill").args([format!("-{signal}"), id.to_string()]).status();
+    assert!(sent.is_ok_and(|status| status.success()), "{signal} could not be sent");
+}
+
+/// Waits until the run has begun to write.
+fn wait_for(file: &Path) {
+    for _ in 0..600 {
+        if std::fs::metadata(file).is_ok_and(|data| data.len() > 0) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    panic!("the run has not begun");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_exit_code_tells_the_signal_and_the_run_can_go_on() {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        let folder = folder();
+        let child = command(folder.path(), &["run", "beam.ron", "--out", "o", "--threads", "1"]).spawn();
+        let child = child.expect("the program starts");
+        wait_for(&folder.path().join("o/tip.csv"));
+        send(signal, child.id());
+        let output = child.wait_with_output().expect("the program ends");
+        assert_eq!(output.status.code(), Some(code), "{}", err(&output));
+        let resumed = meshless(folder.path(), &["resume", "o", "--steps", "1", "--threads", "1"]);
+        assert!(resumed.status.success(), "{}", err(&resumed));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_under_nohup_outlives_its_terminal() {
+    let folder = folder();
+    let mut command = Command::new("nohup");
+    command.args([env!("CARGO_BIN_EXE_meshless"), "run", "beam.ron", "--out", "o", "--threads", "1"]);
+    command.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    wait_for(&folder.path().join("o/tip.csv"));
+    send("HUP", child.id());
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(child.try_wait().expect("the program can be asked").is_none(), "SIGHUP has ended it");
+    send("TERM", child.id());
+    assert_eq!(child.wait().expect("the program ends").code(), Some(143));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_written_is_an_error() {
+    let folder = folder();
+    for arguments in [&["plugins"][..], &["schema"], &["check", "beam.ron"], &["check", "--json", "beam.ron"]]
+    {
+        let full = std::fs::File::options().write(true).open("/dev/full").expect("a device that is full");
+        let output = command(folder.path(), arguments).stdout(full).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", err(&output));
+        assert!(
+            err(&output).contains("cannot be written") || err(&output).contains("cannot write"),
+            "{}",
+            err(&output)
+        );
+    }
+}
+
+#[test]
+fn a_run_is_resumed_with_its_scene_elsewhere_and_with_other_values() {
+    let folder = folder();
+    let old = folder.path().join("old");
+    std::fs::create_dir(&old).expect("a folder");
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/meshes/box.obj");
+    std::fs::copy(&mesh, old.join("box.obj")).expect("a mesh");
+    let scene = r#"(dimension: Three, materials: {"m": NeoHookean(density: 1000, young: 1e5, poisson: 0.3)},
+        bodies: [Body(name: "b", material: "m", shape: Mesh(file: "box.obj"), spacing: 0.25, formulation: TotalLagrangian)],
+        time: (end: 1.0), record: (every: 0.5))"#;
+    std::fs::write(old.join("b.ron"), scene).expect("a scene");
+    let run = meshless(folder.path(), &["run", "old/b.ron", "--out", "o", "--steps", "3", "--threads", "1"]);
+    assert!(run.status.success(), "{}", err(&run));
+    std::fs::rename(&old, folder.path().join("new")).expect("the folder is renamed");
+    let lost = meshless(folder.path(), &["resume", "o", "--steps", "1"]);
+    assert!(!lost.status.success() && err(&lost).contains("box.obj"), "{}", err(&lost));
+    let found = meshless(folder.path(), &["resume", "o", "--steps", "1", "--scene", "new/b.ron"]);
+    assert!(found.status.success(), "{}", err(&found));
+    let set = ["resume", "o", "--scene", "new/b.ron", "--set", "time.end=1e-9"];
+    let ended = meshless(folder.path(), &set);
+    assert!(err(&ended).contains("extend it with `--until TIME`"), "{}", err(&ended));
+}
+
+#[test]
+fn slips_of_units_are_warned_of() {
+    let folder = folder();
+    for (set, expected) in [
+        ("materials.rubber.density=0.001", "outside 1 to 30000 kg/m3"),
+        ("materials.rubber.density=1.0e6", "outside 1 to 30000 kg/m3"),
+        ("bodies.beam.velocity=(200.0, 0.0)", "times the speed of sound"),
+    ] {
+        let output = meshless(folder.path(), &["check", "beam.ron", "--set", set, "--set", "conditions=[]"]);
+        let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), err(&output));
+        assert!(text.contains("warning") && text.contains(expected), "{set}: {text}");
+    }
+    let plain = meshless(folder.path(), &["check", "beam.ron"]);
+    assert!(!err(&plain).contains("warning"), "{}", err(&plain));
+}
