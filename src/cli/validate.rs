@@ -26,6 +26,7 @@ mod johnson_cook;
 mod kernels;
 mod laminar_flows;
 mod laws;
+mod level_at_rest;
 mod lid_driven_cavity;
 mod measure;
 mod neighbor_lists;
@@ -40,7 +41,9 @@ mod report;
 mod restitution;
 mod rigid;
 mod rotating_flows;
+mod rotating_patch;
 mod rubber_pull;
+pub mod sweep;
 mod taylor;
 mod taylor_bars;
 mod taylor_plane;
@@ -51,7 +54,9 @@ mod turek_hron;
 mod twisting_column;
 mod uniaxial_strain;
 mod upsetting;
+mod viscous_channel;
 mod viscous_layers;
+mod vortices;
 mod water_on_plate;
 mod waves;
 
@@ -67,7 +72,7 @@ use report::Report;
 /// Run cases with known answers and print measured value, reference, error and tolerance.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Arguments {
-    /// Cases to run, such as `S11`; all if none is given.
+    /// Cases to run, such as `S11`; all if none is given. `sweep` runs every plugin of fluids on every shipped flow, which takes minutes.
     #[arg(value_name = "ID")]
     pub cases: Vec<String>,
     /// Particles across the smallest dimension, in place of the cheapest meaningful resolution of each case.
@@ -108,10 +113,11 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
     }
     let mut cases = Vec::new();
     for name in names {
-        match CASES.iter().find(|case| case.id.eq_ignore_ascii_case(name)) {
+        let all = CASES.iter().chain([&sweep::CASE]);
+        match all.clone().find(|case| case.id.eq_ignore_ascii_case(name)) {
             Some(case) => cases.push(case),
             None => {
-                let known: Vec<&str> = CASES.iter().map(|case| case.id).collect();
+                let known: Vec<&str> = all.map(|case| case.id).collect();
                 return Err(Failure::Usage(format!(
                     "there is no case `{name}`; there are: {}",
                     known.join(", ")

@@ -68,7 +68,10 @@ macro_rules! for_each_case {
             F5 dam_break::CASE;
             F6 lid_driven_cavity::CASE;
             F8 floating_box::CASE;
+            F9 rotating_patch::CASE;
             F12 rotating_flows::CASE;
+            F13 vortices::CASE;
+            F15 level_at_rest::CASE;
             X1 water_on_plate::CASE;
             X2 dam_break_obstacle::CASE;
             X5 closed_box::CASE;

@@ -51,7 +51,11 @@ fn water_on_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let values = || deflection.0.iter().map(|sample| sample.1);
     let mean = values().sum::<f64>() / deflection.0.len() as f64;
     let swing = values().map(|value| (value / mean - 1.0).abs()).fold(0.0, f64::max);
-    let tolerance = Tolerance::Relative(if across < 9 { 0.08 } else { 0.05 });
+    let tolerance = Tolerance::Relative(match across {
+        ..5 => 0.08,
+        5..7 => 0.03,
+        _ => 0.015,
+    });
     let balance = simulation.ledger().relative_error().abs();
     Ok(vec![
         Check::new("deflection of the middle", mean, DEFLECTION, tolerance, "m", SOURCE).converging(),

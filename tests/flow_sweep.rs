@@ -1,0 +1,113 @@
+//! Every plugin of fluids on coarse variants of every shipped flow; `meshless validate sweep` takes the flows as they are.
+
+use meshless::cli::validate::sweep::{flows, sweep_of};
+use meshless::standard_plugins;
+
+/// Steps of each run.
+const STEPS: u64 = 300;
+
+/// The flows, each with what makes it coarse.
+const COARSE: &[(&str, &[(&str, &str)])] = &[
+    (
+        "dam_break",
+        &[
+            ("bodies.water.spacing", "0.06"),
+            ("bodies.tank.spacing", "0.06"),
+            ("bodies.tank.shape[0].min", "(-0.18, -0.18)"),
+            ("bodies.tank.shape[0].max", "(3.42, 1.8)"),
+        ],
+    ),
+    (
+        "dam_break_3d",
+        &[
+            ("bodies.water.spacing", "0.05"),
+            ("bodies.tank.spacing", "0.05"),
+            ("bodies.tank.shape[0].min", "(-0.15, -0.15, -0.15)"),
+            ("bodies.tank.shape[0].max", "(1.35, 0.75, 0.45)"),
+        ],
+    ),
+    (
+        "dam_break_obstacle",
+        &[
+            ("bodies.water.spacing", "0.008"),
+            ("bodies.plate.spacing", "0.006"),
+            ("bodies.tank.spacing", "0.008"),
+            ("bodies.tank.shape[0].min", "(-0.024, -0.024)"),
+            ("bodies.tank.shape[0].max", "(0.608, 0.36)"),
+        ],
+    ),
+    (
+        "elastic_gate",
+        &[
+            ("bodies.water.spacing", "0.005"),
+            ("bodies.gate.spacing", "0.0025"),
+            ("bodies.gate.shape.max", "(0.105, 0.085)"),
+            ("bodies.tank.spacing", "0.005"),
+            ("bodies.tank.shape[0][0].min", "(-0.02, 0.0)"),
+            ("bodies.tank.shape[0][1].min", "(-0.02, -0.02)"),
+            ("bodies.tank.shape[0][2].max", "(0.12, 0.2)"),
+        ],
+    ),
+    (
+        "floating_box",
+        &[
+            ("bodies.water.spacing", "0.025"),
+            ("bodies.box.spacing", "0.025"),
+            ("bodies.tank.spacing", "0.025"),
+            ("bodies.tank.shape[0].min", "(-0.1, -0.1)"),
+            ("bodies.tank.shape[0].max", "(1.1, 0.5)"),
+        ],
+    ),
+    (
+        "sloshing",
+        &[
+            ("bodies.water.spacing", "0.05"),
+            ("bodies.tank.spacing", "0.05"),
+            ("bodies.tank.shape[0].min", "(-0.15, -0.15)"),
+            ("bodies.tank.shape[0].max", "(1.15, 0.9)"),
+        ],
+    ),
+    ("taylor_green", &[("bodies.fluid.spacing", "0.05")]),
+    (
+        "water_on_plate",
+        &[
+            ("bodies.water.spacing", "0.05"),
+            ("bodies.plate.spacing", "0.025"),
+            ("bodies.left.spacing", "0.05"),
+            ("bodies.left.shape.min", "(-0.15, 0.0)"),
+            ("bodies.right.spacing", "0.05"),
+            ("bodies.right.shape.max", "(1.15, 2.2)"),
+        ],
+    ),
+    ("water_wheel", &[]),
+];
+
+#[test]
+fn every_shipped_flow_is_swept() {
+    for entry in std::fs::read_dir("assets/scenes").expect("the scenes") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(&path).expect("a scene");
+        let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name").to_owned();
+        if text.contains("formulation: Fluid") {
+            assert!(flows().any(|flow| flow == name), "{name}");
+            assert!(COARSE.iter().any(|(flow, _)| *flow == name), "{name}");
+        }
+    }
+}
+
+#[test]
+fn plugins_keep_the_volume_and_give_no_energy_in_coarse_flows() {
+    let mut failed = Vec::new();
+    for (flow, set) in COARSE {
+        // The wheel is as it is shipped.
+        let steps = if set.is_empty() { STEPS / 10 } else { STEPS };
+        match sweep_of(&standard_plugins(), flow, set, steps) {
+            Ok(checks) => {
+                let wrong = checks.into_iter().filter(|check| !check.passes());
+                failed.extend(wrong.map(|check| format!("{}: {}", check.name, check.measured)));
+            }
+            Err(error) => failed.push(format!("{flow}: {error}")),
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
