@@ -12,6 +12,7 @@ use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
+use super::repulsion::Repulsion;
 use super::rest;
 use super::sides::ThinBody;
 use super::start::start;
@@ -86,6 +87,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let total = groups.last().map_or(0, |group| group.cloud.end);
     let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
     let spin = viscosities.spin;
+    let (repulsion, reach) = Repulsion::new(&groups, kernel.smoothing_length(), sim);
     let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
     let mut cloud = FlowCloud {
         groups: groups.clone(),
@@ -100,6 +102,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         near: NearRows::default(),
         near_boundary: NearRows::default(),
         compression: Vec::new(),
+        is_close: Vec::new(),
+        reach,
+        repelled: Vec::new(),
         loads: Vec::new(),
         spins: if spin { vec![Lanes4::ZERO; total] } else { Vec::new() },
         neighborhoods,
@@ -113,7 +118,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         setup.resources.insert(cloud);
         Ok(())
     });
-    systems::add(&groups, spin, sim)
+    systems::add(&groups, spin, repulsion, sim)
 }
 
 /// Who is beside whom in the bodies to which fluids stick.

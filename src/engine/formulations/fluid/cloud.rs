@@ -9,6 +9,7 @@ use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
 use super::pairs::FlowPairs;
 use super::record::{Periods, Record};
+use super::repulsion::Repelled;
 use super::viscosities::Viscosities;
 use crate::materials::EquationOfState;
 use crate::parallel::Lanes4;
@@ -125,6 +126,12 @@ pub struct FlowCloud {
     pub(super) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(super) compression: Vec<f64>,
+    /// Whether every fluid particle is within `reach` of a boundary particle.
+    pub(super) is_close: Vec<bool>,
+    /// Distance within which a fluid particle that a boundary repels has a particle of it, m.
+    pub(super) reach: f64,
+    /// Fluid particles that boundaries repel, in the order of rows.
+    pub(super) repelled: Vec<Repelled>,
     /// Acceleration of every fluid particle by loads; empty where nothing loads a fluid.
     pub(super) loads: Vec<DVec3>,
     /// Spins of all particles, 1/s; zero for boundaries, and none at all where friction goes without.

@@ -26,11 +26,14 @@ impl FlowCloud {
     /// Finds the neighbours within the support of every fluid particle, and its D, 1/s, in a step of that length, s.
     fn compress(&mut self, dt: f64) {
         let (mut near, mut rates) = (std::mem::take(&mut self.near), std::mem::take(&mut self.compression));
+        let mut is_close = std::mem::take(&mut self.is_close);
         rates.resize(self.fluid, 0.0);
-        for_each_block((&mut rates[..], near.writer()), &mut Vec::new(), &|first, (out, near)| {
-            run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, near });
+        is_close.resize(self.fluid, false);
+        let rows = (&mut rates[..], &mut is_close[..], near.writer());
+        for_each_block(rows, &mut Vec::new(), &|first, (out, is_close, near)| {
+            run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, is_close, near });
         });
-        (self.near, self.compression) = (near, rates);
+        (self.near, self.compression, self.is_close) = (near, rates, is_close);
     }
 }
 
@@ -40,6 +43,7 @@ struct Rows<'a> {
     back: f64,
     first: usize,
     out: &'a mut [f64],
+    is_close: &'a mut [bool],
     near: NearWriter<'a>,
 }
 
@@ -56,16 +60,18 @@ impl Rows<'_> {
         let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
         let kernel = *kernel;
         let mut batch = Batch::EMPTY;
+        let reach = Lanes4::splat(self.cloud.reach * self.cloud.reach);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
             let own = Own::<D>::new(&records[i]);
             let pairs = Pairs { cloud: self.cloud, kernel, own, back: self.back };
             let mut near = self.near.row(k);
-            let mut sum = Lanes4::ZERO;
-            for row in [lists.fluid.row(i), lists.walls.row(i)] {
-                sum = pairs.add::<A, P>(a, row, (&mut near, &mut batch), sum);
-            }
+            let mut least = Lanes4::splat(f64::INFINITY);
+            let sum = pairs.add::<A, P>(a, lists.fluid.row(i), (&mut near, &mut batch), Lanes4::ZERO, None);
+            let walls = lists.walls.row(i);
+            let sum = pairs.add::<A, P>(a, walls, (&mut near, &mut batch), sum, Some(&mut least));
             near.close();
+            self.is_close[k] = a.below(least, reach) != 0;
             *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }
@@ -87,13 +93,14 @@ impl<const D: usize> Pairs<'_, D> {
         row: &[u32],
         (near, batch): (&mut NearRow<'_>, &mut Batch),
         mut sum: Lanes4,
+        mut least: Option<&mut Lanes4>,
     ) -> Lanes4 {
         let (fours, rest) = row.as_chunks();
         let mut done = 0;
         while done < fours.len() {
             let end = (done + BATCH).min(fours.len());
             for k in done..end {
-                let (square, factor) = self.four::<A, P>(a, fours[k], 4, near);
+                let (square, factor) = self.four::<A, P>(a, fours[k], 4, near, least.as_deref_mut());
                 batch.put(k, square, factor);
             }
             for k in done..end {
@@ -103,7 +110,7 @@ impl<const D: usize> Pairs<'_, D> {
             done = end;
         }
         if !rest.is_empty() {
-            let (square, factor) = self.four::<A, P>(a, filled_up(rest), rest.len(), near);
+            let (square, factor) = self.four::<A, P>(a, filled_up(rest), rest.len(), near, least);
             let factor = a.times(factor, MASKS[rest.len()]);
             sum = a.times_add(self.kernel.shapes(a, a.sqrt(square)), factor, sum);
         }
@@ -118,11 +125,16 @@ impl<const D: usize> Pairs<'_, D> {
         rows: [u32; 4],
         count: usize,
         near: &mut NearRow<'_>,
+        least: Option<&mut Lanes4>,
     ) -> (Lanes4, Lanes4) {
         let Self { cloud: FlowCloud { records, periods, .. }, kernel, own, back, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
         let limit = Lanes4::splat(kernel.support * kernel.support);
-        let within = a.below(dot(a, &four.x, &four.x), limit) & ((1 << count) - 1);
+        let square = dot(a, &four.x, &four.x);
+        if let Some(least) = least {
+            *least = a.smaller(square, *least);
+        }
+        let within = a.below(square, limit) & ((1 << count) - 1);
         near.push(a, rows, within);
         let mut x = four.x;
         for axis in 0..D {

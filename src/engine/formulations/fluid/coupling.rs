@@ -134,6 +134,7 @@ impl Coupling {
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
             PairForce { cloud, group, adds: false }.run(to, parts_to);
             couples.add(cloud, group, to, parts_to);
+            cloud.repel(group, to, parts_to);
             if side == 0 {
                 self.drag.clear();
                 self.drag.resize(group.rows.len(), 0.0);

@@ -46,6 +46,7 @@ impl Run for FlowForce {
                 None => pass.run(total, forces),
             }
             self.couples.add(&cloud, group, total, forces);
+            cloud.repel(group, total, forces);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::kernel::FluidKernel;
+use super::repulsion::RangeShortfall;
 use crate::kernels::KernelName;
 use crate::notation::number;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
@@ -47,7 +48,7 @@ impl Formulation for Fluid {
     const OFFERS: &'static [Offer] = &[Offer::PairTerms];
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<Density>().add::<DensityRate>().add::<Pressure>();
+        columns.add::<Density>().add::<DensityRate>().add::<Pressure>().add::<RangeShortfall>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -46,6 +46,9 @@ mod passing;
 mod reaction;
 mod record;
 mod repay;
+mod repulsion;
+#[cfg(test)]
+mod repulsion_tests;
 mod rest;
 #[cfg(test)]
 mod rest_tests;
@@ -63,6 +66,7 @@ mod spin_tests;
 mod spread;
 mod start;
 mod state;
+mod surface_distance;
 mod surroundings;
 mod systems;
 #[cfg(test)]

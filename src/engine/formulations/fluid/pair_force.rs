@@ -5,7 +5,7 @@
 //! product. Where friction goes without spins it is `2 mu_ij w_ij v_ij`.
 //!
 //! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
-//! that of a compressed fluid, so its work is booked by itself.
+//! that of a compressed fluid, so its work is booked by itself, together with that of its repulsion ([`super::repulsion`]).
 
 use glam::DVec3;
 

@@ -11,6 +11,7 @@ use super::density::Continuity;
 use super::fields::fields;
 use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
 use super::neighbors::{NEIGHBORS, Neighbors};
+use super::repulsion::{RangeShortfall, Repulsion};
 use super::spin::Spin;
 use super::state::EquationOfState;
 use super::wall::PreviousVelocity;
@@ -20,8 +21,12 @@ use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::schedule::{Mode, Stage, System};
-use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, Removed, Velocity};
+use crate::world::{
+    Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed, Velocity,
+};
 
+/// Label of the system that finds who is near, and how fast fluids are compressed.
+const COMPRESSION: &str = "fluid_compression";
 /// Label of the system that gives walls their pressure.
 const WALL_PRESSURE: &str = "wall_pressure";
 
@@ -50,7 +55,12 @@ pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseI
 }
 
 /// Adds the systems of the groups; with `spin`, friction is corrected by it.
-pub(super) fn add(groups: &[Group], spin: bool, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+pub(super) fn add(
+    groups: &[Group],
+    spin: bool,
+    repulsion: Repulsion,
+    sim: &mut SimBuilder<'_>,
+) -> Result<(), SetupError> {
     let mut phases: Vec<PhaseId> = groups.iter().map(|group| group.phase).collect();
     phases.dedup();
     let (fluid, boundaries) = (groups[0].phase, boundaries(groups));
@@ -60,12 +70,22 @@ pub(super) fn add(groups: &[Group], spin: bool, sim: &mut SimBuilder<'_>) -> Res
     // Sorting permutes all columns.
     let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
     watch::add(phases.clone(), sim.body(groups[0].body).spacing, sim);
-    let lists =
-        System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default()).on_phases(phases).after(REMOVAL);
+    let lists = System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
+        .on_phases(phases.iter().copied())
+        .after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
     sim.add_system(
-        System::new(Stage::Neighbors, "fluid_compression", Compression).on_phases([fluid]).after(NEIGHBORS),
+        System::new(Stage::Neighbors, COMPRESSION, Compression).on_phases([fluid]).after(NEIGHBORS),
     );
+    if !boundaries.is_empty() {
+        sim.add_system(
+            System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
+                .on_phases(phases)
+                .reads::<ReferencePosition>()
+                .writes::<RangeShortfall>()
+                .after(COMPRESSION),
+        );
+    }
     let continuity = Continuity { account, sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)
