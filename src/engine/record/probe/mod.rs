@@ -18,5 +18,5 @@ mod tests;
 mod torque;
 
 pub use energies::EnergyColumns;
-pub use flow::pressure_on_face;
+pub use flow::{pressure_on_face, water_level};
 pub use resolve::{Gauge, Probe};

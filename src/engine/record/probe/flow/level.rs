@@ -41,11 +41,23 @@ impl Measure for LevelGauge {
 
     fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN; 2]) };
-        let near = self.near(&cloud);
+        Ok(self.heights(&cloud).to_vec())
+    }
+}
+
+/// Height of the surface of fluids above a point, m; `up` is a unit vector.
+pub fn water_level(cloud: &FlowCloud, at: DVec3, up: DVec3) -> f64 {
+    LevelGauge { at, up }.heights(cloud)[0]
+}
+
+impl LevelGauge {
+    /// Height of the surface and length of the line that is wet, m.
+    fn heights(&self, cloud: &FlowCloud) -> [f64; 2] {
+        let near = self.near(cloud);
         let top = near.iter().filter(|near| near.fluid).map(|near| near.height).fold(0.0, f64::max);
         let step = cloud.kernel.support / STEPS;
         let last = ((top + cloud.kernel.support) / step).ceil() as usize;
-        let excess: Vec<f64> = (0..=last).map(|k| excess(&cloud, &near, k as f64 * step)).collect();
+        let excess: Vec<f64> = (0..=last).map(|k| excess(cloud, &near, k as f64 * step)).collect();
         let (mut level, mut wet) = (0.0, 0.0);
         for (k, pair) in excess.windows(2).enumerate() {
             let (a, b) = (pair[0], pair[1]);
@@ -54,11 +66,9 @@ impl Measure for LevelGauge {
                 level = step * (k as f64 + a / (a - b));
             }
         }
-        Ok(vec![level, wet])
+        [level, wet]
     }
-}
 
-impl LevelGauge {
     fn near(&self, cloud: &FlowCloud) -> Vec<Near> {
         let support = cloud.kernel.support;
         let of = |(row, record): (usize, &crate::formulations::fluid::Record)| {

@@ -8,5 +8,6 @@ mod sensor;
 #[cfg(test)]
 mod tests;
 
+pub use level::water_level;
 pub(super) use resolve::resolve;
 pub use sensor::pressure_on_face;

@@ -1,17 +1,20 @@
 //! The pressure that a sensor in a wall shows: the mean over points of its face of the pressure that a particle of the wall would have there.
 //!
-//! `p = (sum_f p_f W - sum_f (g + b_f) . rho_f x_f W) / sum_f W` with x_f from the point and loads b_f on the fluid (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075, eq.
-//! 27, and W for the kernel times the volume V_f); zero where no fluid is in front of the point.
+//! `p = (sum_f p_f W - sum_f (g + b_f) . rho_f x_f W) / max(sum_f W, 0.8 (1/2 - sum_w W))`, sums in front of the face, with x_f from the point and loads b_f on the fluid (Adami, Hu, Adams, J.
+//! Comput. Phys. 231 (2012) 7057-7075, eq. 27, and W for the kernel times the volume). What walls leave of the place in front of the point, `1/2 - sum_w W`, is filled by a
+//! fluid at rest; where less than four fifths of it is, in a jet or a splash, the dry part of the face has no pressure.
 
 use glam::DVec3;
 
-use crate::formulations::fluid::{FlowCloud, Record};
+use crate::formulations::fluid::{FlowCloud, Record, Role, Surface};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
 use crate::world::{Column, MissingColumn, Position, World};
 
-/// Least sum of V_f W for which there is fluid in front of a point; a smooth surface has a half.
-const LEAST: f64 = 0.05;
+/// Part of the place in front of a point that a fluid without gaps fills at least.
+const FILLED: f64 = 0.8;
+/// Least part of the place in front of a point for which there is a pressure.
+const LEAST: f64 = 1e-6;
 
 /// A face in a wall.
 pub struct SensorGauge {
@@ -45,17 +48,30 @@ impl SensorGauge {
     /// Mean over the points of the face, Pa.
     fn pressure(&self, cloud: &FlowCloud) -> f64 {
         let reach = cloud.kernel.support;
-        let near = |record: &Record| {
+        let near = |i: &usize| {
+            let record = &cloud.records()[*i];
             let is_near =
                 |point: &DVec3| cloud.offset(*point, record.position()).length_squared() < reach * reach;
             record.volume() > 0.0 && self.points.iter().any(is_near)
         };
-        let fluid: Vec<usize> = (0..cloud.fluid).filter(|&i| near(&cloud.records()[i])).collect();
-        let sum: f64 = self.points.iter().map(|&point| self.at(cloud, &fluid, point)).sum();
+        let fluid: Vec<usize> = (0..cloud.fluid).filter(near).collect();
+        // A thin body is there twice.
+        let once = cloud.groups.iter().enumerate().filter(|(k, group)| {
+            group.fluid().is_none() && cloud.groups[..*k].last().is_none_or(|last| last.body != group.body)
+        });
+        let walls: Vec<usize> = once.flat_map(|(_, group)| group.cloud.clone()).filter(near).collect();
+        let sum: f64 = self.points.iter().map(|&point| self.at(cloud, [&fluid, &walls], point)).sum();
         sum / self.points.len() as f64
     }
 
-    fn at(&self, cloud: &FlowCloud, fluid: &[usize], point: DVec3) -> f64 {
+    fn at(&self, cloud: &FlowCloud, [fluid, walls]: [&[usize]; 2], point: DVec3) -> f64 {
+        let share = |i: &usize| {
+            let record = &cloud.records()[*i];
+            let x = cloud.offset(point, record.position());
+            let is_in_front = x.dot(self.normal) > 0.0;
+            if is_in_front { record.volume() * cloud.kernel.value(x.length()) } else { 0.0 }
+        };
+        let left = 0.5 - walls.iter().map(share).sum::<f64>();
         let (mut total, mut sum) = (0.0, 0.0);
         for &i in fluid {
             let record = &cloud.records()[i];
@@ -67,13 +83,25 @@ impl SensorGauge {
                 sum -= weight * self.density(cloud, record) * (self.gravity + cloud.load(i)).dot(x);
             }
         }
-        if total > LEAST { sum / total } else { 0.0 }
+        let place = total.max(FILLED * left);
+        let pressure = if place > LEAST { sum / place } else { 0.0 };
+        // What the wall around the point does: without suction its pressure is not below zero.
+        let suction = nearest_surface(cloud, walls, point).is_none_or(|surface| surface.suction);
+        if suction { pressure } else { pressure.max(0.0) }
     }
 
     fn density(&self, cloud: &FlowCloud, record: &Record) -> f64 {
         let state = cloud.groups.iter().find_map(|group| group.fluid());
         state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
     }
+}
+
+/// The surface of the boundary particle that is nearest to a point.
+fn nearest_surface(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<Surface> {
+    let distance = |i: &usize| cloud.offset(point, cloud.records()[*i].position()).length_squared();
+    let nearest = *walls.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let group = cloud.groups.iter().find(|group| group.cloud.contains(&nearest))?;
+    if let Role::Boundary(surface) = group.role { Some(surface) } else { None }
 }
 
 /// The pressure that a small sensor at a point shows, Pa; `normal` is the unit vector out of its face.

@@ -141,3 +141,15 @@ fn a_field_at_a_point_is_that_of_one_phase() {
     let (fluid, solid) = (speed("at: (0.98, 0.25)"), speed("at: (1.02, 0.25)"));
     assert!((fluid - 2.0).abs() < 1e-9 && solid.abs() < 1e-9, "{fluid} {solid}");
 }
+
+#[test]
+fn a_sensor_that_a_drop_hits_has_no_pressure_where_it_is_dry() {
+    let drop = r#"(name: "water", material: "water", shape: Box(min: (0.95, 0.2), max: (1, 0.25)), spacing: 0.025, formulation: Fluid(pressure: 1000.0))"#;
+    let scene = |height: f64| {
+        let probe = at("PressureSensor(normal: (-1, 0))", &format!("at: (1, {height})"));
+        first(&text(&format!("{drop}, {TANK}"), r#""0", "0""#, "(0, 0)", &probe))
+    };
+    near(&scene(0.225), &[("pressure", 1000.0)], 30.0);
+    // 0.4 spacings beside the drop its four particles have W V = .109, .025, .013 and .002, and 0.8 / 2 would be a full face.
+    near(&scene(0.26), &[("pressure", 1000.0 * 0.149 / 0.4)], 15.0);
+}
