@@ -24,6 +24,7 @@ use plugin::Registry;
 pub fn standard_plugins() -> Registry {
     Registry::standard()
         .with(hourglass_control::register)
+        .with(hessian_stabilization::register)
         .with(local_damping::register)
         .with(artificial_viscosity::register)
         .with(density_diffusion::register)

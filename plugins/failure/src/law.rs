@@ -133,6 +133,10 @@ impl SolidLaw for FailingLaw {
         self.inner.stable_step_factor(stretches)
     }
 
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        self.inner.wave_factor(stretches)
+    }
+
     fn state(&self, columns: &mut ColumnSet) {
         self.inner.state(columns);
         columns.add::<Damage>().add::<FailureIndex>().add::<FractureEnergy>().add::<DamagedEnergy>();

@@ -116,6 +116,27 @@ pub const WORKS: &[Work] = &[
         ],
     },
     Work {
+        name: "solid-updated",
+        title: "the same with updated-Lagrangian bodies, cubic spline",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2)")),
+        ],
+    },
+    Work {
+        name: "solid-updated-hessian",
+        title: "the same with differences of second derivatives in the place of hourglass control",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2)")),
+            ("bodies.block.plugins", Text("[hessian_stabilization()]")),
+        ],
+    },
+    Work {
         name: "solid-54",
         title: "solid in three dimensions, total-Lagrangian, 56 neighbours inside",
         scene: BLOCK,

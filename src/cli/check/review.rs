@@ -39,15 +39,21 @@ fn of_body(body: &BodyReport) -> Vec<String> {
     let name = &body.name;
     let mut notes = Vec::new();
     match body.formulation.as_str() {
-        "TotalLagrangian" if !has("hourglass_control") => notes.push(format!(
-            "body `{name}` has no `hourglass_control`: zero-energy modes can grow, above all under large strain"
-        )),
-        "Fluid" if !has("density_diffusion") => notes.push(format!(
-            "fluid `{name}` has no `density_diffusion`: its pressure will be noisy"
-        )),
+        "TotalLagrangian" | "UpdatedLagrangian"
+            if !has("hourglass_control") && !has("hessian_stabilization") =>
+        {
+            notes.push(format!(
+                "body `{name}` has no `hourglass_control`: zero-energy modes can grow, above all under large strain"
+            ));
+        }
+        "Fluid" if !has("density_diffusion") => {
+            notes.push(format!("fluid `{name}` has no `density_diffusion`: its pressure will be noisy"))
+        }
         _ => {}
     }
-    if body.formulation == "TotalLagrangian" && body.across < ACROSS - 0.5 {
+    if ["TotalLagrangian", "UpdatedLagrangian"].contains(&body.formulation.as_str())
+        && body.across < ACROSS - 0.5
+    {
         notes.push(format!(
             "body `{name}` has {} particles across its smallest side: at least {} resolve its bending",
             number(body.across.round()),

@@ -5,6 +5,7 @@ use glam::DMat3;
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+use super::stretches::Stretches;
 
 elastic_parameters! {
     /// Decoupled neo-Hookean elasticity, tau = mu J^(-2/3) (b - tr(b)/3 I) + K J (J - 1) I with b = F F^T.
@@ -31,6 +32,14 @@ impl Hyperelastic for DecoupledNeoHookeanLaw {
 
     fn elastic(&self) -> &ElasticConstants {
         &self.0
+    }
+
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        // A longitudinal wave along n has mu J^(-2/3) (5/9 tr b - n . b n / 3) + K J^2: at most 4/3 s^2 in the bracket, b = F F^T.
+        let (bulk, mu) = (self.0.bulk, self.0.shear);
+        let shape = 4.0 / 3.0 * mu * stretches.largest.powi(2) * stretches.least_volume.powf(-2.0 / 3.0);
+        let volume = bulk * stretches.largest_volume.powi(2);
+        ((shape + volume) / (bulk + 4.0 / 3.0 * mu)).sqrt()
     }
 
     #[inline(always)]

@@ -160,7 +160,13 @@ impl Pressure {
     /// Factor of the stable time step at the extreme stretches of a body: stiffness seen from the reference configuration
     /// grows as 1/stretch^2, and the pressure may stiffen beside.
     pub fn step_factor(&self, elastic: &ElasticConstants, stretches: &Stretches) -> f64 {
+        stretches.smallest.min(1.0) / self.wave_factor(elastic, stretches)
+    }
+
+    /// Largest speed of longitudinal waves over present lengths, over that of the undeformed material: elastic strains are small, so that plastic
+    /// flow does not change it, and the pressure may stiffen.
+    pub fn wave_factor(&self, elastic: &ElasticConstants, stretches: &Stretches) -> f64 {
         let stiffer = elastic.bulk * (self.stiffening(stretches.least_volume) - 1.0).max(0.0);
-        stretches.smallest.min(1.0) / (1.0 + stiffer / elastic.longitudinal_modulus()).sqrt()
+        (1.0 + stiffer / elastic.longitudinal_modulus()).sqrt()
     }
 }

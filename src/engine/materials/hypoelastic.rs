@@ -81,6 +81,10 @@ impl SolidLaw for HypoelasticLaw {
         self.pressure.step_factor(&self.elastic, stretches)
     }
 
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        self.pressure.wave_factor(&self.elastic, stretches)
+    }
+
     fn state(&self, columns: &mut ColumnSet) {
         columns.add::<DeviatoricStress>().add::<ReachedDeformation>().add::<PlasticStrain>();
         TemperatureRows::declare(self.temperature, columns);

@@ -120,6 +120,10 @@ impl SolidLaw for PlasticLaw {
         self.pressure.step_factor(&self.elastic, stretches)
     }
 
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        self.pressure.wave_factor(&self.elastic, stretches)
+    }
+
     fn state(&self, columns: &mut ColumnSet) {
         columns.add::<PlasticStrain>().add::<InversePlasticCauchyGreen>();
         columns.add::<EquivalentStress>().add::<YieldStress>();

@@ -155,8 +155,15 @@ pub trait SolidLaw: Send + Sync {
         None
     }
 
-    /// Factor of the stable time step at the extreme stretches of a body.
+    /// Factor of the stable time step at the extreme stretches of a body, as seen from the undeformed configuration.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
+
+    /// Largest speed of longitudinal waves in the deformed material, over present lengths and with the stress that it is under, over
+    /// that of the undeformed one, at the extreme stretches of a body.
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        // Seen from the undeformed configuration it is 1 / stable_step_factor, and lengths have grown by the stretch.
+        stretches.largest.max(1.0) / self.stable_step_factor(stretches)
+    }
 
     /// Adds the columns that hold the state of the law, at most [`MAX_STATE`](super::MAX_STATE).
     fn state(&self, _columns: &mut ColumnSet) {}
@@ -180,6 +187,12 @@ pub trait Hyperelastic: Copy + Send + Sync + 'static {
     /// raises the stiffness seen from the reference configuration as 1/stretch^2.
     fn stable_step_factor(&self, smallest: f64, _largest: f64) -> f64 {
         smallest.min(1.0)
+    }
+
+    /// Largest speed of longitudinal waves in the deformed material, over present lengths, over that of the undeformed one (see
+    /// [`SolidLaw::wave_factor`]).
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        stretches.largest.max(1.0) / self.stable_step_factor(stretches.smallest, stretches.largest)
     }
 
     /// First Piola-Kirchhoff stress P = d psi / d F, Pa, and strain energy per reference volume psi, J/m3.
@@ -220,6 +233,10 @@ impl<H: Hyperelastic> SolidLaw for H {
 
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         Hyperelastic::stable_step_factor(self, stretches.smallest, stretches.largest)
+    }
+
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        Hyperelastic::wave_factor(self, stretches)
     }
 
     fn stress(&self, rows: &mut StressRows<'_>) {

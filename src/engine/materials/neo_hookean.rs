@@ -5,6 +5,7 @@ use glam::DMat3;
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+use super::stretches::Stretches;
 
 elastic_parameters! {
     /// Compressible neo-Hookean elasticity, P = mu (F - F^-T) + lambda ln J F^-T.
@@ -30,6 +31,13 @@ impl Hyperelastic for NeoHookeanLaw {
 
     fn elastic(&self) -> &ElasticConstants {
         &self.0
+    }
+
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        // A wave along n has the acoustic tensor mu (n . b n) I + (mu + lambda (1 - ln J)) n (x) n, b = F F^T.
+        let (lambda, mu) = (self.0.lambda, self.0.shear);
+        let along = mu + lambda * (1.0 - stretches.least_volume.ln());
+        ((mu * stretches.largest.powi(2) + along) / (lambda + 2.0 * mu)).sqrt().max(1.0)
     }
 
     #[inline(always)]

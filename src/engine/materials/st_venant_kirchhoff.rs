@@ -5,6 +5,7 @@ use glam::DMat3;
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
 use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+use super::stretches::Stretches;
 
 elastic_parameters! {
     /// St Venant-Kirchhoff elasticity, S = lambda tr(E) I + 2 mu E with E = (F^T F - I) / 2.
@@ -36,6 +37,12 @@ impl Hyperelastic for StVenantKirchhoffLaw {
     fn stable_step_factor(&self, _smallest: f64, largest: f64) -> f64 {
         // The law stiffens in tension: dP/dF along a stretch s is (lambda + 2 mu)(3 s^2 - 1)/2. It softens in compression.
         1.0 / largest.max(1.0)
+    }
+
+    fn wave_factor(&self, stretches: &Stretches) -> f64 {
+        // dP/dF along a stretch s is (lambda + 2 mu)(3 s^2 - 1)/2, over lengths that have grown by s.
+        let s = stretches.largest.max(1.0);
+        s * (1.5 * s * s - 0.5).sqrt()
     }
 
     #[inline(always)]

@@ -37,6 +37,8 @@ pub enum Offer {
     PairTerms,
     /// Terms that fold into the pass of the internal force: hourglass control.
     FoldedTerms,
+    /// Stabilization by differences of second derivatives ([`HessianDifference`](crate::solids::HessianDifference)).
+    HessianDifferences,
     /// Mirror images across symmetry planes.
     MirrorImages,
     /// Contact with other bodies.
@@ -58,11 +60,23 @@ impl Offer {
         Self::DeformedContact,
     ];
 
+    /// What the formulations of solids with a Lagrangian kernel take.
+    pub const OF_LAGRANGIAN_SOLIDS: &'static [Self] = &[
+        Self::PairTerms,
+        Self::FoldedTerms,
+        Self::HessianDifferences,
+        Self::MirrorImages,
+        Self::Contact,
+        Self::SelfContact,
+        Self::DeformedContact,
+    ];
+
     /// What it is, in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::PairTerms => "pair terms",
             Self::FoldedTerms => "terms that fold into the internal force",
+            Self::HessianDifferences => "stabilization by differences of second derivatives",
             Self::MirrorImages => "mirror images",
             Self::Contact => "contact",
             Self::SelfContact => "contact of a body with itself",

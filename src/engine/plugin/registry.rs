@@ -63,8 +63,7 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: &[(Kind, &str)] =
-    &[(Kind::Plugin, "hessian_stabilization"), (Kind::Plugin, "artificial_stress")];
+const LATER: &[(Kind, &str)] = &[(Kind::Plugin, "artificial_stress")];
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
 

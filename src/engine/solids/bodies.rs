@@ -4,15 +4,18 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::DMat3;
+
 use super::constitutive::{Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
 use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
+use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
 use super::stretches;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block};
-use crate::plugin::{BodyPlan, ForBodies, SetupError, SimBuilder};
+use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
 use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
@@ -31,6 +34,8 @@ pub struct SolidBody {
     pub estimate: StepEstimate,
     /// Its folded terms.
     terms: Vec<usize>,
+    /// Its stabilization by differences of second derivatives.
+    pub hessian: Option<HessianDifference>,
     /// Whether its short steps are damped.
     damped: bool,
     /// Factor of the stable step by the stretches of the body.
@@ -84,6 +89,9 @@ impl SolidBodies {
     pub fn new(ids: &[BodyId], sim: &mut SimBuilder<'_>) -> Result<Self, SetupError> {
         let own = BodySet::new(ids.iter().copied());
         let terms: Vec<ForBodies<FoldedTermOfBodies>> = sim.take_for(&own);
+        let offers = |id: &BodyId| sim.body(*id).offers(Offer::HessianDifferences);
+        let offering = BodySet::new(ids.iter().copied().filter(offers));
+        let hessian: Vec<ForBodies<HessianDifference>> = sim.take_for(&offering);
         let damped: Vec<ForBodies<DampedInShortSteps>> = sim.take_for(&own);
         damped.iter().for_each(|ForBodies { bodies, .. }| {
             sim.add_column_to::<DampedStrain>(bodies);
@@ -91,10 +99,15 @@ impl SolidBodies {
         });
         let is_damped = |id| damped.iter().any(|damped| damped.bodies.contains(id));
         let body = |&id: &BodyId| {
-            let body = SolidBody::new(id, sim, &terms, is_damped(id));
+            let body = SolidBody::new(id, sim, &terms, &hessian, is_damped(id));
             body.map_err(|error| error.of_formulation(id))
         };
         let bodies = ids.iter().map(body).collect::<Result<Vec<_>, _>>()?;
+        let has_residual = bodies.iter().any(SolidBody::has_hessian_residual);
+        if has_residual {
+            sim.add_column_to::<HessianResidual>(&own);
+            sim.add_column_to::<HessianStiffness>(&own);
+        }
         let phase = sim.body(ids[0]).phase;
         let mut columns = ColumnSet::default();
         bodies.iter().for_each(|body| body.law.state(&mut columns));
@@ -106,6 +119,9 @@ impl SolidBodies {
         }
         if sim.columns(phase).get(HourglassGradient::NAME).is_some() {
             columns.add::<HourglassGradient>();
+        }
+        if has_residual {
+            columns.add::<HessianResidual>().add::<HessianStiffness>();
         }
         let terms = terms.into_iter().map(|term| term.value).collect();
         Ok(Self { phase, bodies, terms, columns, found: Vec::new(), sums: Vec::new() })
@@ -150,6 +166,11 @@ impl SolidBodies {
     /// What the last pass has found in each body.
     pub fn found(&self) -> &[SolidSum] {
         &self.found
+    }
+
+    /// Adds the energy of the difference of Laplacians of body `k` to what the last pass has found.
+    pub fn add_hessian(&mut self, k: usize, energy: FoldedEnergy) {
+        self.found[k].hessian = energy;
     }
 
     /// Whether there are folded terms.
@@ -221,7 +242,9 @@ impl SolidBodies {
     /// # Errors
     /// The phase has no deformation gradient.
     pub fn limit(&mut self, step: &mut Step<'_>, undeformed: &[f64]) -> Result<(), StepError> {
-        self.limit_seen(step, undeformed, |stretches| stretches)
+        self.limit_by(step, undeformed, |_, law, gradient, damage| {
+            law.stable_step_factor(&stretches::of_body(gradient, damage))
+        })
     }
 
     /// The same for stable steps, s, with the weights of the present configuration: of the stretches, only the change of volume counts, as that of all
@@ -231,27 +254,49 @@ impl SolidBodies {
     /// The phase has no deformation gradient.
     pub fn limit_from_present(&mut self, step: &mut Step<'_>, present: &[f64]) -> Result<(), StepError> {
         let axes = step.world.dimension().count() as f64;
-        self.limit_seen(step, present, |Stretches { least_volume, .. }| {
+        self.limit_by(step, present, |_, law, gradient, damage| {
+            let Stretches { least_volume, largest_volume, .. } = stretches::of_body(gradient, damage);
             let smallest = least_volume.max(0.0).powf(1.0 / axes);
-            Stretches { smallest, largest: 1.0, least_volume }
+            law.stable_step_factor(&Stretches { smallest, largest: 1.0, least_volume, largest_volume })
         })
     }
 
-    fn limit_seen(
+    /// The same for stable steps, s, in a reference configuration that follows the body, as if it were unstressed there. `reference` gives the deformation gradients
+    /// of the rows of a body in its reference configuration, where that is not the undeformed one.
+    ///
+    /// # Errors
+    /// The phase has no deformation gradient.
+    pub fn limit_since<'r>(
+        &mut self,
+        step: &mut Step<'_>,
+        unstressed: &[f64],
+        reference: impl Fn(usize) -> Option<&'r [DMat3]>,
+    ) -> Result<(), StepError> {
+        self.limit_by(step, unstressed, |k, law, gradient, damage| {
+            let stretches = stretches::of_body(gradient, damage);
+            match reference(k) {
+                None => law.stable_step_factor(&stretches),
+                Some(reference) => {
+                    stretches::smallest_since(gradient, reference, damage) / law.wave_factor(&stretches)
+                }
+            }
+        })
+    }
+
+    fn limit_by(
         &mut self,
         step: &mut Step<'_>,
         stable: &[f64],
-        seen: impl Fn(Stretches) -> Stretches,
+        factor: impl Fn(usize, &dyn SolidLaw, &[DeformationGradient], Option<&[Damage]>) -> f64,
     ) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let gradient = view.read::<DeformationGradient>()?;
         let damage = view.read::<Damage>().ok();
-        for (own, stable_step) in self.bodies.iter_mut().zip(stable) {
+        for (k, (own, stable_step)) in self.bodies.iter_mut().zip(stable).enumerate() {
             let body = step.world.body(own.id);
             if step.turn.number().is_multiple_of(STRETCH_INTERVAL) {
                 let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
-                let found = stretches::of_body(&gradient[body.rows.clone()], damage);
-                own.stretch_factor = own.law.stable_step_factor(&seen(found));
+                own.stretch_factor = factor(k, &*own.law, &gradient[body.rows.clone()], damage);
             }
             let by = fmt::from_fn(|f| own.write_cause(f, &body.name));
             step.limits.propose(stable_step * own.stretch_factor, by);
@@ -286,6 +331,7 @@ impl SolidBody {
         id: BodyId,
         sim: &SimBuilder<'_>,
         all: &[ForBodies<FoldedTermOfBodies>],
+        hessian: &[ForBodies<HessianDifference>],
         damped: bool,
     ) -> Result<Self, SetupError> {
         let body = sim.body(id);
@@ -295,6 +341,16 @@ impl SolidBody {
                 format!("body `{}` has {} folded terms, more than {MAX_TERMS}", body.name, terms.len());
             return Err(SetupError::parameter("", message, "remove plugins that add folded terms"));
         }
+        let mut hessian = hessian.iter().filter(|own| own.bodies.contains(id)).map(|own| *own.value);
+        let (hessian, more) = (hessian.next(), hessian.next());
+        if more.is_some() {
+            let message = format!("body `{}` has two stabilizations by second derivatives", body.name);
+            return Err(SetupError::parameter("", message, "leave one of them"));
+        }
+        if hessian.is_some_and(|own| own.form == HessianForm::Vidal2007) && !terms.is_empty() {
+            let message = format!("body `{}` has another stabilization beside `Vidal2007`", body.name);
+            return Err(SetupError::parameter("", message, "leave one of them, or use `FrameIndifferent`"));
+        }
         let law = Arc::clone(body.solid_law()?);
         let elastic = law.elastic();
         let density = body.material.density;
@@ -302,6 +358,10 @@ impl SolidBody {
         let estimate = StepEstimate {
             wave: elastic.longitudinal_modulus() / density,
             bond: factor * elastic.young / density,
+            hessian: hessian.map_or(0.0, |HessianDifference { eta, form }| match form {
+                HessianForm::FrameIndifferent => eta * eta * elastic.young / density,
+                HessianForm::Vidal2007 => eta * eta * elastic.longitudinal_modulus() / density,
+            }),
         };
         let mut columns = ColumnSet::default();
         law.state(&mut columns);
@@ -310,7 +370,12 @@ impl SolidBody {
                 format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
             SetupError::parameter("", message, "this is a fault of the material, not of the scene")
         })?;
-        Ok(Self { id, law, state, estimate, terms, damped, stretch_factor: 1.0 })
+        Ok(Self { id, law, state, estimate, terms, hessian, damped, stretch_factor: 1.0 })
+    }
+
+    /// Whether it has a stabilization with an energy of its own.
+    pub fn has_hessian_residual(&self) -> bool {
+        self.hessian.is_some_and(|own| own.form == HessianForm::FrameIndifferent)
     }
 
     fn book(&self, sum: &SolidSum, terms: &[Arc<FoldedTermOfBodies>], ledger: &mut Ledger) {
@@ -323,6 +388,14 @@ impl SolidBody {
         if !self.state.as_slice().is_empty() {
             let plastic = ledger.account("plastic_work", AccountKind::Dissipated);
             ledger.add(plastic, self.id, sum.plastic_work);
+        }
+        if self.has_hessian_residual() {
+            let account = ledger.account(hessian::ACCOUNT, AccountKind::Stored);
+            ledger.set(account, self.id, sum.hessian.stored);
+            if !self.state.as_slice().is_empty() {
+                let released = ledger.account(hessian::RELEASED, AccountKind::Dissipated);
+                ledger.add(released, self.id, sum.hessian.released);
+            }
         }
         for (&k, energy) in self.terms.iter().zip(sum.terms) {
             let FoldedTermOfBodies { account, released, .. } = &*terms[k];

@@ -29,14 +29,16 @@ pub struct SolidSum {
     pub damped: f64,
     /// Energy of each folded term, J.
     pub terms: [FoldedEnergy; MAX_TERMS],
+    /// Energy of the difference of Laplacians, J.
+    pub hessian: FoldedEnergy,
     /// Row with det F <= 0 that comes first of those that resist, counted from one; zero if there is none.
     pub inverted: usize,
 }
 
 impl SolidSum {
-    /// All that stress and folded terms hold, J.
+    /// All that stress, folded terms and the difference of Laplacians hold, J.
     pub fn stored(&self) -> f64 {
-        self.strain + self.terms.iter().map(|term| term.stored).sum::<f64>()
+        self.strain + self.hessian.stored + self.terms.iter().map(|term| term.stored).sum::<f64>()
     }
 
     /// Adds the energies of a block, and looks for inverted particles.
@@ -59,9 +61,9 @@ impl BlockSum for SolidSum {
         self.plastic_work += next.plastic_work;
         self.damped += next.damped;
         for (sum, next) in self.terms.iter_mut().zip(&next.terms) {
-            sum.stored += next.stored;
-            sum.released += next.released;
+            sum.add(next);
         }
+        self.hessian.add(&next.hessian);
         if self.inverted == 0 {
             self.inverted = next.inverted;
         }

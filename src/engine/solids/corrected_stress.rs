@@ -49,11 +49,16 @@ impl CorrectedStress {
         stress + displacement * self.stiffness()
     }
 
+    /// Adds to q_i alone: a force on every neighbour, whatever its place.
+    #[inline(always)]
+    pub fn add_traction(&mut self, traction: DVec3) {
+        self.traction = Lanes4::new(self.traction.xyz() + traction, self.traction.0[3]);
+    }
+
     /// Adds to A_i, and to q_i, what no frame changes, of a particle at that place in the reference configuration.
     pub fn add(&mut self, stress: &DMat3, reference: DVec3) {
         CorrectedStressRows(std::slice::from_mut(self)).add_scaled(0, 1.0, stress);
-        let traction = stress * reference;
-        self.traction = Lanes4::new(self.traction.xyz() + traction, self.traction.0[3]);
+        self.add_traction(stress * reference);
     }
 }
 

@@ -9,6 +9,7 @@
 //!                 the formulation makes what neighbours read of it: A = P M^-1                       (corrected_stress)
 //!                 `Constitutive::fold`    terms of plugins add to A and k                            (folded)
 //!                 `SolidSum::close`       energies of the block
+//!                 differences of second derivatives of positions add to A                            (hessian)
 //!               `SolidBodies::book` and `limit`: energies, inverted particles, stable step           (bodies, stretches, stable_step)
 //! Boundary      contact adds couples on material points beside particles through `SolidPhase`        (local_motion)
 //! Rates         the formulation's own pass over pairs writes the force; pair terms add to it         (crate::pair)
@@ -20,6 +21,7 @@ mod corrected_stress;
 mod damping;
 mod fields;
 mod folded;
+mod hessian;
 mod local_motion;
 mod pairs;
 mod phase;
@@ -33,6 +35,7 @@ pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
 pub(crate) use damping::DampedInShortSteps;
 pub(crate) use fields::add_fields;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
+pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 pub use local_motion::LocalMotion;
 pub use pairs::SolidPairs;
 pub use phase::SolidPhase;

@@ -11,6 +11,8 @@
 const STRESS_FACTOR: f64 = 1.45;
 /// Bond stiffness: omega^2 = `BOND_FACTOR` s E / rho sum_j V_j w_ij.
 const BOND_FACTOR: f64 = 3.0;
+/// Difference of second derivatives: omega^2 = `HESSIAN_FACTOR` eta^2 E / rho (h sum_j V_j w_ij)^2.
+const HESSIAN_FACTOR: f64 = 3.0;
 /// Share of the estimated critical step that is used.
 const SAFETY: f64 = 0.65;
 
@@ -21,15 +23,24 @@ pub struct StepEstimate {
     pub wave: f64,
     /// Sum of the stiffness factors of all bond terms times E / rho, m2/s2.
     pub bond: f64,
+    /// Square of the coefficient of the stabilization by differences of second derivatives times modulus over density, m2/s2.
+    pub hessian: f64,
 }
 
 impl StepEstimate {
     /// Stable step, s; `weight_sum` is sum_j V_j w_ij, `mean_inverse` is trace(M_i^-1) / d.
     pub fn stable_step(&self, weight_sum: f64, mean_inverse: f64) -> f64 {
+        self.stable_step_with(weight_sum, mean_inverse, 0.0)
+    }
+
+    /// Stable step, s, where the difference of second derivatives of a particle has the weight `second`, m, over lengths squared: the sum of the sizes of
+    /// its coefficients times the smoothing length.
+    pub fn stable_step_with(&self, weight_sum: f64, mean_inverse: f64, second: f64) -> f64 {
+        let hessian = HESSIAN_FACTOR * self.hessian * second * second;
         let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
         let bond = BOND_FACTOR * self.bond * weight_sum;
         // Between the larger of the two (they peak at different wave numbers) and their sum.
-        let omega_squared = stress.hypot(bond);
+        let omega_squared = stress.hypot(bond).hypot(hessian);
         SAFETY * 2.0 / omega_squared.sqrt()
     }
 

@@ -1,8 +1,10 @@
 //! The extreme stretches of a body, on which its stable step depends.
 
+use glam::DMat3;
+
 use crate::linalg::smallest_and_largest_stretch;
 use crate::materials::Stretches;
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::world::{Damage, DeformationGradient};
 
 /// The extreme stretches of the particles of a body that have not failed: what is left of a failed one may have any shape.
@@ -12,10 +14,30 @@ pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]
         let rows = rows.iter().zip(first..).filter(|(_, row)| intact(*row));
         rows.fold(Stretches::default(), |mut all, (row, _)| {
             let (smallest, largest) = smallest_and_largest_stretch(row.0);
-            all.add(&Stretches { smallest, largest, least_volume: row.0.determinant() });
+            let volume = row.0.determinant();
+            all.add(&Stretches { smallest, largest, least_volume: volume, largest_volume: volume });
             all
         })
     })
+}
+
+/// The smallest principal stretch, at most one, of the particles of a body that have not failed, since their reference configuration had the
+/// deformation gradients `reference`.
+pub(super) fn smallest_since(
+    gradient: &[DeformationGradient],
+    reference: &[DMat3],
+    damage: Option<&[Damage]>,
+) -> f64 {
+    let intact = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
+    let rows = (gradient, reference);
+    let most: Largest = sum_over_blocks(rows, &|first, (now, then): (&[DeformationGradient], &[DMat3])| {
+        let rows = now.iter().zip(then).zip(first..).filter(|(_, row)| intact(*row));
+        Largest::of(rows.map(|((now, then), _)| {
+            let (smallest, _) = smallest_and_largest_stretch(now.0 * then.inverse());
+            1.0 / smallest
+        }))
+    });
+    1.0 / most.0.max(1.0)
 }
 
 impl BlockSum for Stretches {
@@ -23,5 +45,6 @@ impl BlockSum for Stretches {
         self.smallest = self.smallest.min(next.smallest);
         self.largest = self.largest.max(next.largest);
         self.least_volume = self.least_volume.min(next.least_volume);
+        self.largest_volume = self.largest_volume.max(next.largest_volume);
     }
 }

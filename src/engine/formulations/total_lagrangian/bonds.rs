@@ -44,7 +44,7 @@ pub struct Bonds {
     /// `sum_j V_j w_ij X_ij`.
     pub(in crate::formulations) reach: Vec<DVec3>,
     /// `sum_j V_j w_ij`, 1/m2.
-    weight_sum: Vec<f64>,
+    pub(in crate::formulations) weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
     pub(in crate::formulations) free: Vec<u32>,
 }
@@ -196,9 +196,12 @@ impl Bonds {
         rows: Range<usize>,
         axes: usize,
         estimate: &StepEstimate,
+        support: &[f64],
     ) -> f64 {
-        let particle =
-            |i: usize| estimate.stable_step(self.weight_sum[i], self.inverse_moment[i].trace() / axes as f64);
+        let particle = |i: usize| {
+            let (sum, mean_inverse) = (self.weight_sum[i], self.inverse_moment[i].trace() / axes as f64);
+            estimate.stable_step_with(sum, mean_inverse, 0.5 * support[i] * sum)
+        };
         rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)
     }
 
@@ -206,6 +209,12 @@ impl Bonds {
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let bonds = self.offsets[i] as usize..self.offsets[i + 1] as usize;
         self.neighbors[bonds.clone()].iter().map(|&j| j as usize).zip(self.weights[bonds].iter().copied())
+    }
+
+    /// Takes the neighbours of other bonds; the weights have to be given, and the rows to be corrected.
+    pub(in crate::formulations) fn take_topology(&mut self, other: &Self) {
+        self.offsets.clone_from(&other.offsets);
+        self.neighbors.clone_from(&other.neighbors);
     }
 
     /// Number of directed bonds.

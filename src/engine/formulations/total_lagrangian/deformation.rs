@@ -4,12 +4,13 @@
 //! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements keep the digits of
 //! small strains). In plane strain the third row and column are those of the identity.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::cracks::{EdgeRows, Mark};
 use super::frame::Frame;
 use super::gather::{CorrectStress, Gather};
+use super::hessian::HessianBlock;
 use super::rows::Site;
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
@@ -23,6 +24,7 @@ pub(super) struct DeformationRows<'a> {
     /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`, the part of the force that knows no stress but its own.
     pub self_force: &'a mut [DVec3],
     pub edges: EdgeRows<'a>,
+    pub hessian: HessianBlock<'a>,
 }
 
 impl Split for DeformationRows<'_> {
@@ -34,9 +36,15 @@ impl Split for DeformationRows<'_> {
         let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
         let (self_force, self_force_rest) = self.self_force.split_at_mut(at);
         let (edges, edges_rest) = self.edges.split(at);
+        let (hessian, hessian_rest) = self.hessian.split(at);
         (
-            Self { stresses, self_force, edges },
-            Self { stresses: stresses_rest, self_force: self_force_rest, edges: edges_rest },
+            Self { stresses, self_force, edges, hessian },
+            Self {
+                stresses: stresses_rest,
+                self_force: self_force_rest,
+                edges: edges_rest,
+                hessian: hessian_rest,
+            },
         )
     }
 }
@@ -77,13 +85,19 @@ impl DeformationPass<'_> {
             volume: &mut block.volume,
         };
         run_hot_in(self.plane, gather);
-        let DeformationRows { stresses, self_force, edges } = own;
+        let DeformationRows { stresses, self_force, edges, mut hessian } = own;
+        hessian.after_fit((bonds, sites), first, &mut block.gradient[..n]);
+        for (f, h) in rows.deformation.iter_mut().zip(&block.gradient) {
+            *f = DMat3::IDENTITY + *h;
+        }
         let inverse_moment = &bonds.inverse_moment[first..first + n];
         let is_free = |k: usize| inverse_moment[k] == Sym3::ZERO;
         let mut sum = SolidSum::default();
         constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
-            run_hot(CorrectStress { stress, inverse_moment, stresses });
+            hessian.take_stress(stress);
+            run_hot(CorrectStress { stress, inverse_moment, stresses: &mut *stresses });
         });
+        hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
         self.add_terms(constitutive, constitutive.folded(&mut rows, block, stresses), edges, &mut sum);
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             self.frame.complete(stress, &sites[first + k]);

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::bonds::{BodyBonds, Bonds};
 use super::cracks::Cracks;
+use super::hessian::HessianRows;
 use super::internal_force;
 use super::pairs::{BodyKernel, BondPairs};
 use super::phase::PackedRows;
@@ -19,7 +20,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
-use crate::solids::{CorrectedStress, SolidBodies, StepEstimate};
+use crate::solids::{CorrectedStress, HessianDifference, SolidBodies, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat, repeats_of};
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position, ReferencePosition,
@@ -58,7 +59,7 @@ impl Formulation for TotalLagrangian {
     const REFERENCE: &'static str =
         "total-Lagrangian SPH: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106";
     const KIND: BodyKind = BodyKind::Solid;
-    const OFFERS: &'static [Offer] = Offer::OF_SOLIDS;
+    const OFFERS: &'static [Offer] = Offer::OF_LAGRANGIAN_SOLIDS;
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
         self.mean_support(body)
@@ -90,7 +91,8 @@ impl Formulation for TotalLagrangian {
         let solids = SolidBodies::new(&ids, sim)?;
         let estimates: Vec<StepEstimate> = solids.iter().map(|body| body.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, &repeats, phase, setup));
+        let terms: Vec<Option<HessianDifference>> = solids.iter().map(|body| body.hessian).collect();
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, phase, setup));
         let state = solids.access();
         let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
@@ -174,6 +176,7 @@ impl TotalLagrangian {
 fn set_up(
     bodies: &[(BodyId, TotalLagrangian)],
     estimates: &[StepEstimate],
+    terms: &[Option<HessianDifference>],
     repeats: &[Vec<Repeat>],
     phase: PhaseId,
     setup: &mut Setup<'_>,
@@ -230,7 +233,7 @@ fn set_up(
             );
             setup.warnings.push(text);
         }
-        stable_step.push(bonds.stable_step(rows, dimension, estimate));
+        stable_step.push(bonds.stable_step(rows, dimension, estimate, support));
     }
     let stresses = vec![CorrectedStress::default(); view.len() + ghosts.len()];
     let self_force = vec![DVec3::ZERO; view.len()];
@@ -242,6 +245,9 @@ fn set_up(
     for (site, (x, v)) in sites.iter_mut().zip(position.iter().zip(volume)) {
         *site = Site::new(*x - origin, DVec3::ZERO, *v);
     }
+    let terms = bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term));
+    let mut hessian = HessianRows::new(terms);
+    hessian.resize(view.len(), ghosts.len());
     let mut packed = PackedRows {
         bonds,
         ghosts,
@@ -251,6 +257,7 @@ fn set_up(
         self_force,
         frames: Vec::with_capacity(bodies.len()),
         cracks: Cracks::default(),
+        hessian,
         kernels,
         stable_step,
     };

@@ -6,7 +6,7 @@ use super::bonds::Bonds;
 use super::rows::Site;
 use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid};
+use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::solids::CorrectedStress;
 
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
@@ -58,6 +58,31 @@ impl PlaneOrSolid for Gather<'_> {
             *f_i = DMat3::IDENTITY + gradient[k];
         }
     }
+}
+
+/// Fits the displacement gradients of the rows from `first` on.
+pub(in crate::formulations) fn fit_gradients(
+    (bonds, sites): (&Bonds, &[Site]),
+    plane: bool,
+    first: usize,
+    gradient: &mut [DMat3],
+) {
+    for_each_block(gradient, &mut Vec::new(), &|start, gradient: &mut [DMat3]| {
+        let (mut fitted, mut misfit) = ([DMat3::ZERO; BLOCK], [0.0; BLOCK]);
+        let (mut stretch, mut volume) = ([DVec3::ZERO; BLOCK], [0.0; BLOCK]);
+        let gather = Gather {
+            bonds,
+            sites,
+            first: first + start,
+            deformation: &mut *gradient,
+            gradient: &mut fitted,
+            misfit: &mut misfit,
+            stretch: &mut stretch,
+            volume: &mut volume,
+        };
+        run_hot_in(plane, gather);
+        gradient.copy_from_slice(&fitted[..gradient.len()]);
+    });
 }
 
 /// Makes A_i = P_i M_i^-1 of a block.

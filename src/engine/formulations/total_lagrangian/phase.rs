@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::bonds::Bonds;
 use super::cracks::Cracks;
 use super::frame::{Frame, frame_of};
+use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
 use crate::parallel::{Arithmetic, HotLoop, Lanes4, Picked, for_each_block, run_hot};
@@ -25,6 +26,7 @@ pub(in crate::formulations) struct PackedRows {
     /// Of every body, in the order of rows.
     pub frames: Vec<Frame>,
     pub cracks: Cracks,
+    pub hessian: HessianRows,
     pub kernels: Vec<BodyKernel>,
     /// Stable step of each body in its reference configuration, s.
     pub stable_step: Vec<f64>,
@@ -42,7 +44,7 @@ impl PackedRows {
 
     /// Fills the stresses of the ghosts, which have their sites.
     pub fn fill_ghost_stresses(&mut self) {
-        let Self { ghosts, frames, sites, stresses, .. } = self;
+        let Self { ghosts, frames, sites, stresses, hessian, .. } = self;
         ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
             let signs = ghost.map.signs;
             // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
@@ -56,6 +58,7 @@ impl PackedRows {
                 *column = Lanes4::new(plain * signs * signs[axis], last);
             }
             frame.complete(&mut stress, &sites[ghost.row]);
+            stress.add_traction(-hessian.pull_of(ghost.row));
             stress
         });
     }

@@ -11,8 +11,8 @@ use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::solids::SolidSum;
 use crate::world::{
-    DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed, Velocity,
-    World,
+    DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
+    SupportRadius, Velocity, World,
 };
 
 impl Deformation {
@@ -95,6 +95,7 @@ impl Deformation {
         let mut force = vec![Force::default(); view.len()];
         let mass = view.read::<Mass>()?;
         InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane).run(&mut force);
+        packed.hessian.add_vidal_force((&packed.bonds, &packed.sites), &mut force);
         Ok(force)
     }
 
@@ -106,7 +107,9 @@ impl Deformation {
         let mut volume: Vec<f64> = volume.iter().map(|volume| volume.0).collect();
         self.removed.rows.iter().for_each(|&row| volume[row as usize] = 0.0);
         let dimension = world.dimension().count();
-        let PackedRows { bonds, ghosts, cracks, stable_step, .. } = packed;
+        let support = view.read::<SupportRadius>()?;
+        let PackedRows { bonds, ghosts, cracks, stable_step, hessian, .. } = packed;
+        hessian.is_stale = true;
         if !self.failed.is_empty() {
             self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
             cracks.relist(&self.failed, view.len(), bonds, ghosts);
@@ -114,7 +117,7 @@ impl Deformation {
         for (law, stable_step) in self.solids.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, ghosts);
-            *stable_step = bonds.stable_step(rows, dimension, &law.estimate);
+            *stable_step = bonds.stable_step(rows, dimension, &law.estimate, bytemuck::cast_slice(&support));
         }
         Ok(())
     }

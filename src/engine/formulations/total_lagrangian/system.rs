@@ -3,12 +3,13 @@
 use super::cracks::EdgeRows;
 use super::deformation::{DeformationPass, DeformationRows};
 use super::frame::Frame;
+use super::hessian::FrameIndifferent;
 use super::phase::PackedRows;
 use super::removed::RemovedRows;
 use super::rows::pack;
 use crate::schedule::{Run, Step, StepError};
 use crate::solids::{SolidBodies, SolidColumns, SolidPart};
-use crate::world::{Damage, MissingColumn, PhaseId, Removed, Velocity, World};
+use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.
 pub(super) struct Deformation {
@@ -49,7 +50,11 @@ impl Deformation {
         packed.fill_ghost_sites();
         let mut columns = SolidColumns::of(&view)?;
         let velocity = view.read::<Velocity>()?;
-        let PackedRows { bonds, ghosts, sites, stresses, self_force, frames, cracks, .. } = &mut *packed;
+        let support = view.read::<SupportRadius>()?;
+        let PackedRows {
+            bonds, ghosts, sites, stresses, self_force, frames, cracks, hessian, kernels, ..
+        } = &mut *packed;
+        hessian.begin((bonds, ghosts, sites), kernels, bytemuck::cast_slice(&support), self.plane);
         frames.clear();
         self.solids.begin();
         for k in 0..self.solids.len() {
@@ -64,12 +69,16 @@ impl Deformation {
                 stresses: &mut stresses[rows.clone()],
                 self_force: &mut self_force[rows.clone()],
                 edges: EdgeRows::of(&mut cracks.edges, rows.start, rows.len()),
+                hessian: hessian.block(k, &rows),
             };
             let part = SolidPart { dt, is_short, refits: Some(self.removed.refits()) };
             self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
                 pass.run(law, rows, own, block)
             });
         }
+        let difference = FrameIndifferent { bonds, ghosts, sites, stresses, self_force, hessian };
+        difference.run(&view, &mut self.solids, dt)?;
+        hessian.add_vidal_stress((bonds, ghosts, sites), stresses, self_force);
         packed.fill_ghost_stresses();
         packed.cracks.settle();
         Ok(())

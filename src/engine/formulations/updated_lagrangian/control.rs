@@ -17,7 +17,7 @@
 
 use std::ops::Range;
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::{Bonds, Site, fit};
@@ -29,8 +29,6 @@ use crate::world::Force;
 /// Fits H to a block of particles.
 pub(super) struct ControlFit<'a> {
     pub bonds: &'a Bonds,
-    /// Weight of every bond.
-    pub weights: &'a [f32],
     /// Original places with the volumes of what holds, and displacements since the start.
     pub sites: &'a [Site],
     pub rows: Range<usize>,
@@ -44,14 +42,14 @@ pub(super) struct ControlFit<'a> {
 impl PlaneOrSolid for ControlFit<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, weights, sites, rows, gradient, misfit, volume, fitted } = self;
+        let Self { bonds, sites, rows, gradient, misfit, volume, fitted } = self;
         for (k, i) in rows.enumerate() {
             let own = sites[i];
             let (mut moment, mut spread) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
             let mut square = Lanes4::ZERO;
             for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
                 let other = &sites[bonds.neighbors[bond] as usize];
-                let weight = f64::from(weights[bond]) * other.reference.0[3];
+                let weight = f64::from(bonds.weights[bond]) * other.reference.0[3];
                 let arm = a.minus(other.reference, own.reference);
                 let change = a.minus(other.displacement, own.displacement);
                 let (weighted_arm, weighted) = (a.scale(weight, arm), a.scale(weight, change));
@@ -87,8 +85,8 @@ fn symmetric<const D: usize>(columns: &[Lanes4; D]) -> Sym3 {
 /// Adds the force of the control to a block of rows.
 pub(super) struct ControlForce<'a> {
     pub bonds: &'a Bonds,
-    /// Weight of every bond.
-    pub weights: &'a [f32],
+    /// Pull of the differences of Laplacians; empty without them.
+    pub pull: &'a [DVec3],
     pub sites: &'a [Site],
     pub control: &'a [CorrectedStress],
     pub first: usize,
@@ -98,7 +96,7 @@ pub(super) struct ControlForce<'a> {
 impl PlaneOrSolid for ControlForce<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, weights, sites, control, first, force } = self;
+        let Self { bonds, pull, sites, control, first, force } = self;
         for (k, force) in force.iter_mut().enumerate() {
             let i = first + k;
             let (site, own) = (sites[i], &control[i]);
@@ -106,13 +104,16 @@ impl PlaneOrSolid for ControlForce<'_> {
             for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
                 let j = bonds.neighbors[bond] as usize;
                 let (other, theirs) = (&sites[j], &control[j]);
-                let weight = f64::from(weights[bond]) * other.reference.0[3];
+                let weight = f64::from(bonds.weights[bond]) * other.reference.0[3];
                 let arm = a.minus(other.reference, site.reference);
                 let change = a.minus(other.displacement, site.displacement);
                 let mut traction = a.scale(own.stiffness() + theirs.stiffness(), change);
                 for axis in 0..D {
                     let column = a.plus(own.columns[axis], theirs.columns[axis]);
                     traction = a.scale_add(arm.0[axis], column, traction);
+                }
+                if !pull.is_empty() {
+                    traction = a.plus(traction, Lanes4::new(pull[i] - pull[j], 0.0));
                 }
                 sum = a.scale_add(weight, traction, sum);
             }

@@ -39,7 +39,8 @@ pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bo
         originals,
         stresses,
         control,
-        control_weights,
+        control_bonds,
+        hessian,
         self_force,
         frames,
         ..
@@ -47,11 +48,19 @@ pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bo
     let mass = bytemuck::cast_slice(mass);
     StressForce { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
         .run(force);
+    hessian.add_vidal_force((bonds, sites), force);
     if rows.has_control {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
             run_hot_in(
                 plane,
-                ControlForce { bonds, weights: control_weights, sites: originals, control, first, force },
+                ControlForce {
+                    bonds: control_bonds,
+                    pull: &hessian.pull,
+                    sites: originals,
+                    control,
+                    first,
+                    force,
+                },
             );
         });
     }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::control::ControlFit;
-use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, Site};
+use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, HessianBlock, Site};
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
@@ -13,6 +13,7 @@ pub(super) struct GradientRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     pub control: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
+    pub hessian: HessianBlock<'a>,
 }
 
 impl Split for GradientRows<'_> {
@@ -22,11 +23,17 @@ impl Split for GradientRows<'_> {
 
     fn split(self, at: usize) -> (Self, Self) {
         let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
-        let (control, control_rest) = self.control.split_at_mut(at);
+        let (control, control_rest) = self.control.split_at_mut(at.min(self.control.len()));
         let (self_force, self_force_rest) = self.self_force.split_at_mut(at);
+        let (hessian, hessian_rest) = self.hessian.split(at);
         (
-            Self { stresses, control, self_force },
-            Self { stresses: stresses_rest, control: control_rest, self_force: self_force_rest },
+            Self { stresses, control, self_force, hessian },
+            Self {
+                stresses: stresses_rest,
+                control: control_rest,
+                self_force: self_force_rest,
+                hessian: hessian_rest,
+            },
         )
     }
 }
@@ -34,8 +41,8 @@ impl Split for GradientRows<'_> {
 /// The pass over one body.
 pub(super) struct GradientPass<'a> {
     pub bonds: &'a Bonds,
-    /// Weights of the control.
-    pub control_weights: &'a [f32],
+    /// The bonds as the stabilizers see them.
+    pub control_bonds: &'a Bonds,
     pub sites: &'a [Site],
     pub originals: &'a [Site],
     /// F_r.
@@ -70,6 +77,8 @@ impl GradientPass<'_> {
             volume: &mut volume,
         };
         run_hot_in(self.plane, gather);
+        let GradientRows { stresses, control, self_force, mut hessian } = own;
+        hessian.after_fit((self.bonds, self.sites), first, &mut block.gradient[..n]);
         let f_r = &self.gradient[first..first + n];
         for (k, f_r) in f_r.iter().enumerate() {
             // F = f F_r; H = F - I keeps the digits of small strains where the reference is still the original one.
@@ -79,7 +88,6 @@ impl GradientPass<'_> {
         }
         let inverse_moment = &self.bonds.inverse_moment[first..first + n];
         let is_free = |k: usize| inverse_moment[k] == Sym3::ZERO;
-        let GradientRows { stresses, control, self_force } = own;
         let mut sum = SolidSum::default();
         let reference_volume = block.volume;
         constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
@@ -88,32 +96,33 @@ impl GradientPass<'_> {
                 // The stress as seen from the reference.
                 seen[k] = *stress * f_r[k].transpose() * (reference_volume[k] / volume[k]);
             }
+            hessian.take_stress(&seen);
             run_hot(CorrectStress { stress: &seen[..n], inverse_moment, stresses: &mut *stresses });
         });
+        hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             self.frame.complete(stress, &self.sites[first + k]);
             *self_force = stress.times(self.bonds.reach[first + k], stretch[k]);
         }
         sum.close(&rows, block);
-        if !constitutive.terms.is_empty() {
-            self.add_control(constitutive, (&mut rows, block), control, &mut sum);
+        if !constitutive.terms.is_empty() || hessian.needs_gradient() {
+            self.add_control(constitutive, (&mut rows, block), (control, hessian), &mut sum);
         }
         sum
     }
 
-    /// Adds the folded terms, with the fit to the original pair vectors.
+    /// Adds the folded terms, with the fit to the original pair vectors, and hands that on to the differences of Laplacians.
     fn add_control(
         &self,
         constitutive: &Constitutive<'_>,
         (rows, block): (&mut SolidRows<'_>, &mut SolidBlock),
-        control: &mut [CorrectedStress],
+        (control, mut hessian): (&mut [CorrectedStress], HessianBlock<'_>),
         sum: &mut SolidSum,
     ) {
         let (n, first) = (rows.deformation.len(), block.first);
         let mut fitted = [false; BLOCK];
         let fit = ControlFit {
-            bonds: self.bonds,
-            weights: self.control_weights,
+            bonds: self.control_bonds,
             sites: self.originals,
             rows: first..first + n,
             gradient: &mut block.gradient,
@@ -122,6 +131,7 @@ impl GradientPass<'_> {
             fitted: &mut fitted,
         };
         run_hot_in(self.plane, fit);
+        hessian.take_gradient(&block.gradient);
         control.fill(CorrectedStress::default());
         constitutive.fold(&mut constitutive.folded(rows, block, control), sum);
         for (stress, _) in control.iter_mut().zip(fitted).filter(|(_, fitted)| !fitted) {

@@ -20,7 +20,8 @@ mod gradient;
 mod parameters;
 mod phase;
 mod reference;
+mod smoothed_reference;
 mod system;
 
-pub use columns::{UpdatedGradient, UpdatedReference};
+pub use columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
 pub use parameters::{Update, UpdatedLagrangian};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::columns::{UpdatedGradient, UpdatedReference};
+use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
 use super::force::InternalForce;
 use super::phase::UpdatedRows;
 use super::reference::set_up;
@@ -70,7 +70,7 @@ impl Formulation for UpdatedLagrangian {
     const NAME: &'static str = "UpdatedLagrangian";
     const REFERENCE: &'static str = "updated-Lagrangian SPH: Y. Vidal, J. Bonet, A. Huerta, Int. J. Numer. Methods Engng. 69 (2007) 2687-2710";
     const KIND: BodyKind = BodyKind::Solid;
-    const OFFERS: &'static [Offer] = Offer::OF_SOLIDS;
+    const OFFERS: &'static [Offer] = Offer::OF_LAGRANGIAN_SOLIDS;
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
         Some(self.support * body.spacing)
@@ -82,7 +82,8 @@ impl Formulation for UpdatedLagrangian {
             .add::<DeformationGradient>()
             .add::<PiolaStress>()
             .add::<UpdatedReference>()
-            .add::<UpdatedGradient>();
+            .add::<UpdatedGradient>()
+            .add::<UpdatedVolume>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
@@ -99,8 +100,8 @@ impl Formulation for UpdatedLagrangian {
         let solids = SolidBodies::new(&ids, sim)?;
         let state = solids.access();
         let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
-        let (estimates, has_control) = (system.estimates(), system.has_control());
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, repeats, phase, has_control, setup));
+        let (estimates, terms, has_control) = (system.estimates(), system.terms(), system.has_control());
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, repeats, phase, has_control, setup));
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])
             .reads::<Position>()
@@ -112,6 +113,7 @@ impl Formulation for UpdatedLagrangian {
             .reads::<Mass>()
             .writes::<UpdatedReference>()
             .writes::<UpdatedGradient>()
+            .writes::<UpdatedVolume>()
             .writes::<DeformationGradient>()
             .writes::<PiolaStress>();
         sim.add_system(gradient.touches_all(state));

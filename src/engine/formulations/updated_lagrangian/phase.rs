@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::total_lagrangian::{BodyKernel, BondedRows, Bonds, Cracks, Frame, Site};
+use crate::formulations::total_lagrangian::{
+    BodyKernel, BondedRows, Bonds, Cracks, Frame, HessianRows, Site,
+};
 use crate::neighbors::NeighborSearch;
 use crate::parallel::Lanes4;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -30,18 +32,21 @@ pub(super) struct UpdatedRows {
     pub stresses: Vec<CorrectedStress>,
     /// What hourglass control adds for the original pair vectors.
     pub control: Vec<CorrectedStress>,
-    /// Weight of every bond in the control.
-    pub control_weights: Vec<f32>,
+    /// The bonds as the stabilizers see them: moments of the original pair vectors.
+    pub control_bonds: Bonds,
+    /// Written and not read: the pass of the stabilizers sums over both ends of a bond.
+    pub control_self_force: Vec<DVec3>,
     /// The part of the force on each particle that comes from its own corrected stress, over its volume.
     pub self_force: Vec<DVec3>,
     pub frames: Vec<Frame>,
     /// None: particles that have failed leave the sums of the control.
     pub cracks: Cracks,
+    pub hessian: HessianRows,
     pub kernels: Vec<BodyKernel>,
     /// Stable step of each body in the reference, s.
     pub stable_step: Vec<f64>,
-    /// Stable step of each body at the start, s.
-    pub first_stable_step: Vec<f64>,
+    /// Of every body: whether the reference is another one than at the start.
+    pub follows: Vec<bool>,
     /// Whether the phase has folded terms.
     pub has_control: bool,
     /// Kept for the next update.

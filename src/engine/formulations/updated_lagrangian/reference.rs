@@ -4,24 +4,28 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::columns::{UpdatedGradient, UpdatedReference};
+use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
 use super::parameters::UpdatedLagrangian;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BodyBonds, BodyKernel, BondError, Bonds, Cracks, Site};
+use crate::formulations::total_lagrangian::{
+    BodyBonds, BodyKernel, BondError, Bonds, Cracks, HessianRows, Site,
+};
 use crate::kernels::Kernel;
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
 use crate::schedule::StepError;
-use crate::solids::{CorrectedStress, StepEstimate};
+use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{
-    BodyId, DeformationGradient, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
+    BodyId, Damage, DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume,
+    SupportRadius, World,
 };
 
 /// Fills the columns of the reference with those of the start, and makes its lists.
 pub(super) fn set_up(
     bodies: &[(BodyId, UpdatedLagrangian)],
     estimates: &[StepEstimate],
+    terms: &[Option<HessianDifference>],
     repeats: Vec<Vec<Repeat>>,
     phase: PhaseId,
     has_control: bool,
@@ -36,6 +40,9 @@ pub(super) fn set_up(
         let mut reference = view.write::<UpdatedReference>().map_err(missing)?;
         let mut support = view.write::<SupportRadius>().map_err(missing)?;
         reference.iter_mut().zip(original.iter()).for_each(|(now, start)| now.0 = start.0);
+        let start = view.read::<ReferenceVolume>().map_err(missing)?;
+        let mut volume = view.write::<UpdatedVolume>().map_err(missing)?;
+        volume.iter_mut().zip(start.iter()).for_each(|(now, start)| now.0 = start.0);
         view.write::<UpdatedGradient>().map_err(missing)?.fill(UpdatedGradient(DMat3::IDENTITY));
         view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
         for (id, parameters) in bodies {
@@ -59,13 +66,17 @@ pub(super) fn set_up(
         volume: Vec::new(),
         stresses: Vec::new(),
         control: Vec::new(),
-        control_weights: Vec::new(),
+        control_bonds: Bonds::default(),
+        control_self_force: vec![DVec3::ZERO; view.len()],
         self_force: vec![DVec3::ZERO; view.len()],
         frames: Vec::with_capacity(bodies.len()),
         cracks: Cracks::default(),
+        hessian: HessianRows::new(
+            bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term)),
+        ),
         kernels,
         stable_step: Vec::with_capacity(bodies.len()),
-        first_stable_step: Vec::new(),
+        follows: Vec::with_capacity(bodies.len()),
         has_control,
         search: NeighborSearch::default(),
     };
@@ -73,7 +84,6 @@ pub(super) fn set_up(
         let help = "use a larger `support`, or more particles across the body";
         SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
     })?;
-    rows.first_stable_step.clone_from(&rows.stable_step);
     for kernel in &rows.kernels {
         let body = setup.world.body(kernel.body);
         let free = rows.bonds.free.iter().filter(|&&row| body.rows.contains(&(row as usize))).count();
@@ -113,17 +123,13 @@ impl UpdatedRows {
         removed: &[u32],
     ) -> Result<(), RenewError> {
         let view = world.phase(phase);
-        let internal =
-            |_| RenewError { body: self.kernels[0].body, error: BondError::NoStiffness { most: 0 } };
+        let body = self.kernels[0].body;
+        let internal = move |_| RenewError { body, error: BondError::NoStiffness { most: 0 } };
         let reference = view.read::<UpdatedReference>().map_err(internal)?;
-        let gradient = view.read::<UpdatedGradient>().map_err(internal)?;
-        let volume = view.read::<ReferenceVolume>().map_err(internal)?;
+        let volume = view.read::<UpdatedVolume>().map_err(internal)?;
         let support = view.read::<SupportRadius>().map_err(internal)?;
-        self.gradient.clear();
-        self.gradient.extend(gradient.iter().map(|gradient| gradient.0));
         self.volume.clear();
-        self.volume
-            .extend(volume.iter().zip(&self.gradient).map(|(volume, f_r)| volume.0 * f_r.determinant()));
+        self.volume.extend(volume.iter().map(|volume| volume.0));
         removed.iter().for_each(|&row| self.volume[row as usize] = 0.0);
         let position: &[DVec3] = bytemuck::cast_slice(&reference);
         let support: &[f64] = bytemuck::cast_slice(&support);
@@ -154,28 +160,54 @@ impl UpdatedRows {
             };
             let made = self.bonds.append(&body, &mut self.search);
             made.map_err(|error| RenewError { body: kernel.body, error })?;
-            self.stable_step.push(self.bonds.stable_step(rows, dimension, estimate));
+            self.stable_step.push(self.bonds.stable_step(rows, dimension, estimate, support));
         }
         let all = view.len() + self.ghosts.len();
         self.sites.resize(all, Site::default());
         self.stresses.resize(all, CorrectedStress::default());
+        self.hessian.resize(view.len(), self.ghosts.len());
         if self.has_control {
             self.originals.resize(all, Site::default());
             self.control.resize(all, CorrectedStress::default());
-            let original = view.read::<ReferencePosition>().map_err(internal)?;
-            self.weigh_control(world, bytemuck::cast_slice(&original), support);
+        }
+        self.take_gradients(world, phase).map_err(internal)
+    }
+
+    /// Takes the deformation gradients of the reference from their column.
+    pub fn take_gradients(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
+        let view = world.phase(phase);
+        self.gradient.clear();
+        self.gradient.extend(view.read::<UpdatedGradient>()?.iter().map(|gradient| gradient.0));
+        self.follows.clear();
+        for BodyKernel { body, .. } in &self.kernels {
+            let own = &self.gradient[world.body(*body).rows.clone()];
+            self.follows.push(own.iter().any(|f_r| *f_r != DMat3::IDENTITY));
+        }
+        if self.has_control {
+            let (original, support) = (view.read::<ReferencePosition>()?, view.read::<SupportRadius>()?);
+            let damage = view.read::<Damage>().ok();
+            let has_failed = |row: usize| damage.as_ref().is_some_and(|damage| damage[row].0 >= 1.0);
+            let (original, support) = (bytemuck::cast_slice(&original), bytemuck::cast_slice(&support));
+            self.weigh_control(world, original, support, has_failed);
         }
         Ok(())
     }
 
-    /// Makes the weights of the control.
-    fn weigh_control(&mut self, world: &World, original: &[DVec3], support: &[f64]) {
-        let Self { bonds, ghosts, gradient, kernels, control_weights, .. } = self;
-        control_weights.clear();
+    /// Makes the bonds of the stabilizers: those of the reference with other weights, and moments of the original pair vectors.
+    fn weigh_control(
+        &mut self,
+        world: &World,
+        original: &[DVec3],
+        support: &[f64],
+        has_failed: impl Fn(usize) -> bool,
+    ) {
+        let Self { bonds, ghosts, gradient, kernels, control_bonds, volume, .. } = self;
+        let mut weights = std::mem::take(&mut control_bonds.weights);
+        weights.clear();
         for BodyKernel { body, kernel, .. } in kernels.iter() {
             let ratio = kernel.smoothing_length(1.0);
             for i in world.body(*body).rows.clone() {
-                control_weights.extend(bonds.row(i).map(|(j, _)| {
+                weights.extend(bonds.row(i).map(|(j, _)| {
                     let source = ghosts.source(j);
                     let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
                     let x_ij = ghosts.pair(original, i, j);
@@ -184,6 +216,14 @@ impl UpdatedRows {
                     kernel.pair_weight(mean.length(), h) as f32
                 }));
             }
+        }
+        control_bonds.take_topology(bonds);
+        control_bonds.weights = weights;
+        let held: Vec<f64> =
+            volume.iter().enumerate().map(|(row, v)| if has_failed(row) { 0.0 } else { *v }).collect();
+        for BodyKernel { body, kernel, .. } in kernels.iter() {
+            let rows = world.body(*body).rows.clone();
+            control_bonds.correct(rows, kernel.dimension(), original, &held, ghosts);
         }
     }
 }

@@ -1,16 +1,22 @@
 //! The system of the first pass, and of the updates of the reference.
 
-use super::columns::{UpdatedGradient, UpdatedReference};
+use glam::{DMat3, DVec3};
+
+use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
+use super::force;
 use super::gradient::{GradientPass, GradientRows};
 use super::parameters::{Update, UpdatedLagrangian};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{Frame, Site};
+use super::smoothed_reference::{increments, smooth};
+use crate::formulations::total_lagrangian::{Frame, FrameIndifferent, Site};
 use crate::parallel::{Largest, sum_over_blocks};
 use crate::schedule::{AccountKind, Run, Step, StepError};
-use crate::solids::{SolidBodies, SolidColumns, SolidPart, SolidSum, StepEstimate};
+use crate::solids::{
+    HessianDifference, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
+};
 use crate::world::{
-    BodyId, Damage, DeformationGradient, MissingColumn, PhaseId, Position, ReferencePosition,
-    ReferenceVolume, Removed, World,
+    BodyId, Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, Position, ReferencePosition,
+    ReferenceVolume, Removed, SupportRadius, Velocity, World,
 };
 
 /// Account of what an update of the reference changes of the stored energies.
@@ -28,8 +34,6 @@ pub(super) struct UpdatedSolids {
     updates: Vec<(Update, f64)>,
     /// Of every body: whether its reference is updated in this step.
     due: Vec<bool>,
-    /// Stable step of every body, s.
-    stable: Vec<f64>,
     /// Removed rows that the reference knows of, ascending.
     removed: Vec<u32>,
     /// Number of failed particles that it knows of.
@@ -54,7 +58,6 @@ impl UpdatedSolids {
             solids,
             updates,
             due: Vec::new(),
-            stable: Vec::new(),
             removed: Vec::new(),
             failed: 0,
             is_stale: false,
@@ -66,9 +69,14 @@ impl UpdatedSolids {
         self.solids.iter().map(|body| body.estimate).collect()
     }
 
+    /// The stabilization of each body by differences of second derivatives.
+    pub fn terms(&self) -> Vec<Option<HessianDifference>> {
+        self.solids.iter().map(|body| body.hessian).collect()
+    }
+
     /// Whether plugins have handed in folded terms.
     pub fn has_control(&self) -> bool {
-        self.solids.has_terms()
+        self.solids.has_terms() || self.solids.iter().any(SolidBody::has_hessian_residual)
     }
 
     /// Runs the pass over all bodies; states of laws advance by `dt`, s.
@@ -82,18 +90,24 @@ impl UpdatedSolids {
         pack(world, self.phase, packed)?;
         let reference_volume = view.read::<ReferenceVolume>()?;
         let mut columns = SolidColumns::of(&view)?;
+        let support = view.read::<SupportRadius>()?;
         let UpdatedRows {
             bonds,
+            ghosts,
+            hessian,
+            kernels,
             sites,
             originals,
             gradient,
             stresses,
             control,
-            control_weights,
+            control_bonds,
+            control_self_force,
             self_force,
             frames,
             ..
         } = &mut *packed;
+        hessian.begin((bonds, ghosts, sites), kernels, bytemuck::cast_slice(&support), self.plane);
         frames.clear();
         self.solids.begin();
         for k in 0..self.solids.len() {
@@ -104,7 +118,7 @@ impl UpdatedSolids {
             let plane = self.plane;
             let pass = GradientPass {
                 bonds,
-                control_weights,
+                control_bonds,
                 sites,
                 originals,
                 gradient,
@@ -116,12 +130,23 @@ impl UpdatedSolids {
                 stresses: &mut stresses[rows.clone()],
                 control: if control.is_empty() { &mut [] } else { &mut control[rows.clone()] },
                 self_force: &mut self_force[rows.clone()],
+                hessian: hessian.block(k, &rows),
             };
             let part = SolidPart { dt, is_short, refits: None };
             self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
                 pass.block(law, rows, own, block)
             });
         }
+        let difference = FrameIndifferent {
+            bonds: control_bonds,
+            ghosts,
+            sites: originals,
+            stresses: control,
+            self_force: control_self_force,
+            hessian,
+        };
+        difference.run(&view, &mut self.solids, dt)?;
+        hessian.add_vidal_stress((bonds, ghosts, sites), stresses, self_force);
         packed.fill_ghost_stresses();
         Ok(())
     }
@@ -141,6 +166,9 @@ impl UpdatedSolids {
     }
 
     /// Makes the present configuration the reference: of the bodies that are due, and of all where particles have been removed or have failed.
+    ///
+    /// The second kick of the step uses the new forces, the motion up to here was made by the old ones: what that takes from the motion is booked with the
+    /// change of the stored energies.
     fn update(
         &mut self,
         step: &mut Step<'_>,
@@ -149,30 +177,81 @@ impl UpdatedSolids {
     ) -> Result<(), StepError> {
         let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
         let view = step.world.phase(self.phase);
-        {
-            let position = view.read::<Position>()?;
-            let deformation = view.read::<DeformationGradient>()?;
-            let mut reference = view.write::<UpdatedReference>()?;
-            let mut gradient = view.write::<UpdatedGradient>()?;
-            for (k, _) in is_due.iter().enumerate().filter(|(_, due)| **due) {
-                for row in step.world.body(self.solids.id(k)).rows.clone() {
-                    reference[row].0 = position[row].0;
-                    gradient[row].0 = deformation[row].0;
-                }
-            }
-        }
-        let estimates = self.estimates();
-        packed
-            .renew(step.world, self.phase, &estimates, &self.removed)
-            .map_err(|error| error.in_step(step.world))?;
+        let before = self.forces(step.world, packed)?;
+        self.move_reference(step.world, packed, is_due)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, (0.0, false))?;
         self.solids.book(step)?;
+        let after = self.forces(step.world, packed)?;
+        let velocity = view.read::<Velocity>()?;
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
         for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
-            step.ledger.add(account, body.id, held - sum.stored());
+            let rows = step.world.body(body.id).rows.clone();
+            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
         }
         Ok(())
+    }
+
+    /// Gives the bodies that are due another reference, with the same deformation gradient.
+    fn move_reference(
+        &self,
+        world: &World,
+        packed: &mut UpdatedRows,
+        is_due: &[bool],
+    ) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        let position = view.read::<Position>()?;
+        let deformation = view.read::<DeformationGradient>()?;
+        let damage = view.read::<Damage>().ok();
+        let due = |k: &usize| is_due[*k];
+        {
+            let mut reference = view.write::<UpdatedReference>()?;
+            let mut volume = view.write::<UpdatedVolume>()?;
+            let start = view.read::<ReferenceVolume>()?;
+            let changes = increments(packed, self.plane);
+            for k in (0..is_due.len()).filter(due) {
+                let rows = world.body(self.solids.id(k)).rows.clone();
+                for row in rows.clone() {
+                    reference[row].0 = position[row].0;
+                    volume[row].0 = start[row].0 * deformation[row].0.determinant();
+                }
+                if self.is_smoothed(k) {
+                    let (damage, body) = (damage.as_deref(), (rows.start, self.updates[k].1));
+                    smooth(packed, &changes, damage, body, &mut reference[rows]);
+                }
+            }
+        }
+        let renewed = packed.renew(world, self.phase, &self.estimates(), &self.removed);
+        renewed.map_err(|error| error.in_step(world))?;
+        pack(world, self.phase, packed)?;
+        let changes = increments(packed, self.plane);
+        {
+            let mut gradient = view.write::<UpdatedGradient>()?;
+            for k in (0..is_due.len()).filter(due) {
+                for row in world.body(self.solids.id(k)).rows.clone() {
+                    let since = DMat3::IDENTITY + changes[row];
+                    let since = if self.is_smoothed(k) { since } else { DMat3::IDENTITY };
+                    gradient[row].0 = since.inverse() * deformation[row].0;
+                }
+            }
+        }
+        packed.take_gradients(world, self.phase)?;
+        Ok(())
+    }
+
+    /// Whether the reference of body `k` is that of its particles without what no gradient sees; the form of the paper sees it itself.
+    fn is_smoothed(&self, k: usize) -> bool {
+        let term = self.solids.iter().nth(k).and_then(|body| body.hessian);
+        term.is_none_or(|term| term.form != HessianForm::Vidal2007)
+    }
+
+    /// The internal forces of the last pass.
+    fn forces(&self, world: &World, packed: &UpdatedRows) -> Result<Vec<Force>, MissingColumn> {
+        let view = world.phase(self.phase);
+        let mut force = vec![Force::default(); view.len()];
+        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, self.plane, &mut force);
+        Ok(force)
     }
 }
 
@@ -215,10 +294,10 @@ impl Run for UpdatedSolids {
             self.update(step, &mut packed, &due)?;
         }
         self.due = due;
-        let UpdatedRows { stable_step, first_stable_step, .. } = &*packed;
-        self.stable.clear();
-        self.stable.extend(stable_step.iter().zip(first_stable_step).map(|(now, first)| now.min(*first)));
-        self.solids.limit(step, &self.stable)
+        let UpdatedRows { stable_step, gradient, kernels, follows, .. } = &*packed;
+        let world = step.world;
+        let since = |k: usize| follows[k].then(|| &gradient[world.body(kernels[k].body).rows.clone()]);
+        self.solids.limit_since(step, stable_step, since)
     }
 
     fn save(&self) -> Vec<u8> {

@@ -1,0 +1,297 @@
+//! The form of the paper: the gradient has the difference of second derivatives along a fixed vector added (Vidal, Bonet, Huerta 2007, eq. 17).
+//!
+//! ```text
+//! f_i = Q_i + eta D_i ,     D_i = sum_j V_j u_ij (x) (K_ij - E_i r_ij) - sum_j s_ij (Q_j - Q_i) ,     s_ij = V_j w_ij m_i . r_ij ,  m_i = M_i^-1 h
+//! K_ij = b_ij (r_ij . h) r_ij - w_ij h ,  b_ij = (W'' + w_ij) / r_ij^2 ,     E_i = (sum_j V_j K_ij (x) r_ij) (sum_j V_j r_ij (x) r_ij)^-1
+//! ```
+//!
+//! h has the smoothing length in every component. The strain energy is that of f, and the force its exact adjoint: with T_i = V_0 P F_r^T = V_i Theta_i
+//!
+//! ```text
+//! stress  eta [(m_i . sum_j V_j w_ij r_ij) Theta_i + sum_j V_j w_ij (m_j . r_ij) Theta_j]      beside that of the material
+//! f_i += eta V_i sum_j V_j [Theta_i (K_ij - E_i r_ij) - Theta_j (K_ij + E_j r_ij)]
+//! ```
+//!
+//! K and w are the same from both ends of a bond, so that none has to be looked up: a bond holds b, a particle m and E. A ghost has the vector h in the mirror.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+
+use super::super::bonds::Bonds;
+use super::super::gather::fit_gradients;
+use super::super::pairs::BodyKernel;
+use super::super::rows::Site;
+use super::rows::{HessianBody, HessianRows};
+use crate::correction::MomentMatrix;
+use crate::kernels::Kernel;
+use crate::linalg::Sym3;
+use crate::parallel::{Arithmetic, HotLoop, for_each_block, run_hot};
+use crate::solids::{CorrectedStress, HessianForm};
+use crate::symmetry::Ghosts;
+use crate::world::Force;
+
+/// What the form needs of a reference configuration.
+#[derive(Default)]
+pub(in crate::formulations) struct VidalRows {
+    /// b_ij of every bond.
+    curvature: Vec<f32>,
+    /// h of every row, m.
+    step: Vec<DVec3>,
+    /// m_i.
+    shift: Vec<DVec3>,
+    /// E_i.
+    correction: Vec<DMat3>,
+}
+
+/// The reference configuration of a body.
+struct VidalBody<'a> {
+    bonds: &'a Bonds,
+    ghosts: &'a Ghosts,
+    sites: &'a [Site],
+    kernel: Kernel,
+    /// Support radii of the phase, m.
+    support: &'a [f64],
+}
+
+impl VidalRows {
+    /// Makes room for real rows and ghosts, and for the bonds.
+    fn resize(&mut self, rows: usize, ghosts: usize, bonds: usize) {
+        self.curvature.resize(bonds, 0.0);
+        self.step.resize(rows + ghosts, DVec3::ZERO);
+        self.shift.resize(rows + ghosts, DVec3::ZERO);
+        self.correction.resize(rows + ghosts, DMat3::ZERO);
+    }
+
+    /// Makes everything of a body whose reference is new.
+    fn renew(&mut self, body: &VidalBody<'_>, rows: Range<usize>) {
+        let VidalBody { bonds, ghosts, sites, kernel, support } = *body;
+        let plane = kernel.dimension() == 2;
+        for i in rows {
+            let h = 0.5 * support[i];
+            let step = DVec3::new(h, h, if plane { 0.0 } else { h });
+            let (mut with_hessian, mut moment) = (DMat3::ZERO, Sym3::ZERO);
+            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                let j = bonds.neighbors[bond] as usize;
+                let arm = sites[j].reference.xyz() - sites[i].reference.xyz();
+                let volume = sites[j].reference.0[3];
+                let length = arm.length();
+                let smoothing = kernel.smoothing_length(0.5 * (support[i] + support[ghosts.source(j)]));
+                let weight = f64::from(bonds.weights[bond]);
+                let curvature = (kernel.d2w_dr2(length, smoothing) + weight) / (length * length);
+                self.curvature[bond] = if length > 0.0 { curvature as f32 } else { 0.0 };
+                let k = along(f64::from(self.curvature[bond]), weight, arm, step);
+                with_hessian += dyad(k, arm) * volume;
+                moment += Sym3::dyad(arm) * volume;
+            }
+            let inverse = MomentMatrix::of(moment, kernel.dimension()).inverse().unwrap_or_default();
+            self.step[i] = step;
+            self.shift[i] = bonds.inverse_moment[i] * step;
+            self.correction[i] = with_hessian * inverse.to_matrix();
+        }
+    }
+
+    /// Hands what belongs to the reference on to the ghosts.
+    fn renew_ghosts(&mut self, ghosts: &Ghosts) {
+        ghosts.fill(&mut self.step, |ghost, step| ghost.map.vector(*step));
+        ghosts.fill(&mut self.shift, |ghost, shift| ghost.map.vector(*shift));
+        ghosts.fill(&mut self.correction, |ghost, correction| ghost.map.tensor(*correction));
+    }
+
+    /// D_i times eta for the rows of a block, added to their displacement gradients.
+    pub fn add_difference(
+        &self,
+        (bonds, sites): (&Bonds, &[Site]),
+        gradient: &[DMat3],
+        eta: f64,
+        first: usize,
+        block: &mut [DMat3],
+    ) {
+        run_hot(Difference { rows: self, bonds, sites, gradient, eta, first, block });
+    }
+}
+
+/// K_ij.
+#[inline(always)]
+fn along(curvature: f64, weight: f64, arm: DVec3, step: DVec3) -> DVec3 {
+    arm * (curvature * arm.dot(step)) - step * weight
+}
+
+/// a (x) b.
+#[inline(always)]
+fn dyad(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+struct Difference<'a> {
+    rows: &'a VidalRows,
+    bonds: &'a Bonds,
+    sites: &'a [Site],
+    gradient: &'a [DMat3],
+    eta: f64,
+    first: usize,
+    block: &'a mut [DMat3],
+}
+
+impl HotLoop for Difference<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let Self { rows, bonds, sites, gradient, eta, first, block } = self;
+        for (k, out) in block.iter_mut().enumerate() {
+            let i = first + k;
+            if bonds.inverse_moment[i] == Sym3::ZERO {
+                continue;
+            }
+            let (site, step, shift, correction) =
+                (&sites[i], rows.step[i], rows.shift[i], rows.correction[i]);
+            let mut sum = DMat3::ZERO;
+            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                let j = bonds.neighbors[bond] as usize;
+                let other = &sites[j];
+                let weight = f64::from(bonds.weights[bond]);
+                let arm = other.reference.xyz() - site.reference.xyz();
+                let change = other.displacement.xyz() - site.displacement.xyz();
+                let second = along(f64::from(rows.curvature[bond]), weight, arm, step) - correction * arm;
+                let of_gradient = (gradient[j] - gradient[i]) * (weight * shift.dot(arm));
+                sum += (dyad(change, second) - of_gradient) * other.reference.0[3];
+            }
+            *out += sum * eta;
+        }
+    }
+}
+
+impl HessianRows {
+    /// Before the stress: takes in a new reference, and fits the gradients that the difference needs of all rows.
+    pub fn begin(
+        &mut self,
+        (bonds, ghosts, sites): (&Bonds, &Ghosts, &[Site]),
+        kernels: &[BodyKernel],
+        support: &[f64],
+        plane: bool,
+    ) {
+        let is_stale = std::mem::take(&mut self.is_stale);
+        if !self.has(HessianForm::Vidal2007) {
+            return;
+        }
+        let Self { bodies, gradient, vidal, .. } = self;
+        let own = bodies.iter().filter(|body| body.term.form == HessianForm::Vidal2007);
+        if is_stale {
+            vidal.resize(support.len(), ghosts.len(), bonds.len());
+            for HessianBody { body, rows, .. } in own.clone() {
+                let kernel = kernels[*body].kernel;
+                vidal.renew(&VidalBody { bonds, ghosts, sites, kernel, support }, rows.clone());
+            }
+            vidal.renew_ghosts(ghosts);
+        }
+        for HessianBody { rows, .. } in own {
+            fit_gradients((bonds, sites), plane, rows.start, &mut gradient[rows.clone()]);
+        }
+        self.fill_ghost_gradients(ghosts);
+    }
+
+    /// Adds to the corrected stresses what the form puts into their particles, after the stress of all bodies.
+    pub fn add_vidal_stress(
+        &mut self,
+        (bonds, ghosts, sites): (&Bonds, &Ghosts, &[Site]),
+        stresses: &mut [CorrectedStress],
+        self_force: &mut [DVec3],
+    ) {
+        if !self.has(HessianForm::Vidal2007) {
+            return;
+        }
+        ghosts.fill(&mut self.stress, |ghost, stress| ghost.map.tensor(*stress));
+        for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
+            let own = (&mut stresses[rows.clone()], &mut self_force[rows.clone()]);
+            type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
+            for_each_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
+                let (vidal, theta, first) = (&self.vidal, &self.stress[..], rows.start + first);
+                let eta = term.eta;
+                run_hot(AdjointStress { vidal, theta, bonds, sites, eta, first, stresses, self_force });
+            });
+        }
+    }
+
+    /// Adds the forces that act along the second derivatives.
+    pub fn add_vidal_force(&self, (bonds, sites): (&Bonds, &[Site]), force: &mut [Force]) {
+        for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
+            let force = &mut force[rows.clone()];
+            for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
+                let (vidal, theta, first) = (&self.vidal, &self.stress[..], rows.start + first);
+                run_hot(AdjointForce { vidal, theta, bonds, sites, eta: term.eta, first, force });
+            });
+        }
+    }
+}
+
+struct AdjointStress<'a> {
+    vidal: &'a VidalRows,
+    theta: &'a [DMat3],
+    bonds: &'a Bonds,
+    sites: &'a [Site],
+    eta: f64,
+    first: usize,
+    stresses: &'a mut [CorrectedStress],
+    self_force: &'a mut [DVec3],
+}
+
+impl HotLoop for AdjointStress<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let Self { vidal, theta, bonds, sites, eta, first, stresses, self_force } = self;
+        let VidalRows { shift, .. } = vidal;
+        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
+            let i = first + k;
+            let x = sites[i].reference.xyz();
+            let reach = bonds.reach[i];
+            let mut sum = theta[i] * shift[i].dot(reach);
+            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                let j = bonds.neighbors[bond] as usize;
+                let other = &sites[j].reference;
+                let arm = (other.xyz() - x) * (f64::from(bonds.weights[bond]) * other.0[3]);
+                sum += theta[j] * shift[j].dot(arm);
+            }
+            let own = sum * bonds.inverse_moment[i].to_matrix() * eta;
+            stress.add(&own, x);
+            *self_force += own * reach;
+        }
+    }
+}
+
+struct AdjointForce<'a> {
+    vidal: &'a VidalRows,
+    theta: &'a [DMat3],
+    bonds: &'a Bonds,
+    sites: &'a [Site],
+    eta: f64,
+    first: usize,
+    force: &'a mut [Force],
+}
+
+impl HotLoop for AdjointForce<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, _: A) {
+        let Self { vidal, theta, bonds, sites, eta, first, force } = self;
+        let VidalRows { curvature, step, correction, .. } = vidal;
+        for (k, force) in force.iter_mut().enumerate() {
+            let i = first + k;
+            let site = &sites[i].reference;
+            let mut sum = DVec3::ZERO;
+            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                let j = bonds.neighbors[bond] as usize;
+                let other = &sites[j].reference;
+                let arm = other.xyz() - site.xyz();
+                let (b, weight) = (f64::from(curvature[bond]), f64::from(bonds.weights[bond]));
+                let own = theta[i] * (along(b, weight, arm, step[i]) - correction[i] * arm);
+                let theirs = theta[j] * (along(b, weight, arm, step[j]) + correction[j] * arm);
+                sum += (own - theirs) * other.0[3];
+            }
+            force.0 += sum * (eta * site.0[3]);
+        }
+    }
+}
