@@ -73,6 +73,23 @@ fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
 }
 
 #[test]
+fn differences_of_second_derivatives_allocate_nothing() {
+    for plugin in ["hessian_stabilization()", "hessian_stabilization(form: Vidal2007)"] {
+        for formulation in ["TotalLagrangian", "UpdatedLagrangian(update: Never)"] {
+            let text = format!(
+                r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+                    bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1.2, 0.5)), spacing: 0.02,
+                              formulation: {formulation}, plugins: [{plugin}])],
+                    conditions: [InitialVelocity(on: Select(body: "b"), value: ("0.1*sin(9*y)", "0.1*x"))],
+                    time: (end: 100.0))"#
+            );
+            let counts = counts(&Source::new("differences.ron", text), 1, 50);
+            assert!(counts.iter().all(|&count| count == 0), "{plugin}, {formulation}: {counts:?}");
+        }
+    }
+}
+
+#[test]
 fn a_contact_that_begins_and_spreads_allocates_nothing() {
     let counts = counts(&landing(), 1, 200);
     assert!(counts.iter().all(|&count| count == 0), "{counts:?}");

@@ -59,14 +59,11 @@ fn bending_cylinder(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         near("TL: largest deflection of the top".into(), total.0, most, 0.03, "m", SOURCE).converging(),
         near("TL: time of it".into(), total.1, time_reference, 0.03, "s", SOURCE).converging(),
     ];
-    for (name, plugin) in [("UL Hessian", "hessian_stabilization()"), ("UL hourglass", "hourglass_control()")]
-    {
-        let updated = deflection(registry, across, "UpdatedLagrangian(update: Every(3))", plugin)?;
-        let name = |what: &str| format!("{name}: {what}");
-        checks.push(near(name("largest deflection"), updated.0, most, 0.03, "m", SOURCE));
-        checks.push(near(name("largest deflection"), updated.0, total.0, 0.03, "m", "total Lagrangian"));
-        checks.push(near(name("time of it"), updated.1, time_reference, 0.03, "s", SOURCE));
-        checks.push(Check::below(name("energy balance error"), updated.2, 0.01, "energy is booked"));
-    }
+    let updated = deflection(registry, across, "UpdatedLagrangian(update: Every(3))", "hourglass_control()")?;
+    let name = |what: &str| format!("UL: {what}");
+    checks.push(near(name("largest deflection"), updated.0, most, 0.03, "m", SOURCE));
+    checks.push(near(name("the same"), updated.0, total.0, 0.03, "m", "total Lagrangian"));
+    checks.push(near(name("time of it"), updated.1, time_reference, 0.03, "s", SOURCE));
+    checks.push(Check::below(name("energy balance error"), updated.2, 0.01, "energy is booked"));
     Ok(checks)
 }

@@ -211,6 +211,12 @@ impl Bonds {
         self.neighbors[bonds.clone()].iter().map(|&j| j as usize).zip(self.weights[bonds].iter().copied())
     }
 
+    /// Makes a particle free.
+    pub(in crate::formulations) fn release(&mut self, row: usize) {
+        self.inverse_moment[row] = Sym3::ZERO;
+        self.free.push(u32::try_from(row).unwrap_or(u32::MAX));
+    }
+
     /// Takes the neighbours of other bonds; the weights have to be given, and the rows to be corrected.
     pub(in crate::formulations) fn take_topology(&mut self, other: &Self) {
         self.offsets.clone_from(&other.offsets);

@@ -17,6 +17,7 @@ mod columns;
 mod control;
 mod force;
 mod gradient;
+mod lost_neighbors;
 mod parameters;
 mod phase;
 mod reference;

@@ -107,7 +107,7 @@ impl Formulation for UpdatedLagrangian {
             .reads::<Position>()
             .reads::<ReferencePosition>()
             .reads::<ReferenceVolume>()
-            .reads::<SupportRadius>()
+            .writes::<SupportRadius>()
             .reads::<Removed>()
             .reads::<Velocity>()
             .reads::<Mass>()

@@ -24,6 +24,8 @@ pub(super) struct UpdatedRows {
     pub sites: Vec<Site>,
     /// Original position with the volume V where the particle holds, and displacement since the start: what hourglass control compares.
     pub originals: Vec<Site>,
+    /// Original position with the volume V, and displacement since the start: what pair terms see.
+    pub pair_sites: Vec<Site>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
     /// Volume V_0 det F_r of the real rows, m3; zero for removed ones.
@@ -56,7 +58,7 @@ pub(super) struct UpdatedRows {
 impl UpdatedRows {
     /// Fills the sites of the ghosts.
     pub fn fill_ghost_sites(&mut self) {
-        let Self { ghosts, sites, originals, origin, has_control, .. } = self;
+        let Self { ghosts, sites, originals, pair_sites, origin, has_control, .. } = self;
         let image = |origin: DVec3| {
             move |ghost: Ghost<'_>, site: &Site| {
                 let reference = ghost.map.place(site.reference.xyz() + origin) - origin;
@@ -64,6 +66,7 @@ impl UpdatedRows {
             }
         };
         ghosts.fill(sites, image(*origin));
+        ghosts.fill(pair_sites, image(DVec3::ZERO));
         if *has_control {
             ghosts.fill(originals, image(DVec3::ZERO));
         }
@@ -99,7 +102,7 @@ impl BondedRows for UpdatedRows {
     }
 
     fn sites(&self) -> &[Site] {
-        &self.sites
+        &self.pair_sites
     }
 
     fn kernels(&self) -> &[BodyKernel] {

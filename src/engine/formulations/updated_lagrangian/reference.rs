@@ -62,6 +62,7 @@ pub(super) fn set_up(
         origin: DVec3::ZERO,
         sites: Vec::new(),
         originals: Vec::new(),
+        pair_sites: Vec::new(),
         gradient: Vec::new(),
         volume: Vec::new(),
         stresses: Vec::new(),
@@ -142,12 +143,13 @@ impl UpdatedRows {
         self.bonds = Bonds::default();
         self.ghosts = Ghosts::new(view.len());
         self.stable_step.clear();
-        for ((kernel, repeats), estimate) in self.kernels.iter().zip(&self.repeats).zip(estimates) {
+        for (kernel, repeats) in self.kernels.iter().zip(&self.repeats) {
             let rows = world.body(kernel.body).rows.clone();
             let (low, high) = bounds(rows.clone());
-            let (repeats, reach) = follow(repeats, low, high, kernel.support.unwrap_or_default());
+            let widest = support[rows.clone()].iter().copied().fold(0.0, f64::max);
+            let (repeats, reach) = follow(repeats, low, high, widest);
             let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
-            let (dimension, ghosts) = (kernel.kernel.dimension(), &self.ghosts);
+            let ghosts = &self.ghosts;
             let volume = &self.volume[..];
             let body = BodyBonds {
                 rows: rows.clone(),
@@ -160,11 +162,16 @@ impl UpdatedRows {
             };
             let made = self.bonds.append(&body, &mut self.search);
             made.map_err(|error| RenewError { body: kernel.body, error })?;
-            self.stable_step.push(self.bonds.stable_step(rows, dimension, estimate, support));
+        }
+        self.release_lost();
+        for (kernel, estimate) in self.kernels.iter().zip(estimates) {
+            let (rows, axes) = (world.body(kernel.body).rows.clone(), kernel.kernel.dimension());
+            self.stable_step.push(self.bonds.stable_step(rows, axes, estimate, support));
         }
         let all = view.len() + self.ghosts.len();
         self.sites.resize(all, Site::default());
         self.stresses.resize(all, CorrectedStress::default());
+        self.pair_sites.resize(all, Site::default());
         self.hessian.resize(view.len(), self.ghosts.len());
         if self.has_control {
             self.originals.resize(all, Site::default());

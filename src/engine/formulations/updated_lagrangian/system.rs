@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
 use super::force;
 use super::gradient::{GradientPass, GradientRows};
+use super::lost_neighbors::widen;
 use super::parameters::{Update, UpdatedLagrangian};
 use super::phase::UpdatedRows;
 use super::smoothed_reference::{increments, smooth};
@@ -222,8 +223,14 @@ impl UpdatedSolids {
                 }
             }
         }
-        let renewed = packed.renew(world, self.phase, &self.estimates(), &self.removed);
-        renewed.map_err(|error| error.in_step(world))?;
+        loop {
+            let renewed = packed.renew(world, self.phase, &self.estimates(), &self.removed);
+            renewed.map_err(|error| error.in_step(world))?;
+            let mut support = view.write::<SupportRadius>()?;
+            if !widen(packed, world, damage.as_deref(), &mut support) {
+                break;
+            }
+        }
         pack(world, self.phase, packed)?;
         let changes = increments(packed, self.plane);
         {
@@ -329,9 +336,10 @@ fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), M
     for row in 0..view.len() {
         let (x, r, volume) = (position[row].0, reference[row].0, packed.volume[row]);
         packed.sites[row] = Site::new(r - packed.origin, x - r, volume);
+        let start = original[row].0;
+        packed.pair_sites[row] = Site::new(start, x - start, volume);
         if packed.has_control {
             let holds = damage.as_ref().is_none_or(|damage| !has_failed(&damage[row]));
-            let start = original[row].0;
             packed.originals[row] = Site::new(start, x - start, if holds { volume } else { 0.0 });
         }
     }
