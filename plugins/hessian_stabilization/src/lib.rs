@@ -20,20 +20,20 @@ pub fn register(registry: &mut Registry) {
 #[serde(deny_unknown_fields, default)]
 pub struct HessianStabilization {
     /// What is resisted, and how.
-    pub form: Form,
+    pub form: DifferenceForm,
     /// Coefficient eta; the stiffness grows with its square.
     pub eta: f64,
 }
 
 impl Default for HessianStabilization {
     fn default() -> Self {
-        Self { form: Form::FrameIndifferent, eta: 0.3 }
+        Self { form: DifferenceForm::FrameIndifferent, eta: 0.3 }
     }
 }
 
 /// Forms of the stabilization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-pub enum Form {
+pub enum DifferenceForm {
     /// The difference of two Laplacians of the positions stores energy: no direction counts more than another.
     FrameIndifferent,
     /// The deformation gradient has the difference of two second derivatives times a vector added whose components are all the smoothing length
@@ -59,8 +59,8 @@ impl Plugin for HessianStabilization {
             return Ok(());
         }
         let form = match self.form {
-            Form::FrameIndifferent => HessianForm::FrameIndifferent,
-            Form::Vidal2007 => HessianForm::Vidal2007,
+            DifferenceForm::FrameIndifferent => HessianForm::FrameIndifferent,
+            DifferenceForm::Vidal2007 => HessianForm::Vidal2007,
         };
         let can_fail = |id: BodyId| sim.columns(sim.body(id).phase).get(Damage::NAME).is_some();
         if let Some(id) = bodies.iter().find(|&id| form == HessianForm::Vidal2007 && can_fail(id)) {
