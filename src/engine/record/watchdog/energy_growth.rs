@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::materials::Law;
+use crate::plugin::{BodyPlan, SimBuilder};
 use crate::schedule::{AccountKind, Clock, Ledger, StepError};
 use crate::world::{BodyId, World};
 
@@ -10,6 +12,9 @@ const FACTOR: f64 = 10.0;
 /// Steps in a row for which that must hold: the books of a plugin may lag behind by a step. An instability can take
 /// two orders of magnitude of energy a step, so that more patience would see numbers overflow first.
 const PATIENCE: u32 = 3;
+
+/// Round-off of an energy per volume over Young's modulus.
+const DIGITS: f64 = 4.0 * f64::EPSILON;
 
 /// Compares the stored energy with all that the bodies were ever given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -21,11 +26,17 @@ pub(super) struct EnergyGrowth {
 }
 
 impl EnergyGrowth {
-    /// Looks at a step.
-    pub fn look(&mut self, ledger: &Ledger, world: &World, clock: Clock) -> Result<(), StepError> {
+    /// Looks at a step; stored energy below `resolution`, J, is round-off.
+    pub fn look(
+        &mut self,
+        ledger: &Ledger,
+        world: &World,
+        clock: Clock,
+        resolution: f64,
+    ) -> Result<(), StepError> {
         let stored = ledger.stored();
         self.available = self.available.max(ledger.stored_at_start() + ledger.supplied());
-        let sound = self.available <= 0.0 || stored <= FACTOR * self.available;
+        let sound = self.available <= 0.0 || stored <= (FACTOR * self.available).max(resolution);
         self.beyond = if sound { 0 } else { self.beyond + 1 };
         if self.beyond < PATIENCE {
             return Ok(());
@@ -41,6 +52,17 @@ impl EnergyGrowth {
             time: clock.time,
         })
     }
+}
+
+/// Energy that solids may seem to hold by round-off, J: that of their Young's moduli over their volumes, to a few digits.
+pub(super) fn resolution(sim: &SimBuilder<'_>) -> f64 {
+    let of = |body: &BodyPlan| match &body.material.law {
+        Law::Solid(law) => {
+            law.elastic().young * body.sites.iter().map(|site| site.volume).sum::<f64>() * DIGITS
+        }
+        _ => 0.0,
+    };
+    sim.bodies().iter().map(of).sum()
 }
 
 /// The account and body that hold most; of equal ones the first.

@@ -1,7 +1,7 @@
 //! The system of the watchdog.
 
 use super::domain::DomainCheck;
-use super::energy_growth::EnergyGrowth;
+use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
 use super::wrong_sign::{WrongSign, work_of_weight};
 use crate::plugin::SimBuilder;
@@ -20,6 +20,7 @@ const START: f64 = 0.1;
 
 struct Watchdog {
     energy: EnergyGrowth,
+    resolution: f64,
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
     weight: f64,
@@ -34,6 +35,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     let domain = DomainCheck::of_scene(sim);
     let watchdog = Watchdog {
         energy: EnergyGrowth::default(),
+        resolution: resolution(sim),
         hourglass: HourglassShare::default(),
         wrong_sign: WrongSign::default(),
         weight: work_of_weight(sim),
@@ -52,7 +54,7 @@ impl Run for Watchdog {
         {
             domain.look(step)?;
         }
-        self.energy.look(step.ledger, step.world, step.clock)?;
+        self.energy.look(step.ledger, step.world, step.clock, self.resolution)?;
         self.hourglass.look(step.ledger, step.world.bodies().len());
         if self.frames.is_due(step.clock.time) || at_end {
             // Waves of the first load have the control carry a part of them that the result has not.
