@@ -13,7 +13,9 @@ mod check;
 mod closed_box;
 mod cook_membrane;
 mod dam_break;
+mod dam_break_box;
 mod dam_break_obstacle;
+mod dam_front;
 mod disorder;
 mod elastic_bar;
 mod elliptic_drop;
@@ -64,6 +66,7 @@ mod viscous_layers;
 mod vortices;
 mod water_on_plate;
 mod waves;
+mod wedge_entry;
 
 use meshless_engine::plugin::Registry;
 

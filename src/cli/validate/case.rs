@@ -77,12 +77,15 @@ macro_rules! for_each_case {
             F2 laminar_flows::CASE;
             F3 elliptic_drop::CASE;
             F4 waves::CASE;
-            F5 dam_break::CASE;
+            F5 dam_front::CASE;
+            F5b dam_break::CASE;
             F6 lid_driven_cavity::CASE;
+            F7 dam_break_box::CASE;
             F8 floating_box::CASE;
             F9 rotating_patch::CASE;
             F12 rotating_flows::CASE;
             F13 vortices::CASE;
+            F14 wedge_entry::CASE;
             F15 level_at_rest::CASE;
             X1 water_on_plate::CASE;
             X2 dam_break_obstacle::CASE;
