@@ -39,7 +39,7 @@ pub enum Lattice {
 }
 
 const fn default_fitting() -> u32 {
-    50
+    20
 }
 
 const fn default_iterations() -> u32 {

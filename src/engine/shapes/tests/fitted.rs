@@ -6,7 +6,7 @@ use super::{assert_close, filled, least_distance, shape, total};
 use crate::scene::Dimension::{Three, Two};
 use crate::shapes::Lattice;
 
-const FITTED: Lattice = Lattice::BodyFitted { iterations: 50 };
+const FITTED: Lattice = Lattice::BodyFitted { iterations: 20 };
 
 #[test]
 fn the_outermost_layer_is_half_a_spacing_from_any_boundary() {

@@ -67,7 +67,7 @@ fn lattices() {
         ("Cubic", Lattice::Regular),
         ("Hexagonal", Lattice::Hexagonal),
         ("Concentric", Lattice::Concentric),
-        ("BodyFitted()", Lattice::BodyFitted { iterations: 50 }),
+        ("BodyFitted()", Lattice::BodyFitted { iterations: 20 }),
         ("Relaxed()", Lattice::Relaxed { seed: 0, iterations: 6 }),
         ("Relaxed(seed: 7, iterations: 2)", Lattice::Relaxed { seed: 7, iterations: 2 }),
     ] {
