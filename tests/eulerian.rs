@@ -385,3 +385,91 @@ fn what_it_does_not_offer_is_an_error_at_its_place() {
     let text = fault(&block(2, "Eulerian()", at_rest, contact));
     assert!(text.contains("contact of a body with itself"), "{text}");
 }
+
+#[test]
+fn the_divergence_of_the_paper_is_the_sum_over_all_pairs() {
+    let sim = after(&block(2, "Eulerian(divergence: Shepard)", WILD[0], ""), 30);
+    let naive = Naive::of(&sim, 2);
+    let n = naive.all.len();
+    let over_density: Vec<DMat3> = (0..n)
+        .map(|i| {
+            let itself = naive.volume(i) * naive.kernel.w(0.0, naive.h);
+            let others =
+                naive.pairs(i).map(|(j, _, x)| naive.volume(j) * naive.kernel.w(x.length(), naive.h));
+            let density = naive.all[i].m / naive.volume(i);
+            naive.cauchy(i) * (1.0 / (density * density * (itself + others.sum::<f64>())))
+        })
+        .collect();
+    let force = |i: usize| {
+        let of_pair = |(j, weight, x): (usize, f64, DVec3)| {
+            let weight = weight / naive.volume(j) * naive.all[j].m;
+            weight * ((over_density[i] + over_density[j]) * x)
+        };
+        naive.all[i].m * naive.pairs(i).map(of_pair).sum::<DVec3>()
+    };
+    let size = naive.all.iter().map(|p| p.f.length()).fold(0.0, f64::max);
+    let net: DVec3 = naive.all.iter().map(|p| p.f).sum();
+    assert!(size > 1e-6 && net.length() < 1e-12 * size);
+    for (i, particle) in naive.all.iter().enumerate() {
+        assert!((particle.f - force(i)).length() < 1e-11 * size, "{} and {}", particle.f, force(i));
+    }
+}
+
+#[test]
+fn the_artificial_stress_is_the_sum_over_all_pairs() {
+    let sim = after(&block(2, "Eulerian(artificial_stress: (epsilon: 0.5, exponent: 3))", WILD[0], ""), 30);
+    let naive = Naive::of(&sim, 2);
+    let tensile = |i: usize| {
+        let stress = Sym3::symmetric_part(naive.cauchy(i));
+        meshless::linalg::Eigen::new(&stress).map(|principal| principal.max(0.0)).to_matrix()
+    };
+    let at_spacing = naive.kernel.w(0.05, naive.h);
+    let size = naive.all.iter().map(|p| p.f.length()).fold(0.0, f64::max);
+    let mut largest = 0.0f64;
+    for (i, stress) in naive.forces().into_iter().enumerate() {
+        let of_pair = |(j, weight, x): (usize, f64, DVec3)| {
+            let near = (naive.kernel.w(x.length(), naive.h) / at_spacing).powi(3);
+            -0.5 * near * weight * ((tensile(i) + tensile(j)) * x)
+        };
+        let repulsion = naive.volume(i) * naive.pairs(i).map(of_pair).sum::<DVec3>();
+        let found = naive.all[i].f - stress;
+        assert!((found - repulsion).length() < 1e-10 * size, "{found} and {repulsion}");
+        largest = largest.max(repulsion.length());
+    }
+    assert!(largest > 1e-2 * size, "{largest} of {size}");
+    assert!(sim.ledger().total_named("artificial_stress") != 0.0);
+}
+
+#[test]
+fn it_meets_fluids_and_lagrangian_bodies_and_the_books_close() {
+    let rubber = r#""rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)"#;
+    let in_water = format!(
+        r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 2.0), {rubber}}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.05, formulation: Fluid,
+                 shape: Difference(Box(min: (0, 0), max: (1, 1)), Box(min: (0.35, 0.35), max: (0.65, 0.65)))),
+                (name: "block", material: "rubber", spacing: 0.05, formulation: Eulerian(),
+                 shape: Box(min: (0.35, 0.35), max: (0.65, 0.65)), plugins: [hourglass_control()]),
+            ],
+            conditions: [InitialVelocity(on: Select(body: "water"), value: ("sin(2*pi*y)", "0.3"))],
+            time: (end: 1))"#
+    );
+    let touching = format!(
+        r#"(dimension: Two, materials: {{{rubber}}},
+            bodies: [
+                (name: "left", material: "rubber", shape: Box(min: (0, 0), max: (0.4, 0.3)), spacing: 0.05, formulation: Eulerian(),
+                 velocity: (2, 0)),
+                (name: "right", material: "rubber", shape: Box(min: (0.4, 0), max: (0.8, 0.3)), spacing: 0.05,
+                 formulation: TotalLagrangian, velocity: (-2, 0)),
+            ],
+            contacts: [Contact(between: ("left", "right"), law: Penalty(), friction: 0.2)],
+            plugins: [hourglass_control()],
+            time: (end: 1))"#
+    );
+    for (text, steps) in [(in_water, 60), (touching, 100)] {
+        let sim = after(&Source::new("meets.ron", text), steps);
+        assert!(sim.ledger().total_named("strain") > 0.0);
+        assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+    }
+}

@@ -68,10 +68,18 @@ macro_rules! for_each_case {
             S9U updated_lagrangian::FLAG;
             S11U updated_lagrangian::COLUMN;
             S12U updated_lagrangian::TWISTED;
+            S20 eulerian::TENSION;
+            K2E eulerian::AFFINE;
+            K4E eulerian::PAIR_TERM;
+            K6E eulerian::THROWN;
+            M4E eulerian::SHEAR;
+            S8E eulerian::PLATE;
+            S15E eulerian::ALUMINIUM;
             C1 hertz::CASE;
             C2 incline::CASE;
             C3 restitution::CASE;
             C4 rebound::CASE;
+            C5 metal_cutting::CASE;
             C6 touching_surfaces::CASE;
             F1 hydrostatic_tank::CASE;
             F2 laminar_flows::CASE;

@@ -1,9 +1,9 @@
 //! A body whose particles all deform alike: what one of them is, if they agree.
 
-use anyhow::{Result, ensure};
-use meshless_engine::glam::DMat3;
+use anyhow::{Context, Result, ensure};
+use meshless_engine::glam::{DMat3, DVec3};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, Column, DeformationGradient, PiolaStress};
+use meshless_engine::world::{BodyId, Column, DeformationGradient, PiolaStress, ReferencePosition};
 
 /// The value of a column of the first body, which must be that of all its particles to rounding.
 pub fn value<C: Column<Value = f64>>(simulation: &Simulation) -> Result<f64> {
@@ -15,17 +15,26 @@ pub fn value<C: Column<Value = f64>>(simulation: &Simulation) -> Result<f64> {
     Ok(first)
 }
 
+/// The particle in the middle of the first body: one that has neighbours all around, however far it is sheared.
+fn middle(simulation: &Simulation) -> Result<usize> {
+    let (view, rows) = simulation.world().body_view(BodyId(0));
+    let reference = view.read::<ReferencePosition>()?;
+    let center = rows.clone().map(|row| reference[row].0).sum::<DVec3>() / rows.len() as f64;
+    let distance = |row: &usize| reference[*row].0.distance(center);
+    rows.min_by(|a, b| distance(a).total_cmp(&distance(b))).context("the body has no particle")
+}
+
 /// Kirchhoff stress of a particle of the first body, Pa.
 pub fn kirchhoff(simulation: &Simulation) -> Result<DMat3> {
-    let (view, rows) = simulation.world().body_view(BodyId(0));
+    let (view, row) = (simulation.world().body_view(BodyId(0)).0, middle(simulation)?);
     let (stress, gradient) = (view.read::<PiolaStress>()?, view.read::<DeformationGradient>()?);
-    Ok(stress[rows.start].0 * gradient[rows.start].0.transpose())
+    Ok(stress[row].0 * gradient[row].0.transpose())
 }
 
 /// Cauchy stress of a particle of the first body, Pa.
 pub fn cauchy(simulation: &Simulation) -> Result<DMat3> {
-    let (view, rows) = simulation.world().body_view(BodyId(0));
-    let volume = view.read::<DeformationGradient>()?[rows.start].0.determinant();
+    let (view, row) = (simulation.world().body_view(BodyId(0)).0, middle(simulation)?);
+    let volume = view.read::<DeformationGradient>()?[row].0.determinant();
     Ok(kirchhoff(simulation)? * (1.0 / volume))
 }
 
