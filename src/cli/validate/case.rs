@@ -64,7 +64,6 @@ macro_rules! for_each_case {
             K3U updated_lagrangian::GRADIENT;
             K4U updated_lagrangian::PAIR_TERM;
             S2U updated_lagrangian::CANTILEVER;
-            S8U updated_lagrangian::PLATE;
             S9U updated_lagrangian::FLAG;
             S11U updated_lagrangian::COLUMN;
             S12U updated_lagrangian::TWISTED;
