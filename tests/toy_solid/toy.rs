@@ -204,8 +204,8 @@ impl Rows {
             block.gradient[k] = h;
             rows.deformation[k] = DMat3::IDENTITY + h;
         }
-        let is_free = |k: usize| fits[k].inverse == Sym3::ZERO;
-        law.stress(&mut rows, block, is_free, &mut sum, |stress| {
+        let carried = |k: usize| if fits[k].inverse == Sym3::ZERO { 0.0 } else { 1.0 };
+        law.stress(&mut rows, block, carried, &mut sum, |stress| {
             for (k, out) in stresses.iter_mut().enumerate() {
                 *out = CorrectedStress::new(&(stress[k] * fits[k].inverse.to_matrix()));
             }

@@ -13,7 +13,7 @@ pub(super) const CASE: Case = Case {
     id: "S12",
     title: "twisting column",
     resolutions: &[8, 12, 16],
-    ci_resolution: 8,
+    ci_resolution: 12,
     run: twisting_column,
 };
 

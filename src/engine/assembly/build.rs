@@ -12,6 +12,7 @@ use super::overlap;
 use super::placement;
 use super::plausibility;
 use super::spawn;
+use super::supports;
 use crate::materials::{Law, Material};
 use crate::plugin::{BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::{OutputPlan, Recorder};
@@ -67,6 +68,7 @@ fn build_in(
         return Err(overlaps);
     }
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
+    supports::place(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);
@@ -205,6 +207,7 @@ fn place_bodies<'r>(
             material_name: body.material.clone(),
             material,
             sites,
+            carried: Vec::new(),
             bounds,
             velocity: body.velocity,
         };

@@ -13,6 +13,9 @@ mod plausibility;
 mod spawn;
 mod standard;
 #[cfg(test)]
+mod support_tests;
+mod supports;
+#[cfg(test)]
 mod tests;
 
 pub use build::{build, build_with};

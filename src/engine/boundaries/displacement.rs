@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::field::Field;
 use super::prescribed::{self, Kind};
-use crate::plugin::{Plugin, SetupError, SimBuilder};
-use crate::scene::{Expression, PerAxis, Select};
+use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
+use crate::scene::{Edge, Expression, PerAxis, Select};
 
 /// Moves particles to their reference position plus a displacement, a function of that position and of time: every step
 /// ends exactly there.
@@ -20,6 +20,9 @@ pub struct Displacement {
     pub on: Select,
     /// Displacement per axis \[m\]; `None` leaves the motion along an axis free.
     pub value: PerAxis<Expression>,
+    /// Where the held part of a body ends.
+    #[serde(default)]
+    pub edge: Edge,
 }
 
 /// Largest displacement at the start, as a share of the spacing.
@@ -28,6 +31,11 @@ const ROUNDING: f64 = 1e-9;
 impl Plugin for Displacement {
     const NAME: &'static str = "Displacement";
     const REFERENCE: &'static str = "";
+
+    fn support(&self) -> Option<Support<'_>> {
+        let axes = self.value.0.each_ref().map(Option::is_some);
+        Some(Support { on: &self.on, axes, edge: self.edge })
+    }
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;

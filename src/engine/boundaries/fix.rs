@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::rigid_part::split_rigid;
-use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
 use crate::rigid::{Drive, DrivenBody};
-use crate::scene::{Axis, Select};
+use crate::scene::{Axis, Edge, Select};
 use crate::schedule::{Clock, StepError};
 use crate::world::Velocity;
 
@@ -20,6 +20,9 @@ pub struct Fix {
     /// Axes along which they are held.
     #[serde(default = "all_axes")]
     pub axes: Vec<Axis>,
+    /// Where the held part of a body ends.
+    #[serde(default)]
+    pub edge: Edge,
 }
 
 fn all_axes() -> Vec<Axis> {
@@ -38,6 +41,11 @@ impl Drive for Rest {
 impl Plugin for Fix {
     const NAME: &'static str = "Fix";
     const REFERENCE: &'static str = "";
+
+    fn support(&self) -> Option<Support<'_>> {
+        let axes = [Axis::X, Axis::Y, Axis::Z].map(|axis| self.axes.contains(&axis));
+        Some(Support { on: &self.on, axes, edge: self.edge })
+    }
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;

@@ -76,7 +76,7 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
         return None;
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
-    Skin::of(body, shape, sim.dimension(), sim.folder()).map(Arc::new)
+    Skin::of(body, shape, &[], (sim.dimension(), sim.folder())).map(Arc::new)
 }
 
 /// Adds a load on the skins of bodies; `area` is what the scene says of the loaded area.

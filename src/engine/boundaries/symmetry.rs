@@ -4,12 +4,13 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::plugin::{BodyKind, BodyPlan, Offer, Plugin, SetupError, SimBuilder};
+use crate::rigid::HalvedBody;
 use crate::scene::{Axis, Dimension};
 use crate::symmetry::MirrorPlane;
 use crate::world::{BodyId, BodySet};
 
 /// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem is solved like
-/// the whole. Bodies farther from it than their spacing are left alone. For a fluid, a `Wall` with free slip behind the plane is the same; beside solids that
+/// the whole. Bodies farther from it than their spacing are left alone; rigid bodies may go on behind it if their motion along its axis is prescribed. For a fluid, a `Wall` with free slip behind the plane is the same; beside solids that
 /// are cut, fluids and the walls behind them may end at the plane.
 ///
 /// The lower left quarter of a punch: `Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0)`.
@@ -54,8 +55,12 @@ impl Plugin for Symmetry {
         }
         let mut cut = Vec::new();
         // Walls have no stress that an image could take up.
+        let mut halved = Vec::new();
         for body in sim.bodies().iter().filter(|body| body.kind != BodyKind::Boundary) {
-            if self.cuts(body)? {
+            if body.kind == BodyKind::Rigid {
+                // A tool may go on behind the plane: what touches it touches its surface.
+                halved.extend(self.cuts(body).unwrap_or(true).then_some(body.id));
+            } else if self.cuts(body)? {
                 cut.push(body.id);
             }
         }
@@ -88,6 +93,9 @@ impl Plugin for Symmetry {
                 "fix its motion along the axis instead"
             };
             return Err(SetupError::parameter("plane", message, help));
+        }
+        for body in halved {
+            sim.extend(HalvedBody { body, axis });
         }
         let cut = mirrored;
         sim.extend(MirrorPlane { axis, at: self.at, bodies: BodySet::new(cut) });

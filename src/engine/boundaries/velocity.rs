@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::field::Field;
 use super::prescribed::{self, Kind};
-use crate::plugin::{Plugin, SetupError, SimBuilder};
-use crate::scene::{Expression, PerAxis, Select};
+use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
+use crate::scene::{Edge, Expression, PerAxis, Select};
 
 /// Moves particles with a velocity that is a function of their reference position and time.
 ///
@@ -20,11 +20,19 @@ pub struct Velocity {
     pub on: Select,
     /// Velocity per axis \[m/s\]; `None` leaves the motion along an axis free.
     pub value: PerAxis<Expression>,
+    /// Where the held part of a body ends.
+    #[serde(default)]
+    pub edge: Edge,
 }
 
 impl Plugin for Velocity {
     const NAME: &'static str = "Velocity";
     const REFERENCE: &'static str = "";
+
+    fn support(&self) -> Option<Support<'_>> {
+        let axes = self.value.0.each_ref().map(Option::is_some);
+        Some(Support { on: &self.on, axes, edge: self.edge })
+    }
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;

@@ -4,21 +4,13 @@
 //! second: a force on the first goes mirrored, with opposite sign, to the source of the image. Of the two pairs of the whole problem, one is
 //! the mirror image of the other, and one is in the half that is solved.
 
-use crate::symmetry::{Map, MirrorPlane};
+use crate::symmetry::{Map, MirrorPlane, images};
 use crate::world::BodyId;
 
 /// The images of the second body that the first one may touch, beginning with that body itself: mirrored by each plane that cuts both, and by
 /// planes at right angles together.
 pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> Vec<Map> {
-    let mut all: Vec<(Map, [bool; 3])> = vec![(Map::IDENTITY, [false; 3])];
-    for plane in planes.iter().filter(|plane| plane.bodies.contains(first) && plane.bodies.contains(second)) {
-        for (mirror, mut axes) in all.clone() {
-            if !std::mem::replace(&mut axes[plane.axis], true) {
-                all.push((Map::mirror(plane.axis, plane.at).after(mirror), axes));
-            }
-        }
-    }
-    all.into_iter().map(|(mirror, _)| mirror).collect()
+    images(planes.iter().filter(|plane| plane.bodies.contains(first) && plane.bodies.contains(second)))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 mod hertz;
 mod images;
 mod law;
+mod least;
 mod meetings;
 mod members;
 mod memory;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::law::Touch;
+use super::least::Least;
 use super::meetings::Meetings;
 use super::members::{MemberColumns, Particles};
 use super::memory::{Memory, PairKey};
@@ -47,22 +48,6 @@ pub(super) struct Push {
     arms: [DVec3; 2],
     force: DVec3,
     stiffness: [f64; 2],
-}
-
-/// The least of lengths, m.
-#[derive(Clone, Copy)]
-pub(super) struct Least(f64);
-
-impl Default for Least {
-    fn default() -> Self {
-        Self(f64::INFINITY)
-    }
-}
-
-impl BlockSum for Least {
-    fn add(&mut self, next: &Self) {
-        self.0 = self.0.min(next.0);
-    }
 }
 
 impl ParticleContact {

@@ -178,6 +178,11 @@ fn pairs_of(
                 if let (Some(first), Some(second)) = (skin(first), skin(second)) {
                     return Ok(vec![Touching::Skins(Box::new(SkinPair::new(of_skins()?, [first, second])))]);
                 }
+            } else if contact.surface == ContactSurface::Skin {
+                surfaces.warnings.push(format!(
+                    "body `{}` touches itself with its particles, not with its surface",
+                    first.name
+                ));
             }
             let mut pairs = Vec::new();
             for mirror in mirrors(planes, first.id, second.id) {

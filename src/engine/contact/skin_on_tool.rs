@@ -8,6 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::law::Touch;
+use super::least::Least;
 use super::meetings::Meetings;
 use super::memory::{Memory, PairKey};
 use super::pace::Pace;
@@ -16,12 +17,14 @@ use super::sides::Sides;
 use super::skin_near::NearTool;
 use super::stiffness;
 use super::tally::Tally;
-use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::parallel::{BlockSum, Largest, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
-use crate::skins::{Patch, Rule, Skin, SkinColumns, Wanted};
+use crate::skins::{Patch, Rule, Skin, SkinColumns, Vertex, Wanted};
 use crate::world::BodyId;
 
+/// No point of a facet is farther from its nearest vertex than that share of its longest side.
+const BEYOND: f64 = 0.6;
 /// Parts of a segment of half a spacing, and rows of a triangle of a spacing, each with a point.
 const PARTS: [usize; 2] = [8, 2];
 
@@ -35,7 +38,9 @@ pub(super) struct SkinOnTool {
     rule: Rule,
     near: NearTool,
     candidates: Vec<PairKey>,
-    pub meetings: Meetings<Meet, Push, ()>,
+    /// Of every vertex of the patch its distance from the tool, m.
+    distances: Vec<f64>,
+    pub meetings: Meetings<Meet, Push, Least>,
 }
 
 /// A point of the skin that touches.
@@ -87,7 +92,8 @@ impl SkinOnTool {
         let (patch, candidates, mut meetings) =
             (Patch::new(skin), Vec::with_capacity(points), Meetings::default());
         meetings.reserve(points);
-        Self { interaction, patch, tool, sides, rule, near, candidates, meetings }
+        let distances = Vec::with_capacity(patch.skin.vertices());
+        Self { interaction, patch, tool, sides, rule, near, candidates, distances, meetings }
     }
 
     /// Works out the forces of all points that touch, and pushes the rigid body.
@@ -113,9 +119,10 @@ impl SkinOnTool {
         }
         let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Mobility };
         self.patch.update(&view, dt, wanted);
-        self.find(tool);
+        let gap = self.find(tool);
         let tally = self.evaluate(tool, dt);
-        let Sums { on_tool, stiffest, of_tool } = self.push(tool);
+        let Sums { on_tool, mut stiffest, of_tool } = self.push(tool);
+        stiffest.add(&Largest(self.expected(tool, gap, speeds[0] + speeds[1], dt)));
         tool.push(&on_tool);
         self.patch.hand_on();
         let squared = stiffness::OF_SKIN * stiffest.0 * skin.lightness + of_tool;
@@ -123,28 +130,65 @@ impl SkinOnTool {
         Ok(tally)
     }
 
-    /// Finds the points that touch.
-    fn find(&mut self, tool: &RigidBody) {
-        let Self { patch, rule, meetings, candidates, .. } = self;
+    /// The law at an overlap of zero.
+    fn touch(&self, tool: &RigidBody) -> Touch {
+        let length = self.patch.skin.spacing;
+        let own = 0.5 * length;
+        let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
+        Touch { overlap: 0.0, radius, length, depth: own }
+    }
+
+    /// The stiffness over the area that a touch may soon have, N/m3 (N/m2 in two dimensions).
+    fn expected(&self, tool: &RigidBody, gap: f64, speed: f64, dt: f64) -> f64 {
+        let touch = self.touch(tool);
+        let usual = touch.length.powi(self.patch.skin.facets.axes as i32 - 1);
+        stiffness::expected(&*self.interaction.law, &touch, gap, speed, dt) / usual
+    }
+
+    /// Finds the points that touch; returns the least gap of the others, m.
+    fn find(&mut self, tool: &RigidBody) -> f64 {
+        let Self { patch, rule, meetings, candidates, distances, .. } = self;
         let count = rule.len();
-        meetings.find(candidates, |(point, _), ()| {
+        distances.resize(patch.vertices().len(), 0.0);
+        let rows = (&mut distances[..], patch.vertices());
+        for_each_block(rows, &mut Vec::new(), &|_, (distances, vertices): (&mut [f64], &[Vertex])| {
+            for (distance, vertex) in distances.iter_mut().zip(vertices) {
+                *distance = tool.surface.closest(tool.reference(vertex.place)).signed_distance;
+            }
+        });
+        let gap = meetings.find(candidates, |(point, _), gap: &mut Least| {
             let (facet, point) = (point / count as u32, point as usize % count);
+            let [a, b, c] = patch.numbers(facet).map(|vertex| distances[vertex]);
             let corners = patch.corners(facet);
+            let [p, q, r] = corners.map(|corner| corner.place);
+            let size = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p)).sqrt();
+            let least = a.min(b).min(c) - BEYOND * size;
+            if least >= 0.0 {
+                gap.add(&Least(least));
+                return None;
+            }
             let shares = rule.shares(point);
             let x =
                 shares[0] * corners[0].place + shares[1] * corners[1].place + shares[2] * corners[2].place;
             let nearest = tool.surface.closest(tool.reference(x));
-            let touches = nearest.signed_distance < 0.0 && corners.iter().all(|corner| corner.is_there);
-            touches.then(|| Meet {
+            if !corners.iter().all(|corner| corner.is_there) {
+                return None;
+            }
+            if nearest.signed_distance >= 0.0 {
+                gap.add(&Least(nearest.signed_distance));
+            }
+            (nearest.signed_distance < 0.0).then(|| Meet {
                 x,
                 normal: tool.state.rotation * nearest.normal,
                 overlap: -nearest.signed_distance,
             })
         });
+        gap.0
     }
 
     /// Works out what every point does.
     fn evaluate(&mut self, tool: &RigidBody, dt: f64) -> Tally {
+        let usual_touch = self.touch(tool);
         let Self { interaction, patch, rule, meetings, .. } = self;
         let (patch, rule) = (&*patch, &*rule);
         let skin = &patch.skin;
@@ -158,8 +202,6 @@ impl SkinOnTool {
             let (_, corners, shares) = at(key.0);
             (0..3).map(|k| shares[k] * corners[k].velocity).sum::<DVec3>()
         };
-        let own = 0.5 * length;
-        let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
         let respond = |key: PairKey, meet: &Meet, before: &Memory, tally: &mut Tally| {
             let (facet, corners, shares) = at(key.0);
             let Meet { x, normal, overlap } = *meet;
@@ -170,7 +212,7 @@ impl SkinOnTool {
             let area = skin.measure[facet as usize] / count as f64;
             let mobility = (0..3).map(|k| shares[k] * corners[k].mobility).sum::<DVec3>() / area;
             let meeting = Meeting {
-                touch: Touch { overlap, radius, length, depth: own },
+                touch: Touch { overlap, ..usual_touch },
                 normal,
                 scale: 1.0,
                 area: area / usual,

@@ -15,6 +15,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::law::Touch;
+use super::least::Least;
 use super::meetings::Meetings;
 use super::memory::{Memory, PairKey};
 use super::pace::Pace;
@@ -23,14 +24,13 @@ use super::skin_between::NearSkins;
 use super::skin_foot::{Foot, foot, slopes};
 use super::stiffness;
 use super::tally::Tally;
+use crate::neighbors::NeighborError;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
-use crate::skins::{Patch, Rule, Skin, SkinColumns, Wanted};
+use crate::skins::{Patch, Rule, Skin, SkinColumns, SkinView, Wanted};
 
 /// How deep a point may be below the surface of the other body, over the mean spacing.
 const DEPTH: f64 = 0.5;
-/// Cosine between the normals of a point and its foot above which they do not face each other.
-const FACING: f64 = -0.2;
 /// Factor on the squared frequency of two skins: a particle at a corner is pressed from two sides.
 const CORNERS: f64 = 2.0;
 
@@ -42,7 +42,7 @@ pub(super) struct SkinPair {
     rule: Rule,
     near: NearSkins,
     /// The points of each side against the facets of the other.
-    pub passes: [Meetings<Meet, Push, ()>; 2],
+    pub passes: [Meetings<Meet, Push, Least>; 2],
 }
 
 /// A point that touches.
@@ -81,8 +81,13 @@ impl SkinPair {
     /// Contact of two skins.
     pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2]) -> Self {
         let rule = Rule::exact(skins[0].facets.axes);
+        let passes = skins.each_ref().map(|skin| {
+            let mut meetings = Meetings::default();
+            meetings.reserve(rule.len() * skin.facets.corners.len());
+            meetings
+        });
         let (near, patches) = (NearSkins::default(), skins.map(Patch::new));
-        Self { interaction, patches, rule, near, passes: [Meetings::default(), Meetings::default()] }
+        Self { interaction, patches, rule, near, passes }
     }
 
     /// Works out the forces of all points that touch.
@@ -91,12 +96,26 @@ impl SkinPair {
         let skins = [0, 1].map(|k| Arc::clone(&self.patches[k].skin));
         let first = SkinColumns::new(&skins[0], step.world)?;
         let second = SkinColumns::new(&skins[1], step.world)?;
-        let views = [first.view(), second.view()];
         let speed = paces[0].speed + paces[1].speed;
+        let (tally, stiffest) = self.act([first.view(), second.view()], speed, dt).map_err(|error| {
+            StepError::System { system: super::CONTACT.to_owned(), message: error.to_string() }
+        })?;
+        let squared = CORNERS * stiffness::OF_SKIN * stiffest.0 * (skins[0].lightness + skins[1].lightness);
+        let reach = skins[0].spacing.min(skins[1].spacing);
+        stiffness::propose(step, (skins[0].body, skins[1].body), squared, speed, reach);
+        Ok(tally)
+    }
+
+    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s; with the largest stiffness over an area.
+    pub fn act(
+        &mut self,
+        views: [SkinView<'_>; 2],
+        speed: f64,
+        dt: f64,
+    ) -> Result<(Tally, Largest), NeighborError> {
         if self.near.is_old(speed, dt) {
-            self.near.find([&skins[0], &skins[1]], &views, self.rule.len()).map_err(|error| {
-                StepError::System { system: super::CONTACT.to_owned(), message: error.to_string() }
-            })?;
+            let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
+            self.near.find([first, second], &views, self.rule.len())?;
             for (patch, facets) in self.patches.iter_mut().zip(&self.near.facets) {
                 patch.select(facets.iter().copied());
             }
@@ -106,25 +125,36 @@ impl SkinPair {
         let mut tally = Tally::default();
         let mut stiffest = Largest::default();
         for side in 0..2 {
-            tally.add(&self.evaluate(side, dt));
+            let (of_side, gap) = self.evaluate(side, dt);
+            tally.add(&of_side);
             stiffest.add(&self.push(side));
+            stiffest.add(&Largest(self.expected(gap, speed, dt)));
         }
         self.patches.iter_mut().for_each(Patch::hand_on);
-        let squared = CORNERS * stiffness::OF_SKIN * stiffest.0 * (skins[0].lightness + skins[1].lightness);
-        let reach = skins[0].spacing.min(skins[1].spacing);
-        stiffness::propose(step, (skins[0].body, skins[1].body), squared, speed, reach);
-        Ok(tally)
+        Ok((tally, stiffest))
     }
 
-    /// What the points of one side do.
-    fn evaluate(&mut self, side: usize, dt: f64) -> Tally {
+    /// Length for which the law holds, m.
+    fn length(&self) -> f64 {
+        0.5 * (self.patches[0].skin.spacing + self.patches[1].skin.spacing)
+    }
+
+    /// The stiffness over the area that a touch may soon have, N/m3 (N/m2 in two dimensions).
+    fn expected(&self, gap: f64, speed: f64, dt: f64) -> f64 {
+        let length = self.length();
+        let touch = Touch { overlap: 0.0, radius: 0.5 * length, length, depth: length };
+        let usual = length.powi(self.patches[0].skin.facets.axes as i32 - 1);
+        stiffness::expected(&*self.interaction.law, &touch, gap, speed, dt) / usual
+    }
+
+    /// What the points of one side do, and the least gap of points that do not touch, m.
+    fn evaluate(&mut self, side: usize, dt: f64) -> (Tally, f64) {
+        let length = self.length();
         let Self { interaction, patches, rule, near, passes } = self;
-        let length = 0.5 * (patches[0].skin.spacing + patches[1].skin.spacing);
         let side_of = Side { own: &patches[side], other: &patches[1 - side], rule, length };
         let at = &side_of;
-        passes[side].find(&near.candidates[side], |(point, _), ()| {
-            let found = at.meet(point, near.facets_near(side, point / at.rule.len() as u32))?;
-            (found.weight > 0.0).then_some(found)
+        let gap = passes[side].find(&near.candidates[side], |(point, _), gap: &mut Least| {
+            at.meet(point, near.facets_near(side, point / at.rule.len() as u32), gap)
         });
         let axes = at.own.skin.facets.axes;
         let usual = length.powi(axes as i32 - 1);
@@ -162,7 +192,7 @@ impl SkinPair {
             }
             tally.losses.keep(1.0, memory, &Memory::default());
         };
-        passes[side].respond(respond, end)
+        (passes[side].respond(respond, end), gap.0)
     }
 
     /// Pushes the vertices of both skins; returns the largest stiffness over an area.
@@ -187,7 +217,7 @@ impl SkinPair {
     }
 }
 
-/// The force of the change of the weight as the foot moves: dw = -dc'/2, with c' linear on the facet of the foot.
+/// The force of the change of the weight as the foot moves: dw = -dc'/2, with c' linear on the facet, or the edge, of the foot.
 fn shift_foot(
     own: &mut Patch,
     other: &mut Patch,
@@ -196,20 +226,21 @@ fn shift_foot(
     energy: f64,
 ) {
     let Foot { facet: there, shares: below, normal, distance } = meet.foot;
-    let skin = Arc::clone(&other.skin);
-    let axes = skin.facets.axes;
-    let vertices = skin.facets.corners[there as usize];
-    let corner = vertices.map(|vertex| skin.corner[vertex as usize]);
-    let is_inside = below[..axes].iter().all(|share| *share > 0.0);
-    if !is_inside || corner[..axes].iter().all(|c| *c == corner[0]) {
+    let skin = &other.skin;
+    // The vertices between which the foot lies, in the first places.
+    let mut ends = [0, 1, 2];
+    ends.sort_by_key(|&k| k >= skin.facets.axes || below[k] <= 0.0);
+    let count = below[..skin.facets.axes].iter().filter(|share| **share > 0.0).count();
+    let corner = ends.map(|k| skin.corner[skin.facets.corners[there as usize][k] as usize]);
+    if count < 2 || corner[..count].iter().all(|c| *c == corner[0]) {
         return;
     }
-    let places = other.corners(there).map(|corner| corner.place);
-    let (slope, of_shares) = slopes(axes, &places, corner);
+    let corners = other.corners(there);
+    let (slope, of_shares) = slopes(count, &ends.map(|k| corners[k].place), corner);
     let half = 0.5 * energy;
     own.push(facet, shares, half * slope, None);
-    for k in 0..axes {
-        let force = half * (distance * slope.dot(of_shares[k]) * normal - below[k] * slope);
+    for (k, of_share) in ends.into_iter().zip(of_shares).take(count) {
+        let force = half * (distance * slope.dot(of_share) * normal - below[k] * slope);
         other.push_corner(there, k, force);
     }
 }
@@ -240,26 +271,25 @@ impl Side<'_> {
         Some(Meet { x, foot, weight: 0.0 })
     }
 
-    /// A point that touches.
-    fn meet(&self, point: u32, facets: &[u32]) -> Option<Meet> {
+    /// A point that touches; else it takes in how far it is from that.
+    fn meet(&self, point: u32, facets: &[u32], gap: &mut Least) -> Option<Meet> {
         let (facet, shares) = self.corners(point);
-        let corners = self.own.corners(facet);
-        let Meet { x, foot, .. } = self.nearest(point, facets).filter(|meet| meet.foot.distance < 0.0)?;
-        let ends = corners.map(|corner| corner.place);
-        let axes = self.own.skin.facets.axes;
-        let normal = crate::shapes::directed_area(axes, &ends).normalize_or_zero();
+        let Meet { x, foot, .. } = self.nearest(point, facets)?;
         let there = self.other.corners(foot.facet);
-        let is_there = corners.iter().chain(&there).all(|corner| corner.is_there);
+        if !self.own.corners(facet).iter().chain(&there).all(|corner| corner.is_there) {
+            return None;
+        }
+        if foot.distance >= 0.0 {
+            gap.add(&Least(foot.distance));
+            return None;
+        }
         let corner = |patch: &Patch, facet: u32, shares: [f64; 3]| -> f64 {
             let vertices = patch.skin.facets.corners[facet as usize];
             (0..3).map(|k| shares[k] * patch.skin.corner[vertices[k] as usize]).sum()
         };
         let own = corner(self.own, facet, shares);
-        if normal.dot(foot.normal) > FACING || !is_there {
-            return None;
-        }
         let weight = 0.5 * (1.0 + own - corner(self.other, foot.facet, foot.shares));
-        Some(Meet { x, foot, weight })
+        (weight > 0.0).then_some(Meet { x, foot, weight })
     }
 
     /// Velocity of a point, m/s.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::members::Particles;
-use crate::plugin::{BodyPlan, Offer, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::ContactSurface;
 use crate::skins::Skin;
 use crate::symmetry::MirrorPlane;
@@ -27,18 +27,26 @@ impl Skins {
         planes: &[MirrorPlane],
         sim: &SimBuilder<'_>,
     ) -> Result<Arc<Skin>, Option<Reason>> {
-        if surface == ContactSurface::Particles || !body.offers(Offer::DeformedContact) {
+        if surface == ContactSurface::Particles {
             return Err(None);
+        }
+        if body.kind == BodyKind::Boundary {
+            return Err(Some(
+                "walls bound fluids with particles; a `Rigid` body that `Fix` holds touches with its exact surface",
+            ));
+        }
+        if !body.offers(Offer::DeformedContact) {
+            return Err(Some("its formulation carries no surface"));
         }
         if !Particles::of(body, sim.dimension()).deform {
             return Err(Some("its material may fail, and cracks have no surface of their own"));
         }
-        if planes.iter().any(|plane| plane.bodies.contains(body.id)) || sim.periodic().any() {
-            return Err(Some("it is cut by a symmetry plane, or the domain is periodic"));
+        if sim.periodic().any() {
+            return Err(Some("the domain is periodic"));
         }
         if !self.known.iter().any(|(id, _)| *id == body.id) {
             let shape = &sim.scene().bodies[body.id.0].shape;
-            let skin = Skin::of(body, shape, sim.dimension(), sim.folder());
+            let skin = Skin::of(body, shape, planes, (sim.dimension(), sim.folder()));
             self.known.push((body.id, skin.map(Arc::new)));
         }
         let known = self.known.iter().find(|(id, _)| *id == body.id);

@@ -1,5 +1,6 @@
 //! The time step that contact allows.
 
+use super::law::{NormalForce, Touch};
 use crate::schedule::Step;
 use crate::world::BodyId;
 
@@ -12,6 +13,24 @@ const SWEPT_FACTOR: f64 = 0.25;
 /// Square of that factor over the square of the one of skins, 0.55: two fifths of the critical step of the contact of a skin alone, which is 1.33 over the
 /// root of stiffness over the mass of a layer of particles. Bodies that bounce then keep their energy to a thousandth.
 pub(super) const OF_SKIN: f64 = (FREQUENCY_FACTOR / 0.55) * (FREQUENCY_FACTOR / 0.55);
+
+/// Steps of the present length within which skins that are apart may touch: from then on the step is that of a touch. A step that is longer than the contact
+/// allows would put a point that touches for the first time too deep, and make energy.
+const AHEAD: f64 = 3.0;
+/// Overlap over the spacing whose stiffness stands for that of a touch to come: laws may begin with none.
+const EXPECTED: f64 = 0.05;
+
+/// The stiffness of a touch that may begin soon, N/m: of skins that are `gap` apart, m, and move at speeds that add up to `speed`, m/s; zero if that takes
+/// longer. `touch` is that of the law.
+pub(super) fn expected(law: &dyn NormalForce, touch: &Touch, gap: f64, speed: f64, dt: f64) -> f64 {
+    // Nothing is known yet of the length of the first step.
+    let is_near = gap.is_finite() && (dt == 0.0 || gap < AHEAD * speed * dt);
+    if is_near && speed > 0.0 {
+        law.at(&Touch { overlap: EXPECTED * touch.length, ..*touch }).stiffness
+    } else {
+        0.0
+    }
+}
 
 /// Proposes the limits of two bodies: for contacts of a squared frequency, 1/s2, and for an approach at `speed`, m/s,
 /// of particles that touch at a distance of `reach`, m.

@@ -21,4 +21,4 @@ pub(crate) use registry::FormulationEntry;
 pub use registry::{Entry, Kind, Registry};
 pub use selection::Selection;
 pub use setup::Setup;
-pub use traits::{Formulation, Plugin};
+pub use traits::{Formulation, Plugin, Support};

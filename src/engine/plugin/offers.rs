@@ -47,6 +47,8 @@ pub enum Offer {
     SelfContact,
     /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they stay spheres.
     DeformedContact,
+    /// Held particles that end where a condition says, and carry but a share of their stress.
+    Supports,
 }
 
 impl Offer {
@@ -81,6 +83,7 @@ impl Offer {
             Self::Contact => "contact",
             Self::SelfContact => "contact of a body with itself",
             Self::DeformedContact => "contact with deformed particles",
+            Self::Supports => "supports that end between particles",
         }
     }
 }

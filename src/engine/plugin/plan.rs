@@ -37,6 +37,8 @@ pub struct BodyPlan {
     pub material: Material,
     /// Places and volumes of the particles, in row order.
     pub sites: Vec<Site>,
+    /// Shares of their stress that held particles beside others carry, by their numbers, ascending; all others carry all of theirs.
+    pub carried: Vec<(u32, f64)>,
     /// Box around its shape, m.
     pub bounds: Aabb,
     /// Velocity at the start, m/s.

@@ -9,7 +9,7 @@ use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
-use super::traits::{Formulation, Plugin};
+use super::traits::{Formulation, Plugin, Support};
 use crate::materials::{Material, MaterialModel};
 use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};
 use crate::world::{BodyId, ColumnSet};
@@ -81,6 +81,7 @@ pub(crate) struct FormulationEntry {
 type BuildMaterial = fn(&Item) -> Result<Material, Vec<Problem>>;
 type ParseItem = fn(&Item) -> Result<(), Vec<Problem>>;
 type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
+type ReadSupport = fn(&Item, &mut dyn FnMut(Support<'_>));
 
 /// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin crates.
 #[derive(Default)]
@@ -91,6 +92,7 @@ pub struct Registry {
     stand_ins: BTreeMap<&'static str, &'static str>,
     builders: BTreeMap<(Kind, &'static str), Box<dyn Any + Send + Sync>>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
+    supports: BTreeMap<&'static str, ReadSupport>,
     /// Names of the plugins that change the laws of materials.
     of_materials: BTreeSet<&'static str>,
     parsers: BTreeMap<(Kind, &'static str), ParseItem>,
@@ -130,6 +132,10 @@ impl Registry {
     /// Registers a boundary or initial condition.
     pub fn condition<P: Plugin>(&mut self) -> &mut Self {
         self.plugins.insert((Kind::Condition, P::NAME), build_plugin::<P>);
+        self.supports.insert(P::NAME, |item, look| {
+            let condition = item.parse::<P>();
+            condition.iter().filter_map(Plugin::support).for_each(look);
+        });
         self.describe::<P>(Kind::Condition, P::NAME, P::REFERENCE)
     }
 
@@ -239,6 +245,13 @@ impl Registry {
             .iter()
             .find(|((k, n), _)| *k == kind && *n == name)
             .map_or("", |(_, entry)| entry.reference)
+    }
+
+    /// Shows what a condition holds; nothing if its parameters cannot be read, which is told where it is built.
+    pub(crate) fn support(&self, item: &Item, mut look: impl FnMut(Support<'_>)) {
+        if let Some(read) = self.supports.get(item.name()) {
+            read(item, &mut look);
+        }
     }
 
     pub(crate) fn build_plugin(

@@ -7,7 +7,19 @@ use super::builder::SimBuilder;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
+use crate::scene::{Edge, Select};
 use crate::world::{BodyId, ColumnSet};
+
+/// What a condition holds, or moves by prescription.
+#[derive(Clone, Copy, Debug)]
+pub struct Support<'a> {
+    /// Particles.
+    pub on: &'a Select,
+    /// Axes along which their motion is prescribed.
+    pub axes: [bool; 3],
+    /// Where the held part of a body ends.
+    pub edge: Edge,
+}
 
 /// A plugin or a condition, named in scenes; its fields are its parameters, with units in their documentation.
 ///
@@ -21,6 +33,11 @@ pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
     /// Whether it puts laws about those of materials. Such plugins are built before the others, which look at the laws, wherever they
     /// stand in the scene.
     const CHANGES_MATERIALS: bool = false;
+
+    /// What it holds: particles beside what is not held are put where the held part is to end, before anything looks at them.
+    fn support(&self) -> Option<Support<'_>> {
+        None
+    }
 
     /// Adds systems, terms, columns, diagnostics and limits of the time step.
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError>;

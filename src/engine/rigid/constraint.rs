@@ -32,6 +32,14 @@ pub struct DrivenBody {
     pub drive: Box<dyn Drive>,
 }
 
+/// A symmetry plane through a rigid body, which must not leave its place along the axis: only what touches it on one side pushes it.
+pub struct HalvedBody {
+    /// Body.
+    pub body: BodyId,
+    /// Axis that the plane is normal to.
+    pub axis: usize,
+}
+
 /// A prescribed rotation of a rigid body about an axis through its centre; conditions add it with
 /// [`SimBuilder::extend`](crate::plugin::SimBuilder::extend).
 pub struct DrivenRotation {

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
-use super::constraint::{Constraint, DrivenBody, DrivenRotation, Turning};
+use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, Turning};
 use super::inertia::MassProperties;
 use super::nodes::Nodes;
 use super::rotation::Inertia;
@@ -52,6 +52,7 @@ impl Formulation for Rigid {
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let mut drives: Vec<DrivenBody> = sim.take_extensions();
         let mut rotations: Vec<DrivenRotation> = sim.take_extensions();
+        let halved: Vec<HalvedBody> = sim.take_extensions();
         let shared = RigidBodies::default();
         let mut spins = Vec::new();
         for (id, parameters) in bodies {
@@ -59,6 +60,10 @@ impl Formulation for Rigid {
             let own = drives.extract_if(.., |drive| drive.body == id).collect();
             let turning = rotations.extract_if(.., |rotation| rotation.body == id).collect();
             let constraint = parameters.constraint(id, own, turning, sim)?;
+            halved
+                .iter()
+                .filter(|halved| halved.body == id)
+                .try_for_each(|halved| constraint.holds(halved, sim))?;
             spins.push(parameters.spin.0);
             shared.lock().push(parameters.body(id, constraint, sim)?);
         }
@@ -70,6 +75,24 @@ impl Formulation for Rigid {
         });
         systems::add(sim, &shared);
         Ok(())
+    }
+}
+
+impl Constraint {
+    /// Checks that what is prescribed keeps a body where a symmetry plane cuts it.
+    fn holds(&self, halved: &HalvedBody, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+        let HalvedBody { body, axis } = *halved;
+        let is_held =
+            self.drives.iter().any(|drive| drive.axes[axis]) && !matches!(self.turning, Turning::Free);
+        if is_held {
+            return Ok(());
+        }
+        let (name, axis) = (&sim.body(body).name, ["X", "Y", "Z"][axis]);
+        let message =
+            format!("rigid body `{name}` is cut by a symmetry plane normal to {axis}, and may leave it");
+        let help =
+            format!("prescribe its motion, such as by `Fix(on: Select(body: \"{name}\"), axes: [{axis}])`");
+        Err(SetupError::parameter(format!("bodies[{}].formulation", body.0), message, help))
     }
 }
 

@@ -10,7 +10,7 @@ mod systems;
 mod wrench;
 
 pub use body::{RigidBodies, RigidBody, RigidState};
-pub use constraint::{Drive, DrivenBody, DrivenRotation};
+pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;

@@ -1,8 +1,12 @@
 //! Which particles carry the vertices of a skin.
+//!
+//! Near symmetry planes mirror images of particles are carriers, too: an image is that of a particle that carries the image of the vertex. Then a skin
+//! that ends at a plane is half of that of the whole body.
 
 use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::symmetry::Map;
 
 /// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least error of the traction.
 const REACH: f64 = 2.1;
@@ -15,20 +19,26 @@ const SEARCHES: usize = 6;
 /// A particle that carries a vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Carrier {
-    /// From the particle to the vertex in the reference configuration, m.
+    /// From the particle to the vertex, or to its image, in the reference configuration, m.
     pub arm: DVec3,
     /// Share in the vertex.
     pub weight: f64,
     /// Number of the particle in its body.
     pub particle: u32,
+    /// Number of the map from the particle to what carries the vertex; 0 is the particle itself.
+    pub map: u32,
 }
 
-/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles.
+/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles. The first of the maps changes nothing.
 pub(super) fn carriers(
     vertices: &[DVec3],
     particles: &[DVec3],
+    maps: &[Map],
     spacing: f64,
 ) -> Result<Option<(Vec<u32>, Vec<Carrier>)>, NeighborError> {
+    let farthest = REACH * WIDER.powi(SEARCHES as i32) * spacing;
+    let images = images(particles, maps, farthest);
+    let places: Vec<DVec3> = images.iter().map(|image| image.0).collect();
     let mut all: Vec<Vec<Carrier>> = vec![Vec::new(); vertices.len()];
     let mut pending: Vec<usize> = (0..vertices.len()).collect();
     let (mut search, mut list) = (NeighborSearch::default(), NeighborList::default());
@@ -37,14 +47,14 @@ pub(super) fn carriers(
     for _ in 0..SEARCHES {
         let targets: Vec<DVec3> = pending.iter().map(|&k| vertices[k]).collect();
         let cloud = |positions| Cloud::uniform(positions, reach);
-        search.between(cloud(&targets), cloud(particles), 0.0, &Periodic::NONE, &mut list)?;
+        search.between(cloud(&targets), cloud(&places), 0.0, &Periodic::NONE, &mut list)?;
         let mut few = Vec::new();
         for (row, &k) in pending.iter().enumerate() {
             let near = list.row(row);
             if near.len() < fewest {
                 few.push(k);
             } else {
-                all[k] = shares(vertices[k], particles, near, reach);
+                all[k] = shares(vertices[k], maps, &images, near, reach);
             }
         }
         pending = few;
@@ -65,11 +75,29 @@ pub(super) fn carriers(
     Ok(Some((starts, carriers)))
 }
 
-fn shares(vertex: DVec3, particles: &[DVec3], near: &[u32], reach: f64) -> Vec<Carrier> {
-    let weight = |arm: DVec3| (1.0 - arm.length() / reach).powi(3);
-    let of = |&particle: &u32| {
-        let arm = vertex - particles[particle as usize];
-        Carrier { arm, weight: weight(arm), particle }
+/// A particle or an image of it: where it is, m, its number, and the number of its map.
+type Image = (DVec3, u32, u32);
+
+/// All particles, and their images that are no farther than `farthest`, m, from the planes.
+fn images(particles: &[DVec3], maps: &[Map], farthest: f64) -> Vec<Image> {
+    let mut images = Vec::new();
+    for (number, map) in (0..).zip(maps) {
+        let all = (0..).zip(particles).map(|(particle, x)| (map.place(*x), particle, number));
+        images.extend(all.filter(|image| {
+            let way = image.0 - particles[image.1 as usize];
+            way.abs().max_element() < 2.0 * farthest
+        }));
+    }
+    images
+}
+
+fn shares(vertex: DVec3, maps: &[Map], images: &[Image], near: &[u32], reach: f64) -> Vec<Carrier> {
+    let of = |&number: &u32| {
+        let (place, particle, map) = images[number as usize];
+        // A map is a mirror image, or several of them: its own inverse for vectors.
+        let way = vertex - place;
+        let weight = (1.0 - way.length() / reach).powi(3);
+        Carrier { arm: maps[map as usize].vector(way), weight, particle, map }
     };
     let mut carriers: Vec<Carrier> = near.iter().map(of).collect();
     let sum: f64 = carriers.iter().map(|carrier| carrier.weight).sum();

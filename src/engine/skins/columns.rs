@@ -73,18 +73,24 @@ impl SkinView<'_> {
     /// Where a vertex is, m.
     pub fn place(&self, vertex: u32) -> DVec3 {
         self.mean(vertex, DVec3::ZERO, |carrier, row| {
-            carrier.weight * (self.position[row].0 + self.gradient[row].0 * carrier.arm)
+            let place = self.position[row].0 + self.gradient[row].0 * carrier.arm;
+            carrier.weight * if carrier.map == 0 { place } else { self.skin.map(carrier).place(place) }
         })
     }
 
     /// Mean velocity of the particles that carry a vertex, m/s.
     pub fn velocity(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| carrier.weight * self.velocity[row].0)
+        self.mean(vertex, DVec3::ZERO, |carrier, row| {
+            carrier.weight * self.skin.map(carrier).vector(self.velocity[row].0)
+        })
     }
 
     /// Mean deformation gradient at a vertex.
     pub fn gradient(&self, vertex: u32) -> DMat3 {
-        self.mean(vertex, DMat3::ZERO, |carrier, row| self.gradient[row].0 * carrier.weight)
+        self.mean(vertex, DMat3::ZERO, |carrier, row| {
+            let gradient = self.gradient[row].0;
+            carrier.weight * if carrier.map == 0 { gradient } else { self.skin.map(carrier).tensor(gradient) }
+        })
     }
 
     /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).

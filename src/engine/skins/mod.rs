@@ -19,9 +19,9 @@ mod patch;
 mod rule;
 mod skin;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use columns::{SkinColumns, SkinView};
-pub(crate) use patch::{Last, Patch, Wanted};
+pub(crate) use patch::{Last, Patch, Vertex, Wanted};
 pub(crate) use rule::Rule;
 pub(crate) use skin::Skin;

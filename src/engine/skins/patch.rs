@@ -57,6 +57,8 @@ struct End {
     particle: u32,
     /// Number of the vertex in the patch.
     vertex: u32,
+    /// Number of the map by which the particle is an image.
+    map: u32,
 }
 
 /// A part of a skin.
@@ -141,9 +143,10 @@ impl Patch {
                 weight: carrier.weight,
                 particle: carrier.particle,
                 vertex: number,
+                map: carrier.map,
             }));
         }
-        ends.sort_unstable_by_key(|end| (end.particle, end.vertex));
+        ends.sort_unstable_by_key(|end| (end.particle, end.vertex, end.map));
         particles.clear();
         starts.clear();
         for (number, end) in (0..).zip(&*ends) {
@@ -184,6 +187,16 @@ impl Patch {
                 *now = Vertex { place, velocity, gradient, rate, mobility, is_there: view.is_there(vertex) };
             }
         });
+    }
+
+    /// All vertices of the patch.
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.now
+    }
+
+    /// The numbers of the vertices of a facet among those of the patch; segments have two, and the last one twice.
+    pub fn numbers(&self, facet: u32) -> [usize; 3] {
+        self.skin.facets.corners[facet as usize].map(|vertex| self.numbers[vertex as usize] as usize)
     }
 
     /// A vertex of the skin that belongs to the patch.
@@ -227,7 +240,7 @@ impl Patch {
 
     /// Hands the forces on the vertices on to the particles.
     pub fn hand_on(&mut self) {
-        let Self { forces, couples, starts, ends, on_particles, couples_on_particles, .. } = self;
+        let Self { skin, forces, couples, starts, ends, on_particles, couples_on_particles, .. } = self;
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
         type Rows<'a> = (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]);
         for_each_block(rows, &mut Vec::new(), &|first, (on, alone): Rows<'_>| {
@@ -235,9 +248,14 @@ impl Patch {
                 let ends = &ends[starts[first + k] as usize..starts[first + k + 1] as usize];
                 let (mut force, mut couple) = (DVec3::ZERO, DMat3::ZERO);
                 for end in ends {
-                    let f = end.weight * forces[end.vertex as usize];
+                    let (mut f, mut turning) = (forces[end.vertex as usize], couples[end.vertex as usize]);
+                    if end.map != 0 {
+                        let map = &skin.maps[end.map as usize];
+                        (f, turning) = (map.vector(f), map.tensor(turning));
+                    }
+                    f *= end.weight;
                     force += f;
-                    couple += couples[end.vertex as usize] * end.weight;
+                    couple += turning * end.weight;
                     couple += DMat3::from_cols(f * end.arm.x, f * end.arm.y, f * end.arm.z);
                 }
                 (*on, *alone) = ((force, couple), couple);
@@ -245,10 +263,11 @@ impl Patch {
         });
     }
 
-    /// The couples on the particles of the patch.
+    /// The particles of the patch, with the force, N, and the couple, N m, on each.
     #[cfg(test)]
-    pub fn couples_on_particles(&self) -> &[DMat3] {
-        &self.couples_on_particles
+    pub fn on_particles(&self) -> impl Iterator<Item = (usize, DVec3, DMat3)> {
+        let rows = self.particles.iter().zip(&self.on_particles);
+        rows.map(|(particle, (force, couple))| (*particle as usize, *force, *couple))
     }
 
     /// Adds the couples to the stress of the particles; `first` is the first row of the body.

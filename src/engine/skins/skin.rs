@@ -8,12 +8,15 @@ use super::carriers::{Carrier, carriers};
 use crate::plugin::BodyPlan;
 use crate::scene::Dimension;
 use crate::shapes::{Facets, Shape};
+use crate::symmetry::{Map, MirrorPlane, images};
 use crate::world::BodyId;
 
 /// Length of facets over the spacing.
 const LENGTH: [f64; 2] = [0.5, 1.0];
 /// Cosine of the turn of the normal above which a vertex is a corner.
 const CORNER: f64 = 0.82;
+/// Distance from a symmetry plane over the spacing up to which a vertex lies in it.
+const ON_PLANE: f64 = 1e-3;
 
 /// The surface of a body, and what carries it.
 #[derive(Debug)]
@@ -33,6 +36,8 @@ pub(crate) struct Skin {
     pub(super) facets_at: Vec<u32>,
     pub(super) starts: Vec<u32>,
     pub(super) carriers: Vec<Carrier>,
+    /// What carriers are images by; the first map changes nothing.
+    pub(super) maps: Vec<Map>,
     /// Largest of the particles' lengths (areas) in a layer over their masses, m2/kg (m/kg in two dimensions).
     pub lightness: f64,
     /// Of every particle the length (area) for which it stands in a layer, m (m2).
@@ -40,12 +45,20 @@ pub(crate) struct Skin {
 }
 
 impl Skin {
-    /// The skin of a body; none where its surface is not known, or where it is too thin to carry one.
-    pub fn of(body: &BodyPlan, shape: &Shape, dimension: Dimension, folder: &Path) -> Option<Self> {
+    /// The skin of a body, which ends at symmetry planes that cut the body; none where its surface is not known, or where it is too thin to carry one.
+    pub fn of(
+        body: &BodyPlan,
+        shape: &Shape,
+        planes: &[MirrorPlane],
+        (dimension, folder): (Dimension, &Path),
+    ) -> Option<Self> {
         let axes = dimension.count();
-        let facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;
+        let mut facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;
+        let planes = || planes.iter().filter(|plane| plane.bodies.contains(body.id));
+        planes().for_each(|plane| leave_out(&mut facets, plane, ON_PLANE * body.spacing));
+        let maps = images(planes());
         let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let (starts, carriers) = carriers(&facets.points, &particles, body.spacing).ok()??;
+        let (starts, carriers) = carriers(&facets.points, &particles, &maps, body.spacing).ok()??;
         let normals: Vec<(DVec3, f64)> =
             (0..facets.corners.len()).map(|facet| facets.normal_and_measure(facet)).collect();
         let (facet_starts, facets_at) = facets_at_vertices(&facets);
@@ -64,6 +77,7 @@ impl Skin {
             facets_at,
             starts,
             carriers,
+            maps,
             lightness,
             layer,
         };
@@ -85,6 +99,11 @@ impl Skin {
     pub(super) fn carriers(&self, vertex: u32) -> &[Carrier] {
         let k = vertex as usize;
         &self.carriers[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+
+    /// What a carrier is an image by.
+    pub(super) fn map(&self, carrier: &Carrier) -> &Map {
+        &self.maps[carrier.map as usize]
     }
 
     /// Number of all carriers of all vertices.
@@ -114,6 +133,13 @@ impl Skin {
         }
         corner
     }
+}
+
+/// Leaves out the facets that lie in a symmetry plane: there the body goes on.
+fn leave_out(facets: &mut Facets, plane: &MirrorPlane, tolerance: f64) {
+    let Facets { axes, points, corners } = facets;
+    let is_in = |vertex: &u32| (points[*vertex as usize][plane.axis] - plane.at).abs() < tolerance;
+    corners.retain(|corners| !corners[..*axes].iter().all(is_in));
 }
 
 fn facets_at_vertices(facets: &Facets) -> (Vec<u32>, Vec<u32>) {

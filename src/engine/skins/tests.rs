@@ -22,8 +22,8 @@ fn simulation(dimension: &str, shape: &str) -> Simulation {
     build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The skin of the body of a simulation, whose particles stand where those of the scene do.
-fn skin(sim: &Simulation, dimension: &str, shape: &str) -> Skin {
+/// The skin of a body of a simulation, with a spacing of 0.01 m, whose particles stand where those of the scene do.
+pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -> Skin {
     use crate::plugin::BodyPlan;
     use crate::scene::Dimension;
     use crate::shapes::{Lattice, Shape, fill};
@@ -31,9 +31,9 @@ fn skin(sim: &Simulation, dimension: &str, shape: &str) -> Skin {
     let shape: Shape = ron::from_str(shape).unwrap();
     let folder = std::path::Path::new(".");
     let sites = fill(&shape, Lattice::default(), 0.01, axes, folder, 1_000_000).unwrap();
-    let body = sim.world().body(BodyId(0));
+    let body = sim.world().body(id);
     let plan = BodyPlan {
-        id: BodyId(0),
+        id,
         name: body.name.clone(),
         phase: body.phase,
         formulation: "TotalLagrangian",
@@ -42,13 +42,14 @@ fn skin(sim: &Simulation, dimension: &str, shape: &str) -> Skin {
         material_name: String::new(),
         material: crate::materials::Material::nothing(),
         sites,
+        carried: Vec::new(),
         bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
         velocity: None,
         kind: crate::plugin::BodyKind::Solid,
         offers: &[],
         support: None,
     };
-    Skin::of(&plan, &shape, axes, folder).unwrap_or_else(|| panic!("no skin"))
+    Skin::of(&plan, &shape, &[], (axes, folder)).unwrap_or_else(|| panic!("no skin"))
 }
 
 const SHAPES: [(&str, &str); 3] = [
@@ -61,7 +62,7 @@ const SHAPES: [(&str, &str); 3] = [
 fn vertices_follow_an_affine_motion_exactly() {
     for (dimension, shape) in SHAPES {
         let sim = simulation(dimension, shape);
-        let skin = skin(&sim, dimension, shape);
+        let skin = skin(&sim, BodyId(0), dimension, shape);
         let mut f = DMat3::from_cols_array(&[1.3, 0.2, 0.0, -0.1, 0.8, 0.0, 0.0, 0.0, 1.0]);
         let shift = DVec3::new(0.3, -0.2, 0.0);
         if dimension == "Three" {
@@ -89,7 +90,7 @@ fn vertices_follow_an_affine_motion_exactly() {
 fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
     for (dimension, shape) in SHAPES {
         let sim = simulation(dimension, shape);
-        let skin = Arc::new(skin(&sim, dimension, shape));
+        let skin = Arc::new(skin(&sim, BodyId(0), dimension, shape));
         let mut patch = Patch::new(Arc::clone(&skin));
         patch.select(0..skin.facets.corners.len() as u32);
         let columns = SkinColumns::new(&skin, sim.world()).unwrap();
@@ -114,7 +115,7 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
         let sum: DVec3 = on_particles.iter().map(|force| force.0).sum();
         let mut turn: DVec3 = rows.clone().map(|row| x[row].0.cross(on_particles[row].0)).sum();
         // At F = I the moment of a couple f (x) A is A x f.
-        for couple in patch.couples_on_particles() {
+        for (_, _, couple) in patch.on_particles() {
             turn +=
                 DVec3::X.cross(couple.x_axis) + DVec3::Y.cross(couple.y_axis) + DVec3::Z.cross(couple.z_axis);
         }

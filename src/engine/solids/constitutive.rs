@@ -208,6 +208,16 @@ thread_local! {
 }
 
 impl SolidBlock {
+    /// Leaves a share of what a particle holds and resists: all else would hold it against rotation.
+    fn carry(&mut self, k: usize, share: f64) {
+        self.energy[k] *= share;
+        self.modulus[k] *= share;
+        self.plastic_work[k] *= share;
+        if self.strength[k].is_finite() {
+            self.strength[k] *= share;
+        }
+    }
+
     /// Lends the block of this thread, which holds what the last one has left, for the rows from `first` on.
     #[inline]
     pub(super) fn with<R>(first: usize, work: impl FnOnce(&mut Self) -> R) -> R {
@@ -233,12 +243,13 @@ pub struct Constitutive<'a> {
 
 impl Constitutive<'_> {
     /// Computes the stress of a block whose deformation gradient is there, and calls `make` with what makes the force: the stress with that of damping.
-    /// A particle that `is_free`, which has no deformation gradient for want of neighbours, resists nothing.
+    /// Each particle makes the share of its force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no deformation
+    /// gradient for want of neighbours, or that is held.
     pub fn stress(
         &self,
         rows: &mut SolidRows<'_>,
         block: &mut SolidBlock,
-        is_free: impl Fn(usize) -> bool,
+        carried: impl Fn(usize) -> f64,
         sum: &mut SolidSum,
         make: impl FnOnce(&[DMat3]),
     ) {
@@ -262,14 +273,20 @@ impl Constitutive<'_> {
         let gradient = &block.gradient;
         let fitted = |k: usize| DMat3::IDENTITY + gradient[k];
         refit::from_law(refits, first, fitted, rows.deformation, rows.stress);
-        for (k, modulus) in block.modulus[..n].iter_mut().enumerate() {
-            // Its bonds would hold it against rotation.
-            *modulus = if is_free(k) { 0.0 } else { *modulus };
+        let mut is_whole = true;
+        for k in 0..n {
+            let share = carried(k);
+            if share < 1.0 {
+                is_whole = false;
+                block.carry(k, share);
+            }
         }
-        if rows.damping.strain.is_empty() {
+        if rows.damping.strain.is_empty() && is_whole {
             make(rows.stress);
         } else {
-            block.stress[..n].copy_from_slice(rows.stress);
+            for (k, (made, stress)) in block.stress.iter_mut().zip(&*rows.stress).enumerate() {
+                *made = if is_whole { *stress } else { *stress * carried(k) };
+            }
             let damping = Damping {
                 elastic: self.law.elastic(),
                 dt: self.dt,
@@ -279,7 +296,9 @@ impl Constitutive<'_> {
                 modulus: &block.modulus[..n],
                 volume: &block.volume[..n],
             };
-            sum.damped = damping.add(std::mem::take(&mut rows.damping), &mut block.stress[..n]);
+            if !rows.damping.strain.is_empty() {
+                sum.damped = damping.add(std::mem::take(&mut rows.damping), &mut block.stress[..n]);
+            }
             make(&block.stress[..n]);
         }
         refit::to_column(refits, first, rows.stress);

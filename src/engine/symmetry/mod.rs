@@ -10,5 +10,5 @@ mod repeats;
 
 pub use ghosts::{Ghost, Ghosts};
 pub use map::Map;
-pub use plane::MirrorPlane;
+pub use plane::{MirrorPlane, images};
 pub use repeats::{Repeat, repeats_of};

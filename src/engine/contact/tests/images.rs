@@ -82,7 +82,7 @@ fn half_a_fork_that_closes_on_its_own_image_is_half_of_the_whole() {
 
 #[test]
 fn half_of_two_blocks_that_meet_is_half_of_the_whole() {
-    let scene = |top: f64, conditions: &str| {
+    let scene = |top: f64, surface: &str, conditions: &str| {
         simulation(&format!(
             r#"(dimension: Two,
             materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
@@ -93,13 +93,54 @@ fn half_of_two_blocks_that_meet_is_half_of_the_whole() {
                  formulation: TotalLagrangian, velocity: (-1, 0)),
             ],
             conditions: [{conditions} InitialVelocity(on: Select(body: "left"), value: ("1 + 200*(y - 0.05)^2", "(0.05 - y)*20"))],
-            contacts: [Contact(between: ("left", "right"), law: Penalty(), surface: Particles, friction: 0.3)],
+            contacts: [Contact(between: ("left", "right"), law: Penalty(), surface: {surface}, friction: 0.3)],
             time: (end: 0.008, step: Fixed(5e-6)))"#
         ))
     };
-    let (mut whole, mut half) = (scene(0.1, ""), scene(0.05, "Symmetry(plane: Y, at: 0.05),"));
+    for surface in ["Particles", "Skin"] {
+        let plane = "Symmetry(plane: Y, at: 0.05),";
+        let (mut whole, mut half) = (scene(0.1, surface, ""), scene(0.05, surface, plane));
+        assert!(
+            half.warnings().iter().all(|warning| !warning.contains("touches with")),
+            "{:?}",
+            half.warnings()
+        );
+        whole.run(|_| true).unwrap();
+        half.run(|_| true).unwrap();
+        assert_same_half(&whole, &half, 0.05);
+        assert!(centre(&half, 0).1.x < 0.0);
+    }
+}
+
+#[test]
+fn a_quarter_of_a_block_between_tools_is_a_quarter_of_the_whole() {
+    let scene = |dimension: &str, size: &str, plates: &str, conditions: &str| {
+        simulation(&format!(
+            r#"(dimension: {dimension},
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [
+                (name: "block", material: "soft", shape: Box({size}), spacing: 0.01, formulation: TotalLagrangian),
+                (name: "plate", material: "soft", shape: Box({plates}), spacing: 0.01, formulation: Rigid()),
+            ],
+            conditions: [{conditions} Displacement(on: Select(body: "plate"), value: (0, "0.004*smoothstep(t/0.004)", 0)),
+                InitialVelocity(on: Select(body: "block"), value: (0, 0.2, 0))],
+            contacts: [Contact(between: ("block", "plate"), law: Penalty())],
+            time: (end: 0.004, step: Fixed(5e-6)))"#
+        ))
+    };
+    let planes = "Symmetry(plane: X, at: 0), Symmetry(plane: Z, at: 0),";
+    let plates = "min: (-0.03, -0.021, -0.03), max: (0.03, -0.001, 0.03)";
+    let mut whole = scene("Three", "min: (-0.02, 0, -0.02), max: (0.02, 0.03, 0.02)", plates, "");
+    let mut quarter = scene("Three", "min: (-0.02, 0, -0.02), max: (0, 0.03, 0)", plates, planes);
     whole.run(|_| true).unwrap();
-    half.run(|_| true).unwrap();
-    assert_same_half(&whole, &half, 0.05);
-    assert!(centre(&half, 0).1.x < 0.0);
+    quarter.run(|_| true).unwrap();
+    let of_quarter = |sim: &Simulation| -> Vec<[glam::DVec3; 3]> {
+        let rows = lower(sim, 0.03).into_iter();
+        rows.filter(|row| row[0].x < 0.0 && row[0].z < 0.0 && row[0].y > 0.0).collect()
+    };
+    let (whole, quarter) = (of_quarter(&whole), of_quarter(&quarter));
+    assert_eq!(whole.len(), quarter.len());
+    let worst = whole.iter().zip(&quarter).map(|(a, b)| a[1].distance(b[1])).fold(0.0, f64::max);
+    let moved = whole.iter().map(|row| row[0].distance(row[1])).fold(0.0, f64::max);
+    assert!(moved > 1e-3 && worst < 1e-6 * moved, "{worst} of {moved}");
 }

@@ -6,6 +6,7 @@ mod laws;
 mod long;
 mod particles;
 mod rigid;
+mod skin_energy;
 mod skins;
 mod walls;
 

@@ -76,25 +76,24 @@ fn skins_go_on_exactly_after_a_restart() {
 }
 
 #[test]
-fn a_crash_of_two_skins_keeps_momentum_and_angular_momentum() {
+fn a_crash_of_two_skins_keeps_energy_momentum_and_angular_momentum() {
     for (dimension, contact) in [
         ("Two", "friction: 0.0"),
         ("Two", "friction: 0.4, restitution: 0.5"),
         ("Three", "friction: 0.4, restitution: 0.5"),
     ] {
-        let mut sim = thrown(dimension, (3.0, -4.0), contact, 0.008);
-        sim.start().unwrap();
-        let (p, l) = (momentum(&sim), angular_momentum(&sim));
-        sim.run(|_| true).unwrap();
-        let (q, m) = (momentum(&sim), angular_momentum(&sim));
-        assert!((q - p).length() < 1e-12 * p.length(), "{dimension} {contact}: {p} {q}");
-        assert!((m - l).length() < 1e-10 * l.length(), "{dimension} {contact}: {l} {m}");
-        // At a tenth of the speed of sound, six particles across, corners that are pressed in miss some per cent of the energy, which falls with the
-        // spacing; at a fortieth all is booked.
-        let mut slow = thrown(dimension, (3.0, -1.0), contact, 0.008);
-        slow.run(|_| true).unwrap();
-        let error = slow.ledger().relative_error().abs();
-        assert!(error < 1e-2, "{dimension} {contact}: {error}");
+        // At a tenth and at a third of the speed of sound.
+        for down in [-4.0, -12.0] {
+            let mut sim = thrown(dimension, (3.0, down), contact, 0.008);
+            sim.start().unwrap();
+            let (p, l) = (momentum(&sim), angular_momentum(&sim));
+            sim.run(|_| true).unwrap();
+            let (q, m) = (momentum(&sim), angular_momentum(&sim));
+            assert!((q - p).length() < 1e-12 * p.length(), "{dimension} {contact}: {p} {q}");
+            assert!((m - l).length() < 1e-10 * l.length(), "{dimension} {contact}: {l} {m}");
+            let error = sim.ledger().relative_error().abs();
+            assert!(error < 3e-3, "{dimension} {contact} {down}: {error}");
+        }
     }
 }
 

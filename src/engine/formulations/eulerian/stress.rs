@@ -239,9 +239,9 @@ impl StressPass<'_> {
         }
         block.misfit[..n].fill(0.0);
         let around = &*near.around;
-        let is_free = |k: usize| around[k].inverse_moment == Sym3::ZERO;
+        let carried = |k: usize| if around[k].inverse_moment == Sym3::ZERO { 0.0 } else { 1.0 };
         let mut sum = SolidSum::default();
-        constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
+        constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {
             for (k, out) in stresses.iter_mut().enumerate() {
                 let f = &deformation[k];
                 let cauchy = stress[k] * f.transpose() * (1.0 / f.determinant());

@@ -47,6 +47,8 @@ pub struct Bonds {
     pub(in crate::formulations) weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
     pub(in crate::formulations) free: Vec<u32>,
+    /// Share of its stress that every row carries: that of the part of its cell which is not held. Empty where all carry all of it.
+    pub(in crate::formulations) carried: Vec<f64>,
 }
 
 /// The reference configuration of one body.

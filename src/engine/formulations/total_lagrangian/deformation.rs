@@ -91,9 +91,14 @@ impl DeformationPass<'_> {
             *f = DMat3::IDENTITY + *h;
         }
         let inverse_moment = &bonds.inverse_moment[first..first + n];
-        let is_free = |k: usize| inverse_moment[k] == Sym3::ZERO;
+        let shares = bonds.carried.get(first..first + n);
+        let carried = |k: usize| match shares {
+            _ if inverse_moment[k] == Sym3::ZERO => 0.0,
+            Some(shares) => shares[k],
+            None => 1.0,
+        };
         let mut sum = SolidSum::default();
-        constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
+        constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {
             hessian.take_stress(stress);
             run_hot(CorrectStress { stress, inverse_moment, stresses: &mut *stresses });
         });

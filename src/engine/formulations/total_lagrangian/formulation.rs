@@ -59,7 +59,16 @@ impl Formulation for TotalLagrangian {
     const REFERENCE: &'static str =
         "total-Lagrangian SPH: G. C. Ganzenmueller, Comput. Methods Appl. Mech. Engrg. 286 (2015) 87-106";
     const KIND: BodyKind = BodyKind::Solid;
-    const OFFERS: &'static [Offer] = Offer::OF_LAGRANGIAN_SOLIDS;
+    const OFFERS: &'static [Offer] = &[
+        Offer::PairTerms,
+        Offer::FoldedTerms,
+        Offer::HessianDifferences,
+        Offer::MirrorImages,
+        Offer::Contact,
+        Offer::SelfContact,
+        Offer::DeformedContact,
+        Offer::Supports,
+    ];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
         self.mean_support(body)
@@ -92,7 +101,8 @@ impl Formulation for TotalLagrangian {
         let estimates: Vec<StepEstimate> = solids.iter().map(|body| body.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         let terms: Vec<Option<HessianDifference>> = solids.iter().map(|body| body.hessian).collect();
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, phase, setup));
+        let carried = carried(&ids, sim);
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, (phase, carried), setup));
         let state = solids.access();
         let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
@@ -173,12 +183,25 @@ impl TotalLagrangian {
     }
 }
 
+/// The share of its stress that every row of the phase carries; empty where all carry all of it.
+fn carried(bodies: &[BodyId], sim: &SimBuilder<'_>) -> Vec<f64> {
+    let bodies = || bodies.iter().map(|id| sim.body(*id));
+    if bodies().all(|body| body.carried.is_empty()) {
+        return Vec::new();
+    }
+    let mut all = vec![1.0; bodies().map(|body| body.rows.end).max().unwrap_or(0)];
+    for body in bodies() {
+        body.carried.iter().for_each(|(k, share)| all[body.rows.start + *k as usize] = *share);
+    }
+    all
+}
+
 fn set_up(
     bodies: &[(BodyId, TotalLagrangian)],
     estimates: &[StepEstimate],
     terms: &[Option<HessianDifference>],
     repeats: &[Vec<Repeat>],
-    phase: PhaseId,
+    (phase, carried): (PhaseId, Vec<f64>),
     setup: &mut Setup<'_>,
 ) -> Result<(), SetupError> {
     let view = setup.world.phase(phase);
@@ -245,6 +268,7 @@ fn set_up(
     for (site, (x, v)) in sites.iter_mut().zip(position.iter().zip(volume)) {
         *site = Site::new(*x - origin, DVec3::ZERO, *v);
     }
+    bonds.carried = carried;
     let terms = bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term));
     let mut hessian = HessianRows::new(terms);
     hessian.resize(view.len(), ghosts.len());

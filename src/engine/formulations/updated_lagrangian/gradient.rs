@@ -87,10 +87,10 @@ impl GradientPass<'_> {
             block.volume[k] = if volume[k] > 0.0 { self.reference_volume[first + k] } else { 0.0 };
         }
         let inverse_moment = &self.bonds.inverse_moment[first..first + n];
-        let is_free = |k: usize| inverse_moment[k] == Sym3::ZERO;
+        let carried = |k: usize| if inverse_moment[k] == Sym3::ZERO { 0.0 } else { 1.0 };
         let mut sum = SolidSum::default();
         let reference_volume = block.volume;
-        constitutive.stress(&mut rows, block, is_free, &mut sum, |stress| {
+        constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {
             let mut seen = [DMat3::ZERO; BLOCK];
             for (k, stress) in stress.iter().enumerate().filter(|(k, _)| volume[*k] > 0.0) {
                 // The stress as seen from the reference.

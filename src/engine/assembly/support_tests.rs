@@ -1,0 +1,88 @@
+//! Held particles stand on the edge of what a scene says is held.
+
+use glam::DVec3;
+
+use super::build;
+use crate::plugin::Registry;
+use crate::scene::{Source, parse};
+use crate::simulation::Simulation;
+use crate::world::{BodyId, ReferencePosition};
+
+/// A strip from x = -0.03 to 0.1 with a spacing of 0.01, with that condition.
+fn strip(condition: &str) -> Simulation {
+    let text = format!(
+        r#"(dimension: Two, gravity: (0, -10),
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "strip", material: "soft", shape: Box(min: (-0.03, 0), max: (0.1, 0.04)), spacing: 0.01,
+                formulation: TotalLagrangian)],
+            conditions: [{condition}],
+            time: (end: 0.05))"#
+    );
+    let (scene, source) = parse(Source::new("supports.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The places of the particles along the strip, and how many are not in the lattice.
+fn columns(sim: &Simulation) -> (Vec<f64>, usize) {
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let x = view.read::<ReferencePosition>().unwrap();
+    let is_off =
+        |x: DVec3| [x.x, x.y].iter().any(|c| ((c / 0.01 - 0.5).round() - (c / 0.01 - 0.5)).abs() > 1e-3);
+    let off = rows.clone().filter(|&row| is_off(x[row].0)).count();
+    let mut all: Vec<f64> = rows.map(|row| x[row].0.x).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    (all, off)
+}
+
+#[test]
+fn the_outermost_held_particles_stand_on_the_stated_edge() {
+    for (end, column, expected) in
+        [(0.0, 2, 0.0), (0.0025, 2, 0.0025), (-0.004, 2, -0.004), (0.0055, 3, 0.0055)]
+    {
+        let box_of = format!("Box(min: (-1, -1), max: ({end:?}, 1))");
+        for condition in [
+            "Fix(on: Select(within: SHAPE))",
+            "Displacement(on: Select(within: SHAPE), value: (0, 0))",
+            "Velocity(on: Select(within: SHAPE), value: (0, 0))",
+        ] {
+            let (x, off) = columns(&strip(&condition.replace("SHAPE", &box_of)));
+            assert!((x[column] - expected).abs() < 1e-6, "{condition} {end}: {x:?}");
+            assert!(x.len() == 13 && off <= 4, "{condition} {end}: {off}");
+        }
+    }
+}
+
+#[test]
+fn other_supports_leave_particles_in_their_lattice() {
+    for condition in [
+        "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))), edge: Particles)",
+        "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))), axes: [X])",
+        "Velocity(on: Select(within: Box(min: (-1, -1), max: (0, 1))), value: (None, 0))",
+        "Fix(on: Select(face: MinX))",
+        "Fix(on: Select(within: Box(min: (-1, -1), max: (1, 1))))",
+        "InitialVelocity(on: Select(within: Box(min: (-1, -1), max: (0, 1))), value: (0, 1))",
+    ] {
+        assert_eq!(columns(&strip(condition)).1, 0, "{condition}");
+    }
+}
+
+#[test]
+fn edges_between_axes_are_met_along_their_normal() {
+    // Above y = 0.015 the edge is half-way between two diagonals of the lattice.
+    let sim = strip(
+        "Fix(on: Select(within: Polygon(points: [(-1, -1), (0.02, -1), (0.02, 0.015), (1.005, 1), (-1, 1)])))",
+    );
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let x = view.read::<ReferencePosition>().unwrap();
+    let near = rows.map(|row| x[row].0).filter(|x| x.y > 0.021 && (x.x - x.y - 0.005).abs() < 1e-6);
+    assert!(near.count() >= 1);
+}
+
+#[test]
+fn a_strip_that_swings_in_its_clamp_keeps_its_energy() {
+    let mut sim = strip("Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))))");
+    sim.run(|_| true).unwrap();
+    let error = sim.ledger().relative_error().abs();
+    assert!(error < 1e-3, "{error}");
+}

@@ -1,0 +1,119 @@
+//! Held particles stand where the held part of a body is said to end.
+//!
+//! A lattice has its outermost held particles d behind the edge of the held part, mostly half a spacing a, and the field of displacements has its kink there. They are
+//! put on the edge. What is held does not deform: it carries the share 1/2 - d/a of its stress and energy, that of the part of its cells before the edge, and
+//! none where that is negative. Then the displacement is linear up to the edge where it is so in the body, and the edge is met to one per cent of the spacing
+//! where the held part is an interval of the lattice, with the usual hourglass control.
+
+use glam::DVec3;
+
+use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
+use crate::plugin::{BodyPlan, Offer, Registry, SimBuilder};
+use crate::scene::{Edge, Scene};
+use crate::shapes::Region;
+
+/// Distance over the spacing up to which a held particle is beside one that is not held.
+const BESIDE: f64 = 1.3;
+/// Of those that are near, how much farther than the nearest one counts.
+const AS_NEAR: f64 = 1.05;
+/// How far a particle is moved at most, over the spacing: the next one must not come too near.
+const FARTHEST: f64 = 0.75;
+/// Share of the way to the edge: the particle stays inside of what the scene selects, clearly so for shapes that count what is nearly inside.
+const INSIDE: f64 = 1.0 - 1e-4;
+/// Support radius over spacing of bodies that do not say it.
+const USUAL_SUPPORT: f64 = 2.41;
+/// Halvings that find where a shape ends.
+const HALVINGS: usize = 50;
+
+/// Puts the held particles of all bodies where the conditions of the scene say that they end.
+pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
+    // Of every body, by which shape each particle is held.
+    let mut held: Vec<Vec<Option<usize>>> =
+        sim.bodies.iter().map(|body| vec![None; body.sites.len()]).collect();
+    let mut shapes: Vec<Box<dyn Region>> = Vec::new();
+    for item in &scene.conditions {
+        registry.support(item, |support| {
+            let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
+            let (Some(shape), Edge::Stated, true, None, None) =
+                (&support.on.within, support.edge, all, support.on.face, &support.on.nearest)
+            else {
+                return;
+            };
+            let region = shape.region(scene.dimension, sim.folder, "within");
+            // What is wrong with a selection is told where the condition is built.
+            let (Ok(region), Ok(selection)) = (region, sim.select_at_start(support.on, "on")) else { return };
+            for (id, rows) in &selection.parts {
+                let first = sim.bodies[id.0].rows.start;
+                rows.iter().for_each(|row| held[id.0][*row as usize - first] = Some(shapes.len()));
+            }
+            shapes.push(region);
+        });
+    }
+    for (body, held) in sim.bodies.iter_mut().zip(&held) {
+        let count = held.iter().flatten().count();
+        if body.offers(Offer::Supports) && count > 0 && count < held.len() {
+            place_body(body, held, &shapes);
+        }
+    }
+}
+
+fn place_body(body: &mut BodyPlan, held: &[Option<usize>], shapes: &[Box<dyn Region>]) {
+    let of = |is_held: bool| (0..held.len() as u32).filter(move |k| held[*k as usize].is_some() == is_held);
+    let place = |k: u32| body.sites[k as usize].position;
+    let (inside, outside): (Vec<u32>, Vec<u32>) = (of(true).collect(), of(false).collect());
+    let [targets, sources] = [&inside, &outside].map(|all| all.iter().map(|&k| place(k)).collect::<Vec<_>>());
+    let reach = body.support.unwrap_or(USUAL_SUPPORT * body.spacing);
+    let mut list = NeighborList::default();
+    let cloud = |places| Cloud::uniform(places, reach);
+    let found =
+        NeighborSearch::default().between(cloud(&targets), cloud(&sources), 0.0, &Periodic::NONE, &mut list);
+    if found.is_err() {
+        return;
+    }
+    let mut moves = Vec::new();
+    for (row, &k) in inside.iter().enumerate().filter(|(row, _)| !list.row(*row).is_empty()) {
+        let region = &*shapes[held[k as usize].unwrap_or_default()];
+        let others = list.row(row).iter().map(|&other| sources[other as usize]);
+        let way = way_to_edge(targets[row], others, region, body.spacing);
+        let carried = way.map_or(0.0, |way| (0.5 - way.length() / body.spacing).max(0.0));
+        body.carried.push((k, carried));
+        moves.push((k, way.unwrap_or_default().clamp_length_max(FARTHEST * body.spacing)));
+    }
+    for (k, way) in moves {
+        body.sites[k as usize].position += INSIDE * way;
+    }
+}
+
+/// From a held particle to the edge of what is held, m; none if no other particle is beside it.
+///
+/// The edge is the plane through the places where the ways to the nearest of the others leave the shape.
+fn way_to_edge(
+    x: DVec3,
+    others: impl Iterator<Item = DVec3> + Clone,
+    region: &dyn Region,
+    spacing: f64,
+) -> Option<DVec3> {
+    let nearest = others.clone().map(|other| other.distance(x)).fold(f64::INFINITY, f64::min);
+    if nearest > BESIDE * spacing {
+        return None;
+    }
+    let near = others.filter(|other| other.distance(x) < AS_NEAR * nearest);
+    // n/|n|^2 with n = sum e_k/a_k is the foot of x on the plane through x + a_k e_k, for directions e_k at right angles.
+    let normal: DVec3 = near.map(|other| (other - x).normalize() / distance_to_edge(x, other, region)).sum();
+    let way = normal / normal.length_squared();
+    (way.is_finite() && way.length() < nearest).then_some(way)
+}
+
+/// How far from x, inside of a region, towards a place outside of it the region ends, m.
+fn distance_to_edge(x: DVec3, outside: DVec3, region: &dyn Region) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if region.contains(x.lerp(outside, middle)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    (high * x.distance(outside)).max(1e-9 * x.distance(outside))
+}
