@@ -28,8 +28,8 @@ pub(in crate::formulations) struct BodyKernel {
 pub(in crate::formulations) trait BondedRows: SolidPhase {
     /// Neighbours and weights.
     fn bonds(&self) -> &Bonds;
-    /// Place in the configuration of the weights, volume and displacement of every row.
-    fn sites(&self) -> &[Site];
+    /// Original place, volume in the configuration of the weights, and displacement since the start of every row.
+    fn pair_sites(&self) -> &[Site];
     /// Kernel of every body.
     fn kernels(&self) -> &[BodyKernel];
 }
@@ -67,7 +67,7 @@ impl<R: BondedRows> PairSource for BondPairs<R> {
         run(&BodyPairs {
             bonds: packed.bonds(),
             ghosts: packed.ghosts(),
-            sites: packed.sites(),
+            sites: packed.pair_sites(),
             support: &support,
             uniform: *uniform,
             velocity: velocity.as_deref(),

@@ -69,7 +69,7 @@ impl BondedRows for PackedRows {
         &self.bonds
     }
 
-    fn sites(&self) -> &[Site] {
+    fn pair_sites(&self) -> &[Site] {
         &self.sites
     }
 

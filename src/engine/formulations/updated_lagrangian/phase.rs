@@ -101,7 +101,7 @@ impl BondedRows for UpdatedRows {
         &self.bonds
     }
 
-    fn sites(&self) -> &[Site] {
+    fn pair_sites(&self) -> &[Site] {
         &self.pair_sites
     }
 
