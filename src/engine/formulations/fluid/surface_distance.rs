@@ -36,6 +36,20 @@ pub(super) struct Place {
 }
 
 impl Shape {
+    /// How far the body has moved if all of its particles have moved alike, m.
+    pub fn shift(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<DVec3> {
+        let mut moved =
+            self.group.cloud.clone().zip(reference).map(|(j, x)| cloud.records[j].position() - x.0);
+        let first = moved.next()?;
+        let margin = 1e-9 * self.spacing;
+        moved.all(|next| (next - first).abs().max_element() <= margin).then_some(first)
+    }
+
+    /// Whether particle `i` is farther than `range`, m, from a body that has moved by `shift`, m.
+    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, shift: DVec3) -> bool {
+        self.distance(cloud, cloud.records[i].position() - shift) >= range
+    }
+
     /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its particles in the scene.
     pub fn place(&self, cloud: &FlowCloud, i: usize, reference: &[ReferencePosition]) -> Option<Place> {
         let row = part(cloud.near.row(i), &self.group.cloud);
