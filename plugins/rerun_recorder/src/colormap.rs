@@ -16,6 +16,8 @@ pub enum Colormap {
     Turbo,
     /// Blue to red through grey: zero is in the middle (K. Moreland, 2009).
     CoolWarm,
+    /// Light blue to light red through black: zero is in the middle, and stands out from a light background (F. Crameri, 2018).
+    Berlin,
 }
 
 const POINTS: usize = 18;
@@ -30,6 +32,7 @@ impl Colormap {
             Self::Inferno => &INFERNO,
             Self::Turbo => &TURBO,
             Self::CoolWarm => &COOL_WARM,
+            Self::Berlin => &BERLIN,
         };
         let place = fraction.clamp(0.0, 1.0) * (POINTS - 1) as f64;
         let k = (place as usize).min(POINTS - 2);
@@ -69,6 +72,13 @@ const COOL_WARM: Table = [
     [247, 170, 140], [243, 148, 117], [233, 122, 95], [220, 93, 74], [202, 59, 55], [180, 4, 38],
 ];
 
+#[rustfmt::skip]
+const BERLIN: Table = [
+    [158, 176, 255], [123, 172, 238], [86, 162, 215], [57, 139, 180], [43, 111, 143], [32, 84, 108],
+    [23, 58, 75], [17, 35, 44], [18, 18, 20], [33, 11, 3], [51, 15, 0], [72, 21, 2],
+    [99, 33, 12], [132, 57, 36], [162, 85, 68], [192, 113, 101], [223, 143, 137], [255, 173, 173],
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,5 +101,14 @@ mod tests {
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
         assert!((0..50).all(|k| light(k + 1) > light(k)));
+    }
+
+    #[test]
+    fn the_middle_of_the_map_of_signed_values_stands_out_from_the_background_and_from_plain_bodies() {
+        let light =
+            |[r, g, b]: [u8; 3]| 0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b);
+        let background = light([236, 238, 241]);
+        assert!(background - light(Colormap::CoolWarm.color(0.5)) < 30.0, "it vanishes there");
+        assert!(background - light(Colormap::Berlin.color(0.5)) > 150.0);
     }
 }

@@ -22,13 +22,17 @@ pub struct RerunRecorder {
     /// Default: the first of `record.fields`, else `"velocity"`.
     pub color_by: Option<String>,
     /// Values at the two ends of the colour scale, in the unit of the field. Default: round values around those of all
-    /// frames so far, so that the scale only grows; one particle in two hundred may lie outside at either end.
+    /// frames so far, so that the scale only grows; one particle in two hundred may lie outside at either end, and what a single frame
+    /// alone has reached, such as an impact.
     pub range: Option<(f64, f64)>,
-    /// Colour map. Default: `Viridis`, or `CoolWarm` where the values lie on both sides of zero.
+    /// Colour map. Default: `Viridis`, or `Berlin` where the values lie on both sides of zero.
     pub colormap: Option<Colormap>,
     /// Bodies drawn in grey, whatever their field, and left out of the range. Default: the walls, so that a fluid can be told from
-    /// its tank. In three dimensions they are dots, so that one sees into it.
+    /// its tank. In three dimensions they are dots, so that one sees into it; so are bodies that do not have the field, such as rigid tools
+    /// beside stresses.
     pub grey: Option<Vec<String>>,
+    /// Dots where the particles were in the first frame. Default: false.
+    pub undeformed: bool,
     /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
     pub radius_scale: f64,
     /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written all the same.
@@ -37,7 +41,15 @@ pub struct RerunRecorder {
 
 impl Default for RerunRecorder {
     fn default() -> Self {
-        Self { color_by: None, range: None, colormap: None, grey: None, radius_scale: 1.0, connect: None }
+        Self {
+            color_by: None,
+            range: None,
+            colormap: None,
+            grey: None,
+            undeformed: false,
+            radius_scale: 1.0,
+            connect: None,
+        }
     }
 }
 
@@ -81,15 +93,15 @@ impl RerunRecorder {
         {
             return Err(SetupError::parameter(
                 "range",
-                format!("`range` goes from {low} to {high}"),
-                "give two finite numbers, the smaller one first",
+                format!("the lower end of `range` must be below the upper one, found ({low}, {high})"),
+                "give two finite numbers, the smaller first",
             ));
         }
         if !(self.radius_scale > 0.0 && self.radius_scale.is_finite()) {
             return Err(SetupError::parameter(
                 "radius_scale",
-                format!("`radius_scale` is {}", self.radius_scale),
-                "give a number above zero; 1 lets neighbouring particles just touch",
+                format!("`radius_scale` must be positive, found {}", self.radius_scale),
+                "1 lets neighbouring particles just touch",
             ));
         }
         if let Some(text) = &self.connect

@@ -61,17 +61,20 @@ const OUTSIDE: f64 = 0.005;
 pub struct RunningScale {
     fixed: Option<ColorScale>,
     seen: Option<(f64, f64)>,
+    /// Ends of the values of the last frame.
+    last: Option<(f64, f64)>,
 }
 
 impl RunningScale {
     /// A scale with given ends, or one that grows with the values.
     pub fn new(range: Option<(f64, f64)>) -> Self {
         let fixed = range.map(|(low, high)| ColorScale { low, high, diverging: low == -high });
-        Self { fixed, seen: None }
+        Self { fixed, seen: None, last: None }
     }
 
     /// The scale for a frame with these values. An automatic scale only grows, so that a colour means the same in
-    /// all frames from the one with the largest values on.
+    /// all frames from the one with the largest values on; it grows to what two frames in a row have reached, so that one impact does not take the
+    /// colours from all the rest.
     pub fn update(&mut self, values: &mut Vec<f64>) -> ColorScale {
         if let Some(fixed) = self.fixed {
             return fixed;
@@ -82,7 +85,9 @@ impl RunningScale {
             let outside = (OUTSIDE * last as f64) as usize;
             let min = *values.select_nth_unstable_by(outside, f64::total_cmp).1;
             let max = *values.select_nth_unstable_by(last - outside, f64::total_cmp).1;
-            self.seen = Some(self.seen.map_or((min, max), |(low, high)| (low.min(min), high.max(max))));
+            let last = self.last.replace((min, max)).unwrap_or((min, max));
+            let held = (last.0.max(min), last.1.min(max));
+            self.seen = Some(self.seen.map_or(held, |(low, high)| (low.min(held.0), high.max(held.1))));
         }
         self.seen.map_or_else(ColorScale::default, |(min, max)| ColorScale::around(min, max))
     }
@@ -118,6 +123,14 @@ mod tests {
         assert_eq!((first.low, first.high), (0.0, 1000.0));
         assert_eq!(scale.update(&mut vec![0.0, 1.0]), first);
         assert_eq!(scale.update(&mut Vec::new()), first);
+    }
+
+    #[test]
+    fn an_impact_of_one_frame_does_not_widen_the_scale() {
+        let mut scale = RunningScale::new(None);
+        let mut ends = |most: f64| scale.update(&mut vec![0.0, most]).high;
+        assert_eq!([ends(10.0), ends(1000.0), ends(8.0), ends(10.0)], [10.0; 4]);
+        assert_eq!([ends(100.0), ends(200.0), ends(200.0)], [10.0, 100.0, 200.0]);
     }
 
     #[test]

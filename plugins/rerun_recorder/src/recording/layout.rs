@@ -28,8 +28,10 @@ pub struct Layout {
     pub up: [f64; 3],
     /// The bodies by name.
     pub bodies: Vec<String>,
-    /// What the colours mean: name and unit of the field, if there is one.
-    pub colors: Option<(String, String)>,
+    /// What the colours mean: name of the field, if there is one.
+    pub colors: Option<String>,
+    /// Whether the particles of the first frame are shown, too.
+    pub undeformed: bool,
     /// Simulated time, s.
     pub duration: f64,
 }
@@ -67,7 +69,7 @@ impl Layout {
         )?;
         let notes = blueprint.view(View::Text, "Notes", &[only(&paths::notes())], &[])?;
         let tabs = blueprint.tabs(&[scene, text, notes])?;
-        let Some((field, unit)) = &self.colors else {
+        let Some(field) = &self.colors else {
             return blueprint.container(
                 ContainerKind::Vertical,
                 &tabs.map(|tile| (tile, 1.0)).into_iter().collect::<Vec<_>>(),
@@ -77,7 +79,7 @@ impl Layout {
         let bounds = VisualBounds2D::new(Visible2D(Range2D { x_range: x.into(), y_range: y.into() }));
         let bar = blueprint.view(
             View::Plane,
-            &format!("{field} [{unit}]"),
+            &legend::title(field),
             &[with_children(&paths::legend())],
             &[("Background", &background), ("VisualBounds2D", &bounds)],
         )?;
@@ -99,7 +101,10 @@ impl Layout {
             .with_look_target(Position3D::from(single(eye.target)))
             .with_eye_up(Vector3D::from(single(eye.up)));
         let grid = LineGrid3D::new().with_visible(false);
-        let contents: Vec<String> = self.bodies.iter().map(|body| only(&paths::body(body))).collect();
+        let mut contents: Vec<String> = self.bodies.iter().map(|body| only(&paths::body(body))).collect();
+        if self.undeformed {
+            contents.extend(self.bodies.iter().map(|body| only(&paths::undeformed(body))));
+        }
         blueprint.view(
             View::Space,
             &self.title,
@@ -111,8 +116,9 @@ impl Layout {
 
 fn plots(blueprint: &Blueprint, series: &SeriesTable) -> RecordingStreamResult<Vec<(Tile, f32)>> {
     // Runs mostly start from rest; where they end is of more interest.
-    let legend = PlotLegend::new().with_corner(Corner2D::LeftTop);
     let view = |plot: &Plot| {
+        // A single curve is named by the title.
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(plot.has_legend);
         let contents: Vec<String> =
             plot.include.iter().map(with_children).chain(plot.exclude.iter().map(without)).collect();
         blueprint.view(View::Plot, &plot.title, &contents, &[("PlotLegend", &legend)])

@@ -1,4 +1,4 @@
-//! The colour bar: a strip of the colours with five values under it.
+//! The colour bar: a strip of the colours with five values under it, and under these the extreme values with their places.
 
 use re_sdk_types::archetypes::{Image, Points2D};
 use re_sdk_types::components::Color;
@@ -16,10 +16,12 @@ pub const WIDTH: u32 = 512;
 const HEIGHT: u32 = 18;
 /// Where the values are.
 const TEXT_AT: f32 = 24.0;
+/// Where the extreme values are.
+const EXTREMES_AT: f32 = 48.0;
 /// Colour of the values: the viewer puts them on grey in its dark theme, on light grey in its light one.
 const LABEL: [u8; 3] = [18, 20, 24];
 /// The part of the plane that the view of the bar shows, x and y.
-pub const VISIBLE: [[f64; 2]; 2] = [[-40.0, WIDTH as f64 + 40.0], [-9.0, 58.0]];
+pub const VISIBLE: [[f64; 2]; 2] = [[-40.0, WIDTH as f64 + 40.0], [-9.0, 76.0]];
 
 /// A colour bar that is logged again only when it changes.
 pub struct Legend {
@@ -65,6 +67,40 @@ impl Legend {
             .with_radii([0.01f32]);
         output.log(&part("values"), &points)
     }
+}
+
+/// A value with the place of its particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// Value, in the unit of the field.
+    pub value: f64,
+    /// Position \[m\].
+    pub place: [f32; 3],
+}
+
+impl Legend {
+    /// Shows the least and the greatest value of a frame.
+    pub fn show_extremes(&self, output: &Output, ends: [Extreme; 2], axes: usize) -> Result<(), RerunError> {
+        let text = |name: &str, end: Extreme| {
+            let place: Vec<String> = end.place[..axes].iter().map(|x| short(f64::from(*x))).collect();
+            format!("{name} {} at ({}) m", with_unit(end.value, &self.unit), place.join(", "))
+        };
+        let labels = [text("minimum", ends[0]), text("maximum", ends[1])];
+        let at = [0.25, 0.75].map(|share| [share * WIDTH as f32, EXTREMES_AT]);
+        let points = Points2D::new(at)
+            .with_labels(labels)
+            .with_show_labels(true)
+            .with_colors([Color::from_rgb(LABEL[0], LABEL[1], LABEL[2])])
+            .with_radii([0.01f32]);
+        output.log(&part("extremes"), &points)
+    }
+}
+
+/// The name of a field as people write it: `von_mises` is the von Mises stress.
+pub fn title(field: &str) -> String {
+    let (base, component) = field.split_once('.').unwrap_or((field, ""));
+    let name = if base == "von_mises" { "von Mises stress".to_owned() } else { base.replace('_', " ") };
+    format!("{name} {component}").trim_end().to_owned()
 }
 
 fn part(name: &str) -> EntityPath {
@@ -118,6 +154,12 @@ fn trimmed(number: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fields_have_the_names_that_people_write() {
+        let names = ["von_mises", "stress.xy", "max_principal_stress", "velocity"].map(title);
+        assert_eq!(names, ["von Mises stress", "stress xy", "max principal stress", "velocity"]);
+    }
 
     #[test]
     fn values_are_written_short_and_with_the_customary_prefix() {

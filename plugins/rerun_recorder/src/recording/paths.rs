@@ -22,6 +22,11 @@ pub fn field(body: &str, name: &str) -> EntityPath {
     entity(["bodies", body, name])
 }
 
+/// Where the particles of a body were in the first frame.
+pub fn undeformed(body: &str) -> EntityPath {
+    entity(["bodies", body, "undeformed"])
+}
+
 /// A time series: `energy/kinetic`.
 pub fn series(name: &str) -> EntityPath {
     entity(name.split('/'))

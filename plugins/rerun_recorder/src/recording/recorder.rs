@@ -10,7 +10,7 @@ use super::camera::Bounds;
 use super::color_scale::{ColorScale, RunningScale};
 use super::error::RerunError;
 use super::layout::Layout;
-use super::legend::{Legend, short};
+use super::legend::{Extreme, Legend, short};
 use super::notes::Notes;
 use super::output::Output;
 use super::paths;
@@ -45,9 +45,10 @@ struct Open {
     notes: Notes,
 }
 
-/// Particles of a body that is grey or does not have the field of the colours.
-const PLAIN: [u8; 3] = [172, 178, 188];
-/// Share of their radius that particles of a grey body have in three dimensions, so that a tank does not hide its fluid.
+/// Particles of a body that is grey or does not have the field of the colours: a grey that no colour map has.
+const PLAIN: [u8; 3] = [122, 126, 132];
+/// Share of their radius that particles without colours have in three dimensions, so that a tank does not hide its fluid, nor a tool what it
+/// presses.
 const SEEN_THROUGH: f32 = 0.2;
 /// Particles whose value is not a number.
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
@@ -90,7 +91,8 @@ impl RerunFile {
                 dimension: run.dimension,
                 up: self.up,
                 bodies: bodies.clone(),
-                colors: colors.map(|field| (field.name.to_owned(), field.unit.to_owned())),
+                colors: colors.map(|field| field.name.to_owned()),
+                undeformed: self.settings.undeformed,
                 duration: run.end_time - run.start_time,
             },
             color_by: colors.map(|field| field.name.to_owned()),
@@ -98,7 +100,7 @@ impl RerunFile {
             in_view: None,
             enlargement: 1.0,
             legend: colors.map(|field| Legend::new(field.unit)),
-            series: SeriesTable::new(bodies, run.dimension, known.collect()),
+            series: SeriesTable::new(bodies, known.collect()),
             notes,
             output,
         });
@@ -113,6 +115,9 @@ impl RerunFile {
         match open.in_view {
             None => {
                 open.enlarge()?;
+                if self.settings.undeformed {
+                    open.show_undeformed(frame)?;
+                }
                 open.send_layout(false)?;
             }
             // A run that is killed shall leave a file that opens right, too.
@@ -125,7 +130,7 @@ impl RerunFile {
         let colored = frame.bodies.iter().filter(|body| has_color(body));
         let mut all: Vec<f64> = colored.flat_map(|body| values(body, color_by)).copied().collect();
         let scale = self.scale.update(&mut all);
-        let automatic = if scale.diverging { Colormap::CoolWarm } else { Colormap::Viridis };
+        let automatic = if scale.diverging { Colormap::Berlin } else { Colormap::Viridis };
         let map = self.settings.colormap.unwrap_or(automatic);
         if let Some(legend) = &mut open.legend {
             // Rounding is not a value outside.
@@ -135,10 +140,13 @@ impl RerunFile {
                 all.iter().any(|&value| value > scale.high + slack),
             ];
             legend.show(&open.output, scale, map, beyond)?;
+            if let Some(ends) = extremes(frame, color_by, has_color) {
+                legend.show_extremes(&open.output, ends, open.layout.dimension.count())?;
+            }
         }
         for body in frame.bodies {
             let shown = if has_color(body) { values(body, color_by) } else { &[] };
-            let size = if open.layout.dimension == Dimension::Three && !has_color(body) {
+            let size = if open.layout.dimension == Dimension::Three && shown.is_empty() {
                 SEEN_THROUGH
             } else {
                 1.0
@@ -161,6 +169,31 @@ impl RerunFile {
 /// The values of a field of a body; nothing if the body does not have it.
 fn values<'a>(body: &BodyFrame<'a>, name: &str) -> &'a [f64] {
     body.fields.iter().find(|field| field.name == name).map_or(&[], |field| field.values)
+}
+
+/// The least and the greatest value of the coloured bodies, with their places.
+fn extremes(
+    frame: &Frame<'_>,
+    color_by: &str,
+    has_color: impl Fn(&BodyFrame<'_>) -> bool,
+) -> Option<[Extreme; 2]> {
+    let mut found: Option<[Extreme; 2]> = None;
+    for body in frame.bodies.iter().filter(|body| has_color(body)) {
+        for (value, place) in values(body, color_by).iter().zip(body.positions) {
+            if value.is_nan() {
+                continue;
+            }
+            let here = Extreme { value: *value, place: *place };
+            let [least, greatest] = found.get_or_insert([here; 2]);
+            if here.value < least.value {
+                *least = here;
+            }
+            if here.value > greatest.value {
+                *greatest = here;
+            }
+        }
+    }
+    found
 }
 
 fn file_name(scene_name: &str) -> String {
@@ -190,6 +223,17 @@ fn axes(up: [f64; 3]) -> ViewCoordinates {
 }
 
 impl Open {
+    /// Shows the particles of the first frame for good, as dots.
+    fn show_undeformed(&self, frame: &Frame<'_>) -> Result<(), RerunError> {
+        for body in frame.bodies {
+            let points = Points3D::new(body.positions.iter().copied())
+                .with_colors([Color::from_rgb(60, 62, 66)])
+                .with_radii([Radius::from(0.5 * SEEN_THROUGH * body.radius)]);
+            self.output.log_static(&paths::undeformed(body.name), &points)?;
+        }
+        Ok(())
+    }
+
     /// Decides how large the bodies are drawn.
     fn enlarge(&mut self) -> Result<(), RerunError> {
         self.enlargement = self.bounds.enlargement();
@@ -235,7 +279,7 @@ impl Recorder for RerunFile {
 
     fn flush(&mut self) -> Result<(), RecordError> {
         let open = self.open.as_mut().ok_or(RerunError::NotOpen)?;
-        open.series.send(&open.output)?;
+        open.series.send_if_due(&open.output)?;
         Ok(open.output.flush()?)
     }
 

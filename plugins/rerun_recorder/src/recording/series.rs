@@ -7,7 +7,6 @@ use re_sdk_types::components::{Color, Name, StrokeWidth};
 use rerun::EntityPath;
 
 use meshless_engine::record::Sample;
-use meshless_engine::scene::Dimension;
 
 use super::error::RerunError;
 use super::output::{Output, TimedValue};
@@ -22,21 +21,34 @@ pub struct Plot {
     pub include: Vec<EntityPath>,
     /// What is not drawn of these.
     pub exclude: Vec<EntityPath>,
+    /// Whether the curves need names.
+    pub has_legend: bool,
 }
 
 /// The time series that a run has.
 #[derive(Clone, Debug)]
 pub struct SeriesTable {
     bodies: Vec<String>,
-    dimension: Dimension,
     known: Vec<(String, String)>,
     /// What has come since the last time that it was sent, series by series: one piece costs little more than one value.
     pending: BTreeMap<String, Vec<TimedValue>>,
     /// Accounts that have been nothing but zero.
     idle: BTreeSet<String>,
+    /// Largest magnitude of each account.
+    largest: BTreeMap<String, f64>,
     /// Whether the run is over, so that what is idle stays so.
     over: bool,
+    /// Values of the longest series that have been sent.
+    sent: usize,
 }
+
+/// Share of the largest account of a plot, below which an account is drawn in the plot of all accounts only.
+const MINOR: f64 = 0.01;
+/// Curves in one plot of probes, at most: the entries of a legend that is longer cannot be reached.
+const MOST_CURVES: usize = 8;
+
+/// Values that have been sent over those that are sent next, at most: a recording that is cut short may lack the last of so many parts of its curves.
+const PIECES: usize = 100;
 
 /// Values of a series that are held back at most.
 const MOST_PENDING: usize = 1000;
@@ -57,8 +69,16 @@ const COLORS: [[u8; 3]; 10] = [
 
 impl SeriesTable {
     /// The series known at the start, with their units, of a run with these bodies.
-    pub fn new(bodies: Vec<String>, dimension: Dimension, known: Vec<(String, String)>) -> Self {
-        Self { bodies, dimension, known, pending: BTreeMap::new(), idle: BTreeSet::new(), over: false }
+    pub fn new(bodies: Vec<String>, known: Vec<(String, String)>) -> Self {
+        Self {
+            bodies,
+            known,
+            pending: BTreeMap::new(),
+            idle: BTreeSet::new(),
+            largest: BTreeMap::new(),
+            over: false,
+            sent: 0,
+        }
     }
 
     /// Takes values of a step and time, s, to be sent with the others of their series.
@@ -73,6 +93,11 @@ impl SeriesTable {
             let value = TimedValue { step, time, value: sample.value };
             if sample.value != 0.0 {
                 self.idle.remove(sample.name);
+            }
+            if let Some(largest) = self.largest.get_mut(sample.name) {
+                *largest = largest.max(sample.value.abs());
+            } else if sample.name.starts_with("energy/") && !sample.name.ends_with("error") {
+                self.largest.insert(sample.name.to_owned(), sample.value.abs());
             }
             if let Some(values) = self.pending.get_mut(sample.name) {
                 values.push(value);
@@ -92,8 +117,19 @@ impl SeriesTable {
         if most < MOST_PENDING { Ok(()) } else { self.send(output) }
     }
 
+    /// Sends what has been taken if that is a good part of all: each piece leaves an entry in the index of the recording, which is kept in
+    /// memory, so that their number may grow with the logarithm of the run only.
+    pub fn send_if_due(&mut self, output: &Output) -> Result<(), RerunError> {
+        if self.longest_pending() * PIECES < self.sent { Ok(()) } else { self.send(output) }
+    }
+
+    fn longest_pending(&self) -> usize {
+        self.pending.values().map(Vec::len).max().unwrap_or(0)
+    }
+
     /// Sends what has been taken.
     pub fn send(&mut self, output: &Output) -> Result<(), RerunError> {
+        self.sent += self.longest_pending();
         for (name, values) in self.pending.iter_mut().filter(|(_, values)| !values.is_empty()) {
             output.send_series(&paths::series(name), values)?;
             values.clear();
@@ -106,7 +142,18 @@ impl SeriesTable {
         self.over = true;
     }
 
-    /// The accounts that are not drawn.
+    /// The accounts that are not drawn among those that matter: below a share of the largest of their group, once the run is over.
+    fn minor(&self) -> Vec<EntityPath> {
+        let largest_of = |group: &Group| {
+            let members = self.largest.iter().filter(|(name, _)| self.group(name) == *group);
+            members.map(|(_, largest)| *largest).fold(0.0, f64::max)
+        };
+        let is_minor = |(name, largest): &(&String, &f64)| **largest < MINOR * largest_of(&self.group(name));
+        let known = self.largest.iter().filter(|_| self.over);
+        known.filter(is_minor).map(|(name, _)| paths::series(name)).collect()
+    }
+
+    /// The accounts that are not drawn at all.
     fn hidden(&self) -> impl Iterator<Item = EntityPath> {
         self.idle.iter().filter(|_| self.over).map(|name| paths::series(name))
     }
@@ -164,20 +211,30 @@ impl SeriesTable {
     pub fn energies(&self) -> Vec<Plot> {
         let body_paths = self.bodies.iter().map(|body| paths::entity(["energy", body]));
         let errors = self.groups().into_iter().filter(|group| matches!(group, Group::Error(_)));
-        let exclude: Vec<EntityPath> =
+        let others: Vec<EntityPath> =
             body_paths.chain(errors.flat_map(|group| self.names(&group))).chain(self.hidden()).collect();
+        let minor = self.minor();
         // An account that opens while the run goes on belongs here, too.
-        let all = Plot { title: "Energies [J]".to_owned(), include: vec![paths::series("energy")], exclude };
+        let energies = |title: &str, exclude: Vec<EntityPath>| Plot {
+            title: title.to_owned(),
+            include: vec![paths::series("energy")],
+            exclude,
+            has_legend: true,
+        };
         let mut plots = Vec::new();
         if self.known.iter().any(|(name, _)| name.starts_with("energy/")) {
-            plots.push(all);
+            plots.push(energies("Energies [J]", others.iter().chain(&minor).cloned().collect()));
         }
         if self.bodies.len() > 1 {
             plots.extend(self.bodies.iter().filter(|body| self.has_energies(body)).map(|body| Plot {
                 title: format!("{body} [J]"),
                 include: vec![paths::entity(["energy", body])],
-                exclude: self.hidden().collect(),
+                exclude: self.hidden().chain(minor.iter().cloned()).collect(),
+                has_legend: true,
             }));
+        }
+        if !minor.is_empty() {
+            plots.push(energies("All accounts [J]", others));
         }
         plots
     }
@@ -206,11 +263,8 @@ impl SeriesTable {
         errors.into_iter().map(|(group, title)| self.plot(&group, title)).collect()
     }
 
-    /// Probes, one plot for each unit; in a plane scene without the components across the plane, which are zero.
+    /// Probes, one plot for each unit, or several where the legend would be too long.
     pub fn probes(&self) -> Vec<Plot> {
-        let across = |path: &EntityPath| {
-            self.dimension == Dimension::Two && path.last().is_some_and(|part| part.unescaped_str() == "z")
-        };
         let groups = self.groups().into_iter().filter_map(|group| match &group {
             Group::Probe(unit) => {
                 let title = if unit == "1" { "Probes".to_owned() } else { format!("Probes [{unit}]") };
@@ -218,14 +272,28 @@ impl SeriesTable {
             }
             _ => None,
         });
-        let mut plots: Vec<Plot> = groups.map(|(group, title)| self.plot(&group, title)).collect();
-        plots.iter_mut().for_each(|plot| plot.include.retain(|path| !across(path)));
-        plots
+        groups.flat_map(|(group, title)| parts(self.plot(&group, title))).collect()
     }
 
     fn plot(&self, group: &Group, title: String) -> Plot {
-        Plot { title, include: self.names(group), exclude: Vec::new() }
+        let include = self.names(group);
+        Plot { title, has_legend: include.len() > 1, include, exclude: Vec::new() }
     }
+}
+
+/// A plot in as many parts as it takes to keep their legends short.
+fn parts(plot: Plot) -> Vec<Plot> {
+    let count = plot.include.len().div_ceil(MOST_CURVES);
+    if count <= 1 {
+        return vec![plot];
+    }
+    let part = |(k, include): (usize, &[EntityPath])| Plot {
+        title: format!("{} ({} of {count})", plot.title, k + 1),
+        include: include.to_vec(),
+        exclude: Vec::new(),
+        has_legend: true,
+    };
+    plot.include.chunks(MOST_CURVES).enumerate().map(part).collect()
 }
 
 /// What is drawn together.
@@ -250,7 +318,6 @@ mod tests {
         let owned = |(name, unit): &(&str, &str)| ((*name).to_owned(), (*unit).to_owned());
         SeriesTable::new(
             bodies.iter().map(|body| (*body).to_owned()).collect(),
-            Dimension::Two,
             known.iter().map(owned).collect(),
         )
     }
@@ -268,7 +335,6 @@ mod tests {
                 ("probe/tip/x", "m"),
                 ("probe/reaction/x", "N"),
                 ("probe/tip/y", "m"),
-                ("probe/tip/z", "m"),
             ],
         );
         let titles = |plots: Vec<Plot>| plots.into_iter().map(|plot| plot.title).collect::<Vec<_>>();
@@ -303,6 +369,51 @@ mod tests {
         assert!(excluded.contains(&friction));
         assert!(!excluded.contains(&paths::series("energy/kinetic")));
         assert!(!excluded.contains(&paths::series("energy/gravity")));
+    }
+
+    #[test]
+    fn accounts_that_hardly_matter_are_drawn_in_a_plot_of_their_own_in_the_end() {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = output.expect("a recording");
+        let names = ["energy/kinetic", "energy/hourglass"];
+        let mut table = table(&["plate"], &names.map(|name| (name, "J")));
+        let samples = [1.0, 0.001].iter().zip(names).map(|(&value, name)| Sample { name, unit: "J", value });
+        table.take(&output, (0, 0.0), &samples.collect::<Vec<_>>()).expect("they are taken");
+        table.finish();
+        let plots = table.energies();
+        let hourglass = paths::series("energy/hourglass");
+        assert!(plots[0].exclude.contains(&hourglass));
+        let all = plots.last().expect("a plot");
+        assert!(all.title == "All accounts [J]" && !all.exclude.contains(&hourglass));
+    }
+
+    #[test]
+    fn curves_go_out_in_pieces_whose_number_grows_slowly() {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = output.expect("a recording");
+        let mut table = table(&["plate"], &[("probe/tip", "m")]);
+        let mut pieces = 0;
+        for step in 0..10_000 {
+            let sample = Sample { name: "probe/tip", unit: "m", value: 1.0 };
+            table.take(&output, (step, step as f64), &[sample]).expect("they are taken");
+            let before = table.sent;
+            table.send_if_due(&output).expect("they are sent");
+            pieces += usize::from(table.sent > before);
+        }
+        // One for each of the first hundred, then ever fewer: 100 (1 + ln 100) or so.
+        assert!(pieces > 400 && pieces < 600, "{pieces}");
+        assert!(table.longest_pending() <= 100);
+    }
+
+    #[test]
+    fn many_probes_of_one_unit_are_drawn_in_several_plots() {
+        let names: Vec<String> = (0..20).map(|k| format!("probe/line/at {k}")).collect();
+        let known: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "Pa")).collect();
+        let plots = table(&["plate"], &known).probes();
+        assert_eq!(plots.iter().map(|plot| plot.include.len()).collect::<Vec<_>>(), [8, 8, 4]);
+        assert_eq!(plots[2].title, "Probes [Pa] (3 of 3)");
     }
 
     #[test]
