@@ -25,6 +25,7 @@ const PLUGINS: &[(&str, Of, [&str; 2])] = &[
     ("xsph", Of::Fluids, ["", "epsilon: 0.2"]),
     ("hourglass_control", Of::Solids, ["", "form: Combined"]),
     ("hourglass_control", Of::Solids, ["form: Viscous", "form: Ganzenmueller2015"]),
+    ("hessian_stabilization", Of::Solids, ["", "eta: 0.6, form: Vidal2007"]),
     (
         "failure",
         Of::Solids,

@@ -47,13 +47,15 @@ pub fn exit_code(signal: u8) -> u8 {
     128 + signal
 }
 
-/// Calls `then` with the number of each signal to stop, on a thread of its own. A signal that the program was started to ignore, as
-/// `nohup` starts it, stays ignored.
+/// Calls `then` with the number of each signal to stop, on a thread of its own. A closed terminal that the program was started to ignore, as
+/// `nohup` starts it, stays ignored; Ctrl-C is heard by programs that a script started in the background, too.
 #[cfg(unix)]
 fn listen(then: fn(u8)) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let ignored = ignored();
-    let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut heard = vec![SIGINT, SIGTERM];
+    if ignored() >> (SIGHUP - 1) & 1 == 0 {
+        heard.push(SIGHUP);
+    }
     let mut signals = signal_hook::iterator::Signals::new(heard)?;
     std::thread::Builder::new().name("signals".to_owned()).spawn(move || {
         for signal in signals.forever() {

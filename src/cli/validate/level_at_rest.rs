@@ -19,7 +19,7 @@ pub(super) const CASE: Case = Case {
 
 /// Area of the water over the length of the tank, m.
 const LEVEL: f64 = 0.2;
-/// Fineness over which the run has its whole length, and the end of shorter ones, s.
+/// Fineness over which a run in three dimensions has its whole length, and the end of shorter ones, s.
 const FINE: usize = 20;
 const SHORT: f64 = 6.0;
 const SHIFTED: &str =
@@ -58,7 +58,7 @@ fn settle(registry: &Registry, across: usize, solid: bool, shifted: bool) -> Res
     if shifted {
         template = template.set("bodies.water.plugins", SHIFTED)?;
     }
-    if across < FINE {
+    if solid && across < FINE {
         template = template.set("time.end", SHORT)?;
     }
     let mut simulation = template.build(registry)?;

@@ -111,7 +111,9 @@ fn homogeneous_deformation_gives_the_closed_forms() {
     let mises = (0.5 * ((xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2)) + 3.0 * xy * xy).sqrt();
     let (mean, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     let stress = of("stress");
-    for (found, expected) in stress.iter().zip([xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, zz]) {
+    // In the plane the columns are xx, xy, yx, yy, zz.
+    assert_eq!(stress.len(), 5);
+    for (found, expected) in stress.iter().zip([xx, xy, xy, yy, zz]) {
         assert_close(*found, expected, YOUNG, "stress");
     }
     assert_close(of("von_mises")[0], mises, YOUNG, "von_mises");
@@ -136,7 +138,7 @@ fn homogeneous_deformation_gives_the_closed_forms() {
     assert_close(of("volume_ratio")[0], j, 1.0, "volume_ratio");
     assert_close(of("deformation_gradient.xy")[0], 0.2, 1.0, "F_xy");
     let at = DVec3::new(0.035, 0.025, 0.0);
-    for k in 0..3 {
+    for k in 0..2 {
         assert_close(of("displacement")[k], (place(at) - at)[k], 1.0, "displacement");
     }
     assert_close(of("speed")[0], 5.0, 5.0, "speed");

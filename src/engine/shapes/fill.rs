@@ -62,6 +62,11 @@ pub fn fill(
     let filling = Filling { lattice, dimension, folder, limit: limit.min(u32::MAX as usize) };
     let sites = filling.sites(shape, spacing, "shape")?;
     let positions: Vec<DVec3> = sites.iter().map(|site| site.position).collect();
+    // A turn or a shift of what is very far away may leave the range of numbers.
+    if let Some(lost) = positions.iter().find(|position| !position.is_finite()) {
+        let lost = lost.to_array().into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
+        return Err(FillError::new("shape", FillErrorKind::NotFinite(lost)));
+    }
     Ok(morton_order(&positions, spacing).into_iter().map(|n| sites[n as usize]).collect())
 }
 

@@ -282,6 +282,12 @@ fn endless_relaxation_is_refused() {
     assert_eq!(error.to_string(), "lattice.iterations: expected at most 1000 iterations, found 4294967295");
 }
 
+#[test]
+fn a_turn_that_leaves_the_range_of_numbers_is_an_error() {
+    let text = "Rotate(shape: Sphere(center: (1.7976931348623157e308, 1.7976931348623157e308, 0.0), radius: 1e16), axis: (0, 0, -1), angle_degrees: -1)";
+    assert!(fill(&shape(text), Lattice::Concentric, 1e16, Three, Path::new("."), 300).is_err());
+}
+
 /// Numbers that a slip of the finger or a wrong unit makes.
 const ODD: [f64; 12] =
     [0.0, -1.0, 1.0, 0.5, 2.0, 1e-3, 1e-320, 1e16, -1e200, f64::MAX, f64::INFINITY, f64::NAN];
