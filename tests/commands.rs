@@ -57,6 +57,28 @@ fn wait_for(file: &Path) {
     panic!("the run has not begun");
 }
 
+#[test]
+fn a_check_reviews_bodies_by_what_they_are() {
+    let folder = folder();
+    let check = |body: &str| {
+        let text = SCENE
+            .replace("formulation: TotalLagrangian", body)
+            .replace("conditions: [Fix(on: Select(face: MinX))],", "");
+        let text = text.replace("materials: {", "materials: {\"steel\": Steel, ");
+        std::fs::write(folder.path().join("body.ron"), text).expect("a scene");
+        let output = meshless(folder.path(), &["check", "body.ron"]);
+        assert!(output.status.success(), "{}", err(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian()", "Eulerian()"] {
+        let notes = check(&format!("formulation: {formulation}"));
+        assert!(notes.contains("body `beam` has no `hourglass_control`"), "{formulation}: {notes}");
+    }
+    let rigid = "formulation: Rigid()), Body(name: \"block\", material: \"steel\", shape: Box(min: (0.5, 0.0), max: (0.6, 0.1)), spacing: 0.01, formulation: Rigid()";
+    let notes = check(rigid);
+    assert!(!notes.contains("hourglass_control") && !notes.contains("plastic flow"), "{notes}");
+}
+
 #[cfg(unix)]
 #[test]
 fn the_exit_code_tells_the_signal_and_the_run_can_go_on() {

@@ -61,7 +61,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     let (scene, source) = arguments.scene.load()?;
     let mut sim = assembly::build(&scene, &source, registry)?;
     sim.start().map_err(|error| Failure::Run(error.to_string()))?;
-    let bodies = BodyReport::all(&scene, &sim)?;
+    let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
     let trial = Trial::run(&mut sim)?;
     let notes = review::notes(&bodies, &sim, &trial);

@@ -1,5 +1,6 @@
 //! What `check` tells of each body.
 
+use meshless_engine::plugin::{BodyKind, Registry};
 use meshless_engine::scene::{Dimension, Scene};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Mass, PlasticStrain, Position};
@@ -15,6 +16,9 @@ pub struct BodyReport {
     pub name: String,
     /// Formulation.
     pub formulation: String,
+    /// What it is: its formulation tells.
+    #[serde(skip)]
+    pub kind: Option<BodyKind>,
     /// Material.
     pub material: String,
     /// Number of particles.
@@ -38,11 +42,11 @@ pub struct BodyReport {
 
 impl BodyReport {
     /// Looks at all bodies.
-    pub fn all(scene: &Scene, sim: &Simulation) -> Result<Vec<Self>, Failure> {
-        (0..scene.bodies.len()).map(|k| Self::of(k, scene, sim)).collect()
+    pub fn all(scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Vec<Self>, Failure> {
+        (0..scene.bodies.len()).map(|k| Self::of(k, scene, sim, registry)).collect()
     }
 
-    fn of(k: usize, scene: &Scene, sim: &Simulation) -> Result<Self, Failure> {
+    fn of(k: usize, scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Self, Failure> {
         let (body, described) = (&sim.world().bodies()[k], &scene.bodies[k]);
         let failed = |error: meshless_engine::world::MissingColumn| Failure::Run(error.to_string());
         let (view, rows) = sim.world().body_view(BodyId(k));
@@ -61,17 +65,21 @@ impl BodyReport {
             (0..axes).map(side).fold(f64::INFINITY, f64::min)
         };
         let count = Neighbors::count(sim, BodyId(k))?;
+        let kind = registry.body_kind(described.formulation.name());
         let plugins = scene.plugins.iter().chain(&described.plugins);
         Ok(Self {
             name: body.name.clone(),
             formulation: described.formulation.name().to_owned(),
+            kind,
             material: body.material.clone(),
             particles: body.rows.len(),
             spacing: body.spacing,
             mass,
             sound_speed: sim.sound_speeds().get(k).copied().flatten(),
             across,
-            plastic: view.read::<PlasticStrain>().is_ok() && has_plasticity(scene, &body.material),
+            plastic: kind == Some(BodyKind::Solid)
+                && view.read::<PlasticStrain>().is_ok()
+                && has_plasticity(scene, &body.material),
             neighbours: count.map(|count| (count.mean, count.least, count.most)),
             plugins: plugins.map(|item| item.name().to_owned()).collect(),
         })

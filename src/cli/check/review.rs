@@ -1,6 +1,7 @@
 //! What a colleague would say of a scene before it is run.
 
 use meshless_engine::notation::{count, number};
+use meshless_engine::plugin::BodyKind;
 use meshless_engine::simulation::Simulation;
 
 use super::body::BodyReport;
@@ -38,22 +39,16 @@ fn of_body(body: &BodyReport) -> Vec<String> {
     let has = |plugin: &str| body.plugins.iter().any(|name| name == plugin);
     let name = &body.name;
     let mut notes = Vec::new();
-    match body.formulation.as_str() {
-        "TotalLagrangian" | "UpdatedLagrangian"
-            if !has("hourglass_control") && !has("hessian_stabilization") =>
-        {
-            notes.push(format!(
-                "body `{name}` has no `hourglass_control`: zero-energy modes can grow, above all under large strain"
-            ));
-        }
-        "Fluid" if !has("density_diffusion") => {
-            notes.push(format!("fluid `{name}` has no `density_diffusion`: its pressure will be noisy"))
-        }
-        _ => {}
+    let is_solid = body.kind == Some(BodyKind::Solid);
+    if is_solid && !has("hourglass_control") && !has("hessian_stabilization") {
+        notes.push(format!(
+            "body `{name}` has no `hourglass_control`: zero-energy modes can grow, above all under large strain"
+        ));
     }
-    if ["TotalLagrangian", "UpdatedLagrangian"].contains(&body.formulation.as_str())
-        && body.across < ACROSS - 0.5
-    {
+    if body.kind == Some(BodyKind::Fluid) && !has("density_diffusion") {
+        notes.push(format!("fluid `{name}` has no `density_diffusion`: its pressure will be noisy"));
+    }
+    if is_solid && body.across < ACROSS - 0.5 {
         notes.push(format!(
             "body `{name}` has {} particles across its smallest side: at least {} resolve its bending",
             number(body.across.round()),

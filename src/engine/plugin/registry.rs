@@ -129,6 +129,11 @@ impl Registry {
         self.describe::<F>(Kind::Formulation, F::NAME, F::REFERENCE)
     }
 
+    /// What a body of the formulation of that name is.
+    pub fn body_kind(&self, formulation: &str) -> Option<BodyKind> {
+        self.formulations.get(formulation).map(|entry| entry.kind)
+    }
+
     /// Registers a boundary or initial condition.
     pub fn condition<P: Plugin>(&mut self) -> &mut Self {
         self.plugins.insert((Kind::Condition, P::NAME), build_plugin::<P>);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
-use super::surface::{Facing, Surface, SurfacePoint};
+use super::surface::{Surface, SurfacePoint, closest_between};
 use crate::linalg::Sym3;
 
 /// The region between two concentric spheres.
@@ -42,10 +42,7 @@ impl Region for Shell {
 
 impl Surface for Shell {
     fn closest(&self, point: DVec3) -> SurfacePoint {
-        let arm = point - self.center;
-        let radial = arm.try_normalize().unwrap_or(DVec3::X);
-        let outer = Facing { normal: radial, distance: arm.length() - self.outer };
-        outer.outermost(Facing { normal: -radial, distance: self.inner - arm.length() }).foot(point)
+        closest_between(self.center, self.inner, self.outer, point)
     }
 
     fn moments(&self) -> Option<Moments> {

@@ -48,6 +48,14 @@ pub(super) fn circle(center: DVec3, axis: DVec3, radius: f64, piece: f64) -> Vec
     (0..parts).map(|k| [at(k), at(k + 1)]).collect()
 }
 
+/// The point nearest to `point` of the surface between two concentric circles or spheres.
+pub(super) fn closest_between(center: DVec3, inner: f64, outer: f64, point: DVec3) -> SurfacePoint {
+    let arm = point - center;
+    let radial = arm.try_normalize().unwrap_or(DVec3::X);
+    let outside = Facing { normal: radial, distance: arm.length() - outer };
+    outside.outermost(Facing { normal: -radial, distance: inner - arm.length() }).foot(point)
+}
+
 /// A face at a signed distance along its outward normal.
 #[derive(Clone, Copy)]
 pub(super) struct Facing {

@@ -28,6 +28,7 @@ mod phase;
 mod refit;
 mod stable_step;
 mod stretches;
+mod support;
 
 pub use bodies::{SolidBodies, SolidBody, SolidPart};
 pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};
@@ -41,3 +42,4 @@ pub use pairs::SolidPairs;
 pub use phase::SolidPhase;
 pub use refit::Refits;
 pub use stable_step::StepEstimate;
+pub use support::require_support;

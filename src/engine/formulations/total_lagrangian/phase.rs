@@ -46,17 +46,14 @@ impl PackedRows {
     pub fn fill_ghost_stresses(&mut self) {
         let Self { ghosts, frames, sites, stresses, hessian, .. } = self;
         ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
-            let signs = ghost.map.signs;
             // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
             let frame = &frames[frame_of(frames, ghost.source)];
             let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
-            let mut stress = CorrectedStress::default();
-            for (axis, column) in stress.columns.iter_mut().enumerate() {
-                let last = own.columns[axis].0[3];
-                let plain = own.columns[axis].xyz() - own.stiffness() * moved[axis];
-                // The last lane is no component of A: the bond stiffness keeps its sign.
-                *column = Lanes4::new(plain * signs * signs[axis], last);
+            let mut plain = *own;
+            for (column, moved) in plain.columns.iter_mut().zip(moved) {
+                *column = Lanes4::new(column.xyz() - own.stiffness() * moved, column.0[3]);
             }
+            let mut stress = plain.image(ghost.map);
             frame.complete(&mut stress, &sites[ghost.row]);
             stress.add_traction(-hessian.pull_of(ghost.row));
             stress

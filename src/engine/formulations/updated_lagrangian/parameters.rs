@@ -14,7 +14,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::SolidBodies;
+use crate::solids::{SolidBodies, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
@@ -126,18 +126,7 @@ impl Formulation for UpdatedLagrangian {
 
 impl UpdatedLagrangian {
     fn check(&self, spacing: f64) -> Result<(), SetupError> {
-        let fewest = 1.5;
-        if !(self.support.is_finite() && (fewest..=10.0).contains(&self.support)) {
-            return Err(SetupError::parameter(
-                "support",
-                format!(
-                    "`support` must be between {fewest} and 10 spacings, found {} ({} m)",
-                    self.support,
-                    self.support * spacing
-                ),
-                format!("{USUAL_SUPPORT} is usual"),
-            ));
-        }
+        require_support(self.support, USUAL_SUPPORT, spacing)?;
         match self.update {
             Update::Every(0) => Err(SetupError::parameter(
                 "update",

@@ -6,7 +6,6 @@ use crate::formulations::total_lagrangian::{
     BodyKernel, BondedRows, Bonds, Cracks, Frame, HessianRows, Site,
 };
 use crate::neighbors::NeighborSearch;
-use crate::parallel::Lanes4;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghost, Ghosts, Repeat};
 use crate::world::{Mobility, Velocity};
@@ -77,23 +76,14 @@ impl UpdatedRows {
         let Self { ghosts, frames, sites, stresses, control, has_control, .. } = self;
         let Some(frame) = frames.first() else { return };
         ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
-            let mut stress = mirrored(own, ghost.map.signs);
+            let mut stress = own.image(ghost.map);
             frame.complete(&mut stress, &sites[ghost.row]);
             stress
         });
         if *has_control {
-            ghosts.fill(control, |ghost, own: &CorrectedStress| mirrored(own, ghost.map.signs));
+            ghosts.fill(control, |ghost, own: &CorrectedStress| own.image(ghost.map));
         }
     }
-}
-
-/// The mirror image S A S of a corrected stress; the last lane is no component of A and keeps its sign.
-fn mirrored(own: &CorrectedStress, signs: DVec3) -> CorrectedStress {
-    let mut stress = *own;
-    for (axis, column) in stress.columns.iter_mut().enumerate() {
-        *column = Lanes4::new(own.columns[axis].xyz() * signs * signs[axis], own.columns[axis].0[3]);
-    }
-    stress
 }
 
 impl BondedRows for UpdatedRows {
