@@ -108,7 +108,7 @@ impl Progress {
         let clock = sim.clock();
         let limiter = sim.limit().map(|limit| format!(" ({})", limit.by)).unwrap_or_default();
         let short = match (sim.sub_steps(), sim.short_limit()) {
-            (Some((count, _)), Some(limit)) => format!(" = {count} sub-steps ({})", limit.by),
+            (Some((count, _)), Some(limit)) if count > 1 => format!(" = {count} sub-steps ({})", limit.by),
             _ => String::new(),
         };
         let done = clock.time - self.start.0;
