@@ -7,7 +7,9 @@ use meshless_engine::plugin::Registry;
 
 use super::failure::Failure;
 use super::text::unsaid;
-use super::{bench, check, completions, new, plugins, resume, schema, sweep, validate, version, view};
+use super::{
+    bench, check, completions, new, picture, plugins, resume, schema, sweep, validate, version, view,
+};
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
 #[derive(Parser)]
@@ -29,6 +31,7 @@ enum Command {
     Schema(schema::Arguments),
     Validate(validate::Arguments),
     View(view::Arguments),
+    Picture(picture::Arguments),
     Completions(completions::Arguments),
     Manual(completions::Manual),
 }
@@ -50,6 +53,7 @@ impl Command {
             Self::Schema(arguments) => schema::execute(&arguments, registry),
             Self::Validate(arguments) => validate::execute(&arguments, registry),
             Self::View(arguments) => view::execute(&arguments),
+            Self::Picture(arguments) => picture::execute(&arguments),
             Self::Completions(arguments) => completions::execute(&arguments),
             Self::Manual(_) => completions::manual(),
         }

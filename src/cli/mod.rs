@@ -12,6 +12,7 @@ mod lock;
 mod memory;
 mod neighbors;
 mod new;
+mod picture;
 mod plugins;
 mod profile;
 mod progress;

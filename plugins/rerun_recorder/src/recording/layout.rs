@@ -13,10 +13,10 @@ use rerun::RecordingStreamResult;
 use rerun::log::LogMsg;
 
 use super::blueprint::{Blueprint, Tile, View, only, with_children, without};
-use super::camera::{Bounds, Eye};
 use super::legend;
 use super::paths;
 use super::series::{Plot, SeriesTable};
+use crate::camera::{Bounds, Eye};
 
 /// What the layout depends on.
 pub struct Layout {
@@ -38,8 +38,10 @@ pub struct Layout {
 
 /// Time in which the viewer plays the run, s.
 const PLAYING_TIME: f64 = 10.0;
+/// Width over height of the view, about what the layout gives in windows of usual shapes.
+const ASPECT: f64 = 1.3;
 /// Behind the particles: light, so that the dark end of the colour maps can be seen.
-const BACKGROUND: [u8; 3] = [236, 238, 241];
+pub const BACKGROUND: [u8; 3] = [236, 238, 241];
 
 impl Layout {
     /// The layout, with a camera that has the box in view.
@@ -94,7 +96,7 @@ impl Layout {
         bounds: &Bounds,
         background: &Background,
     ) -> RecordingStreamResult<Tile> {
-        let eye = Eye::on(bounds, self.dimension, self.up);
+        let eye = Eye::on(bounds, self.dimension, self.up, ASPECT);
         let single = |v: [f64; 3]| v.map(|x| x as f32);
         let camera = EyeControls3D::new()
             .with_position(Position3D::from(single(eye.position)))

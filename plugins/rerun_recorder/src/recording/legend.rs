@@ -2,12 +2,11 @@
 
 use re_sdk_types::archetypes::{Image, Points2D};
 use re_sdk_types::components::Color;
-use rerun::EntityPath;
 
 use super::color_scale::ColorScale;
 use super::error::RerunError;
 use super::output::Output;
-use super::paths::legend;
+use super::paths::legend_part;
 use crate::colormap::Colormap;
 
 /// Width of the bar in the units of its view.
@@ -47,7 +46,7 @@ impl Legend {
             return Ok(());
         }
         self.shown = Some((scale, map, beyond));
-        output.log(&part("bar"), &strip(map))?;
+        output.log(&legend_part("bar"), &strip(map))?;
         let ticks = if scale.high > scale.low { 5 } else { 1 };
         let place = |k: usize| k as f64 / 4.0;
         let labels = (0..ticks).map(|k| {
@@ -65,7 +64,7 @@ impl Legend {
             .with_show_labels(true)
             .with_colors([Color::from_rgb(LABEL[0], LABEL[1], LABEL[2])])
             .with_radii([0.01f32]);
-        output.log(&part("values"), &points)
+        output.log(&legend_part("values"), &points)
     }
 }
 
@@ -92,7 +91,7 @@ impl Legend {
             .with_show_labels(true)
             .with_colors([Color::from_rgb(LABEL[0], LABEL[1], LABEL[2])])
             .with_radii([0.01f32]);
-        output.log(&part("extremes"), &points)
+        output.log(&legend_part("extremes"), &points)
     }
 }
 
@@ -101,10 +100,6 @@ pub fn title(field: &str) -> String {
     let (base, component) = field.split_once('.').unwrap_or((field, ""));
     let name = if base == "von_mises" { "von Mises stress".to_owned() } else { base.replace('_', " ") };
     format!("{name} {component}").trim_end().to_owned()
-}
-
-fn part(name: &str) -> EntityPath {
-    legend().join(&super::paths::entity([name]))
 }
 
 fn strip(map: Colormap) -> Image {

@@ -2,19 +2,20 @@
 
 mod add;
 mod blueprint;
-mod camera;
 mod color_scale;
 mod error;
 mod layout;
 mod legend;
 mod notes;
 mod output;
-mod paths;
+pub mod paths;
 mod recorder;
 mod series;
 mod web_viewer;
 
 pub use add::{add, check_address};
 pub use error::RerunError;
-pub use recorder::RerunFile;
+pub use layout::BACKGROUND;
+pub use output::TIMELINE;
+pub use recorder::{RerunFile, up_of};
 pub use web_viewer::{WebViewer, WebViewerError};

@@ -46,3 +46,13 @@ pub fn notes() -> EntityPath {
 pub fn legend() -> EntityPath {
     entity(["legend"])
 }
+
+/// A part of it.
+pub fn legend_part(name: &str) -> EntityPath {
+    entity(["legend", name])
+}
+
+/// The title of the scene.
+pub fn title() -> EntityPath {
+    entity(["title"])
+}

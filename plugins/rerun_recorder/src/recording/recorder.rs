@@ -4,17 +4,18 @@ use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder,
 use meshless_engine::scene::Dimension;
 use re_sdk_types::archetypes::{Points3D, Scalars, TextDocument, Transform3D, ViewCoordinates};
 use re_sdk_types::components::{Color, MediaType, Radius};
+use re_sdk_types::datatypes::ViewDir;
 use rerun::EntityPath;
 
-use super::camera::Bounds;
 use super::color_scale::{ColorScale, RunningScale};
 use super::error::RerunError;
 use super::layout::Layout;
-use super::legend::{Extreme, Legend, short};
+use super::legend::{self, Extreme, Legend, short};
 use super::notes::Notes;
 use super::output::Output;
 use super::paths;
 use super::series::SeriesTable;
+use crate::camera::Bounds;
 use crate::colormap::Colormap;
 use crate::plugin::RerunRecorder;
 
@@ -50,6 +51,9 @@ const PLAIN: [u8; 3] = [122, 126, 132];
 /// Share of their radius that particles without colours have in three dimensions, so that a tank does not hide its fluid, nor a tool what it
 /// presses.
 const SEEN_THROUGH: f32 = 0.2;
+/// Directions of an axis in the viewer's words.
+const UP: u8 = ViewDir::Up as u8;
+const DOWN: u8 = ViewDir::Down as u8;
 /// Particles whose value is not a number.
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
 
@@ -76,13 +80,17 @@ impl RerunFile {
             &paths::scene(),
             &TextDocument::new(run.scene_text).with_media_type(MediaType::TEXT),
         )?;
+        let title = if run.title.is_empty() { run.scene_name } else { run.title };
+        output.log_static(&paths::title(), &TextDocument::new(title))?;
         let notes = Notes::new(run);
         output.log_static(&paths::notes(), &notes.document(&[]))?;
         let colors = match &self.settings.color_by {
             Some(name) => run.fields.iter().find(|field| field.name == name),
             None => run.fields.first(),
         };
-        let title = if run.title.is_empty() { run.scene_name } else { run.title };
+        if let Some(field) = colors {
+            output.log_static(&paths::legend_part("title"), &TextDocument::new(legend::title(field.name)))?;
+        }
         let bodies: Vec<String> = run.bodies.iter().map(|body| body.name.to_owned()).collect();
         let known = run.series.iter().map(|series| (series.name.to_owned(), series.unit.to_owned()));
         self.open = Some(Open {
@@ -220,6 +228,15 @@ fn axes(up: [f64; 3]) -> ViewCoordinates {
         [_, _, z] if z < 0.0 => ViewCoordinates::RIGHT_HAND_Z_DOWN(),
         _ => ViewCoordinates::RIGHT_HAND_Z_UP(),
     }
+}
+
+/// The unit vector that points up, read back from the axes as the viewer says them.
+pub fn up_of(axes: [u8; 3]) -> [f64; 3] {
+    axes.map(|axis| match axis {
+        UP => 1.0,
+        DOWN => -1.0,
+        _ => 0.0,
+    })
 }
 
 impl Open {

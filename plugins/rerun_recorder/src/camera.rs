@@ -68,16 +68,14 @@ const ENLARGED: f64 = 1000.0;
 /// Share of the diagonal of what is in view by which particles may leave it.
 const OUTGROWN: f64 = 0.1;
 /// Half the vertical opening angle of the viewer's camera is 27.5 degrees; its tangent.
-const OPENING: f64 = 0.5206;
-/// Width over height of the view, about what the layout gives in windows of usual shapes.
-const ASPECT: f64 = 1.3;
+pub const OPENING: f64 = 0.5206;
 /// Room around the bodies.
 const MARGIN: f64 = 1.12;
 
 impl Eye {
     /// An eye that has the box in view: from the front in two dimensions, else from the front, right and above.
-    /// `up` is a unit vector along an axis.
-    pub fn on(bounds: &Bounds, dimension: Dimension, up: [f64; 3]) -> Self {
+    /// `up` is a unit vector along an axis, `aspect` the width over the height of the picture.
+    pub fn on(bounds: &Bounds, dimension: Dimension, up: [f64; 3], aspect: f64) -> Self {
         let axis = (0..3).find(|&k| up[k] != 0.0).unwrap_or(2);
         let direction = match (dimension, axis) {
             (Dimension::Two, _) => [0.0, 0.0, 1.0],
@@ -86,20 +84,25 @@ impl Eye {
             (Dimension::Three, _) => [1.0, -1.6, 0.8 * up[2]],
         };
         let back = unit(direction);
-        let right = unit(cross(up, back));
-        let top = cross(back, right);
+        let [right, top] = across(up, back);
         let target: [f64; 3] = std::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
         let distance = bounds.corners().map(|corner| {
             let offset: [f64; 3] = std::array::from_fn(|k| corner[k] - target[k]);
-            let across = (dot(offset, right).abs() / ASPECT).max(dot(offset, top).abs());
-            dot(offset, back) + MARGIN * across / OPENING
+            let reach = (dot(offset, right).abs() / aspect).max(dot(offset, top).abs());
+            dot(offset, back) + MARGIN * reach / OPENING
         });
         let distance = distance.fold(0.0, f64::max);
         Self { position: std::array::from_fn(|k| target[k] + distance * back[k]), target, up }
     }
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+/// The unit vectors to the right and to the top of a picture that is seen from the direction `back`.
+pub fn across(up: [f64; 3], back: [f64; 3]) -> [[f64; 3]; 2] {
+    let right = unit(cross(up, back));
+    [right, cross(back, right)]
+}
+
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -107,7 +110,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn unit(a: [f64; 3]) -> [f64; 3] {
+pub fn unit(a: [f64; 3]) -> [f64; 3] {
     let length = dot(a, a).sqrt();
     a.map(|x| x / length)
 }
@@ -116,11 +119,13 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
+    const ASPECT: f64 = 1.3;
+
     #[test]
     fn a_plane_body_is_seen_from_the_front_with_y_up() {
         let mut bounds = Bounds::EMPTY;
         bounds.extend(&[[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [f32::NAN, 0.0, 0.0]], 0.0);
-        let eye = Eye::on(&bounds, Dimension::Two, [0.0, 1.0, 0.0]);
+        let eye = Eye::on(&bounds, Dimension::Two, [0.0, 1.0, 0.0], ASPECT);
         assert_eq!(eye.target, [1.0, 0.5, 0.0]);
         assert_eq!((eye.position[0], eye.position[1]), (1.0, 0.5));
         let half_width_in_view = eye.position[2] * OPENING * ASPECT;
@@ -150,7 +155,7 @@ mod tests {
             let bounds = Bounds { min: [-1.0, 0.0, 3.0], max: [4.0, 0.5, 4.0] };
             let mut up = [0.0; 3];
             up[axis] = sign;
-            let eye = Eye::on(&bounds, Dimension::Three, up);
+            let eye = Eye::on(&bounds, Dimension::Three, up, ASPECT);
             let back: [f64; 3] = std::array::from_fn(|k| eye.position[k] - eye.target[k]);
             let back = unit(back);
             let right = unit(cross(up, back));
