@@ -92,6 +92,23 @@ fn differences_of_second_derivatives_allocate_nothing() {
 }
 
 #[test]
+fn a_step_of_eulerian_bodies_allocates_nothing_but_room_for_longer_lists() {
+    for (dimension, max) in [("Two", "(1.2, 0.5)"), ("Three", "(1.2, 0.5, 0.3)")] {
+        let low = max.replace(|c: char| c.is_ascii_digit(), "0").replace("0.0", "0");
+        let text = format!(
+            r#"(dimension: {dimension}, materials: {{"m": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+                bodies: [(name: "b", material: "m", shape: Box(min: {low}, max: {max}), spacing: 0.05,
+                          formulation: Eulerian(), plugins: [hourglass_control()])],
+                conditions: [InitialVelocity(on: Select(body: "b"), value: ("0.1*sin(9*y)", "0.1*x"))],
+                time: (end: 100.0))"#
+        );
+        let counts = counts(&Source::new("eulerian.ron", text), 1, 100);
+        let some = counts.iter().filter(|&&count| count > 0).count();
+        assert!(some <= 5, "{dimension}: {counts:?}");
+    }
+}
+
+#[test]
 fn a_contact_that_begins_and_spreads_allocates_nothing() {
     let counts = counts(&landing(), 1, 200);
     assert!(counts.iter().all(|&count| count == 0), "{counts:?}");

@@ -1,7 +1,7 @@
 //! The control of bodies whose weights are those of the present places: pair terms, which leave out what has failed.
 
 use meshless_engine::plugin::{SetupError, SimBuilder};
-use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies};
+use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies, PairControl};
 use meshless_engine::world::{BodyId, BodySet, DeformationGradient, HourglassModulus};
 
 use crate::cracks::{OffCracks, can_fail};
@@ -10,21 +10,30 @@ use crate::stiffness::Stiffness;
 use crate::viscous::Viscous;
 use crate::{VISCOSITY, WORK};
 
-/// Adds the stiffness form with the coefficient xi, and the viscous form with the coefficient zeta, to a body. The deformation gradient is a state of
-/// its particles, so that it needs no other fit beside cracks.
-pub fn add(
-    (xi, after_yield): (f64, AfterYield),
-    zeta: f64,
-    id: BodyId,
-    sim: &mut SimBuilder<'_>,
-) -> Result<(), SetupError> {
+/// The elastic part of the control.
+#[derive(Clone, Copy)]
+pub struct Elastic {
+    /// Coefficient xi; none at all where it is zero.
+    pub xi: f64,
+    /// What it resists with after yield.
+    pub after_yield: AfterYield,
+    /// The exact gradient of an energy, or the form of the paper.
+    pub has_energy: bool,
+}
+
+/// Adds an elastic part, and the viscous form with the coefficient zeta, to a body. The deformation gradient is a state of its particles, so that it needs
+/// no other fit beside cracks.
+pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    let Elastic { xi, after_yield, has_energy } = elastic;
     let (bodies, fails) = (BodySet::new([id]), can_fail(sim, id)?);
     if xi > 0.0 {
         sim.add_column_to::<HourglassModulus>(&bodies);
         let term: Box<dyn FoldedTerm> = Box::new(Resistance(after_yield));
         FoldedTermOfBodies { account: None, released: None, term }.add(bodies.clone(), sim);
         let term = Stiffness { xi, density: sim.body(id).material.density };
-        if fails {
+        if has_energy {
+            PairControl { xi }.add(bodies.clone(), sim);
+        } else if fails {
             sim.add_pair_term(bodies.clone(), WORK, OffCracks(term));
         } else {
             sim.add_pair_term(bodies.clone(), WORK, term);

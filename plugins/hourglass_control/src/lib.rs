@@ -15,6 +15,7 @@ mod viscous;
 use std::marker::PhantomData;
 
 use cracks::{OffCracks, add_off_cracks, can_fail};
+use eulerian::Elastic;
 use ganzenmueller_2015::Ganzenmueller2015;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
@@ -42,11 +43,11 @@ pub struct HourglassControl {
     pub form: Form,
     /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in Lagrangian bodies. Default: 5, 25 of the last.
     pub alpha: Option<f64>,
-    /// Coefficient xi of the elastic resistance of `Stiffness` and `Combined` in Eulerian bodies. Default: 10 of `Stiffness`, 20 of `Combined`.
+    /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 10, and 20 of `Combined` and `MohseniMofidi2020`.
     pub xi: Option<f64>,
-    /// Coefficient zeta of the viscous resistance, of `Viscous` and `Combined`.
+    /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`.
     pub zeta: f64,
-    /// Share chi of the viscous part of `Combined`, 0 to 1.
+    /// Share chi of the viscous part of `Combined` and `MohseniMofidi2020`, 0 to 1.
     pub chi: f64,
     /// What the elastic resistance is in particles that have yielded.
     pub after_yield: AfterYield,
@@ -68,9 +69,10 @@ impl Default for HourglassControl {
 /// Forms of the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Form {
-    /// `Variational` in Lagrangian bodies, `Combined` in Eulerian ones.
+    /// `Variational`.
     Default,
-    /// The whole error vector, with the weights of the deformation gradient: the exact gradient of an energy. Of Lagrangian bodies.
+    /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation gradient, in Lagrangian bodies; of the error along
+    /// the bond, with the kernel of the present places, in Eulerian ones.
     Variational,
     /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of Lagrangian bodies.
     Ganzenmueller2015,
@@ -79,15 +81,17 @@ pub enum Form {
     Stiffness,
     /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
     Viscous,
-    /// chi times `Viscous` and 1 - chi times `Variational` in Lagrangian bodies, `Stiffness` in Eulerian ones (Ganzenmueller and others 2016; eq. 34 of the above).
+    /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016).
     Combined,
+    /// chi times `Viscous` and 1 - chi times `Stiffness` (Mohseni-Mofidi and Bierwisch 2020, eq. 34). Of Eulerian bodies.
+    MohseniMofidi2020,
 }
 
 /// Account of the work of the forms without an energy.
 const WORK: &str = "hourglass_work";
 /// Account of what the viscous form takes.
 const VISCOSITY: &str = "hourglass_viscosity";
-/// Coefficient xi of `Stiffness` where the scene gives none.
+/// Coefficient xi of a form without a viscous part where the scene gives none.
 const USUAL_XI: f64 = 10.0;
 
 impl Plugin for HourglassControl {
@@ -102,14 +106,18 @@ impl Plugin for HourglassControl {
             self.add_to_lagrangian(lagrangian, sim)?;
         }
         // Half of twice the coefficient where the other half is viscous.
-        let (elastic, viscous, usual) = match self.form {
-            Form::Stiffness => (1.0, 0.0, USUAL_XI),
+        let (share, viscous, usual) = match self.form {
+            Form::Stiffness | Form::Variational | Form::Default => (1.0, 0.0, USUAL_XI),
             Form::Viscous => (0.0, 1.0, 0.0),
             _ => (1.0 - self.chi, self.chi, 2.0 * USUAL_XI),
         };
-        let xi = elastic * self.xi.unwrap_or(usual);
+        let elastic = Elastic {
+            xi: share * self.xi.unwrap_or(usual),
+            after_yield: self.after_yield,
+            has_energy: !matches!(self.form, Form::Stiffness | Form::MohseniMofidi2020),
+        };
         for id in present.iter() {
-            eulerian::add((xi, self.after_yield), viscous * self.zeta, id, sim)?;
+            eulerian::add(elastic, viscous * self.zeta, id, sim)?;
         }
         Ok(())
     }
@@ -149,10 +157,12 @@ impl HourglassControl {
         sim: &SimBuilder<'_>,
     ) -> Result<(), SetupError> {
         let (wrong, help) = match self.form {
-            Form::Variational | Form::Ganzenmueller2015 => {
-                (eulerian, "such bodies have `Stiffness`, `Viscous` and `Combined`")
+            Form::Ganzenmueller2015 => {
+                (eulerian, "such bodies have `Variational`, `Stiffness`, `Viscous` and `Combined`")
             }
-            Form::Stiffness => (lagrangian, "such bodies have `Variational`, `Viscous` and `Combined`"),
+            Form::Stiffness | Form::MohseniMofidi2020 => {
+                (lagrangian, "such bodies have `Variational`, `Viscous` and `Combined`")
+            }
             _ => (&BodySet::default(), ""),
         };
         if let Some(id) = wrong.iter().next() {
@@ -186,7 +196,7 @@ impl HourglassControl {
                 add_viscous(self.chi * self.zeta, &bodies, sim)?;
                 self.add_variational((1.0 - self.chi) * alpha, bodies, sim)
             }
-            Form::Stiffness => Ok(()),
+            Form::Stiffness | Form::MohseniMofidi2020 => Ok(()),
         }
     }
 }

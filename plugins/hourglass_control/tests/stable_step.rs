@@ -1,12 +1,12 @@
 //! The proposed time step against the critical one of a naive second implementation: the largest frequency of the
 //! linearised equations, found by power iteration over all pairs.
 
-use glam::{DMat2, DVec2};
+use glam::{DMat2, DVec2, DVec3};
 use meshless_engine::assembly::build;
 use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, ReferencePosition, ReferenceVolume};
+use meshless_engine::world::{BodyId, Force, Mass, Position, ReferencePosition, ReferenceVolume};
 
 const YOUNG: f64 = 3.0e6;
 const POISSON: f64 = 0.3;
@@ -119,6 +119,67 @@ fn the_step_is_a_safe_and_fair_share_of_the_critical_one() {
                 println!("{lattice} support {support} alpha {alpha}: {share:.3}");
                 assert!((0.3..0.75).contains(&share), "{lattice} support {support} alpha {alpha}: {share}");
             }
+        }
+    }
+}
+
+/// A free Eulerian block of irregular particles, each displaced by `u`.
+fn eulerian(dimension: usize, lattice: &str, xi: f64, u: impl Fn(usize) -> DVec3) -> Simulation {
+    let (name, high) = if dimension == 2 { ("Two", "(0.6, 0.5)") } else { ("Three", "(0.4, 0.3, 0.3)") };
+    let low = if dimension == 2 { "(0, 0)" } else { "(0, 0, 0)" };
+    let text = format!(
+        r#"(dimension: {name},
+            materials: {{"m": NeoHookean(density: {DENSITY:?}, young: {YOUNG:?}, poisson: {POISSON:?})}},
+            bodies: [(name: "b", material: "m", shape: Box(min: {low}, max: {high}), spacing: 0.1, lattice: {lattice},
+                      formulation: Eulerian(), plugins: [hourglass_control(xi: {xi:?})])],
+            time: (end: 1))"#
+    );
+    let (scene, source) = parse(Source::new("test.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    let registry = Registry::standard().with(hourglass_control::register);
+    let mut sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
+    {
+        let (view, _) = sim.world().body_view(BodyId(0));
+        let mut x = view.write::<Position>().expect("places");
+        x.iter_mut().enumerate().for_each(|(k, x)| x.0 += u(k));
+    }
+    sim.start().expect("a start");
+    sim
+}
+
+/// Critical step of the block, s: the forces of small displacements, again and again.
+fn critical_step_of_eulerian(dimension: usize, lattice: &str, xi: f64) -> f64 {
+    let accelerations = |u: &[DVec3]| -> Vec<DVec3> {
+        let sim = eulerian(dimension, lattice, xi, |k| u.get(k).copied().unwrap_or_default());
+        let (view, _) = sim.world().body_view(BodyId(0));
+        let mass = view.read::<Mass>().expect("masses");
+        view.read::<Force>().expect("forces").iter().zip(mass.iter()).map(|(f, m)| f.0 / m.0).collect()
+    };
+    let n = accelerations(&[]).len();
+    let z = if dimension == 3 { 1.0 } else { 0.0 };
+    let start =
+        |k: usize| DVec3::new((k as f64 * 7.3).sin(), (k as f64 * 3.1).cos(), z * (k as f64 * 5.7).sin());
+    let mut u: Vec<DVec3> = (0..n).map(start).collect();
+    let mut omega_squared = 0.0;
+    for _ in 0..200 {
+        let size = 1e7 * u.iter().map(|u| u.length_squared()).sum::<f64>().sqrt();
+        u.iter_mut().for_each(|u| *u /= size);
+        let a = accelerations(&u);
+        omega_squared = 1e7 * a.iter().map(|a| a.length_squared()).sum::<f64>().sqrt();
+        u = a;
+    }
+    2.0 / omega_squared.sqrt()
+}
+
+#[test]
+fn the_step_of_an_eulerian_body_is_a_safe_and_fair_share_of_the_critical_one() {
+    for (dimension, lattice) in
+        [(2, "Regular"), (2, "Relaxed(seed: 5)"), (3, "Relaxed(seed: 9, iterations: 2)")]
+    {
+        for xi in [0.0, 3.0, 10.0, 40.0] {
+            let proposed = eulerian(dimension, lattice, xi, |_| DVec3::ZERO).limit().expect("a limit").dt;
+            let share = proposed / critical_step_of_eulerian(dimension, lattice, xi);
+            println!("{dimension} dimensions, {lattice} xi {xi}: {share:.3}");
+            assert!((0.3..0.75).contains(&share), "{dimension} dimensions, {lattice} xi {xi}: {share}");
         }
     }
 }

@@ -151,6 +151,20 @@ pub const WORKS: &[Work] = &[
         set: &[("bodies.strip.spacing", Spacing)],
     },
     Work {
+        name: "eulerian",
+        title: "solid in three dimensions, Eulerian",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[("bodies.block.spacing", Spacing), ("bodies.block.formulation", Text("Eulerian()"))],
+    },
+    Work {
+        name: "eulerian-2d",
+        title: "solid in plane strain, Eulerian",
+        scene: STRIP,
+        spacing: square,
+        set: &[("bodies.strip.spacing", Spacing), ("bodies.strip.formulation", Text("Eulerian()"))],
+    },
+    Work {
         name: "dam-80",
         title: "dam break in three dimensions, 80 neighbours inside",
         scene: DAM,

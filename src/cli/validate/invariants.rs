@@ -181,11 +181,6 @@ fn momenta(rows: &[Row]) -> (DVec3, DVec3, f64, f64) {
 }
 
 fn thrown(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    thrown_until(registry, across, f64::INFINITY)
-}
-
-/// Throws the block and follows it until a time, s, at the latest.
-pub(super) fn thrown_until(registry: &Registry, across: usize, end: f64) -> Result<Vec<Check>> {
     let (center, spin) = (DVec3::new(0.5, 0.25, 0.0), DVec3::new(0.0, 0.0, 0.05));
     let velocity = |x: DVec3| {
         let swing = 0.02 * (PI * x.x).cos();
@@ -196,7 +191,7 @@ pub(super) fn thrown_until(registry: &Registry, across: usize, end: f64) -> Resu
     let (momentum, angular, size, spin_size) = momenta(&rows(&simulation)?);
     let energy = simulation.ledger().stored();
     let (mut drift, mut push, mut twist) = (0.0f64, 0.0f64, 0.0f64);
-    while !simulation.is_finished() && simulation.clock().time < end {
+    while !simulation.is_finished() {
         simulation.step()?;
         drift = drift.max((simulation.ledger().stored() / energy - 1.0).abs());
         if simulation.clock().step % 100 == 0 {

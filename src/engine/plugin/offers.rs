@@ -39,6 +39,8 @@ pub enum Offer {
     FoldedTerms,
     /// Stabilization by differences of second derivatives ([`HessianDifference`](crate::solids::HessianDifference)).
     HessianDifferences,
+    /// Hourglass control along pairs, with the weights of the present places ([`PairControl`](crate::solids::PairControl)).
+    PairControl,
     /// Mirror images across symmetry planes.
     MirrorImages,
     /// Contact with other bodies.
@@ -79,6 +81,7 @@ impl Offer {
             Self::PairTerms => "pair terms",
             Self::FoldedTerms => "terms that fold into the internal force",
             Self::HessianDifferences => "stabilization by differences of second derivatives",
+            Self::PairControl => "hourglass control along pairs",
             Self::MirrorImages => "mirror images",
             Self::Contact => "contact",
             Self::SelfContact => "contact of a body with itself",

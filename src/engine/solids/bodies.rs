@@ -10,6 +10,7 @@ use super::constitutive::{Constitutive, MAX_TERMS, SolidBlock, SolidColumns, Sol
 use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
+use super::pair_control::{self, PairControl};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
 use super::stretches;
@@ -36,6 +37,8 @@ pub struct SolidBody {
     terms: Vec<usize>,
     /// Its stabilization by differences of second derivatives.
     pub hessian: Option<HessianDifference>,
+    /// Its control along pairs.
+    pub control: Option<PairControl>,
     /// Whether its short steps are damped.
     damped: bool,
     /// Factor of the stable step by the stretches of the body.
@@ -89,9 +92,9 @@ impl SolidBodies {
     pub fn new(ids: &[BodyId], sim: &mut SimBuilder<'_>) -> Result<Self, SetupError> {
         let own = BodySet::new(ids.iter().copied());
         let terms: Vec<ForBodies<FoldedTermOfBodies>> = sim.take_for(&own);
-        let offers = |id: &BodyId| sim.body(*id).offers(Offer::HessianDifferences);
-        let offering = BodySet::new(ids.iter().copied().filter(offers));
-        let hessian: Vec<ForBodies<HessianDifference>> = sim.take_for(&offering);
+        let hessian: Vec<ForBodies<HessianDifference>> =
+            sim.take_for(&offering(ids, Offer::HessianDifferences, sim));
+        let control: Vec<ForBodies<PairControl>> = sim.take_for(&offering(ids, Offer::PairControl, sim));
         let damped: Vec<ForBodies<DampedInShortSteps>> = sim.take_for(&own);
         damped.iter().for_each(|ForBodies { bodies, .. }| {
             sim.add_column_to::<DampedStrain>(bodies);
@@ -99,8 +102,10 @@ impl SolidBodies {
         });
         let is_damped = |id| damped.iter().any(|damped| damped.bodies.contains(id));
         let body = |&id: &BodyId| {
+            let mut own = control.iter().filter(|own| own.bodies.contains(id)).map(|own| own.value.xi);
+            let control = own.next().map(|first| PairControl { xi: own.fold(first, |sum, xi| sum + xi) });
             let body = SolidBody::new(id, sim, &terms, &hessian, is_damped(id));
-            body.map_err(|error| error.of_formulation(id))
+            body.map(|body| SolidBody { control, ..body }).map_err(|error| error.of_formulation(id))
         };
         let bodies = ids.iter().map(body).collect::<Result<Vec<_>, _>>()?;
         let has_residual = bodies.iter().any(SolidBody::has_hessian_residual);
@@ -171,6 +176,11 @@ impl SolidBodies {
     /// Adds the energy of the difference of Laplacians of body `k` to what the last pass has found.
     pub fn add_hessian(&mut self, k: usize, energy: FoldedEnergy) {
         self.found[k].hessian = energy;
+    }
+
+    /// Adds the energy of the control along pairs of body `k` to what the last pass has found.
+    pub fn add_control(&mut self, k: usize, energy: FoldedEnergy) {
+        self.found[k].control = energy;
     }
 
     /// Whether there are folded terms.
@@ -326,6 +336,11 @@ impl SolidBodies {
     }
 }
 
+/// The bodies whose formulation takes what is offered.
+fn offering(ids: &[BodyId], offer: Offer, sim: &SimBuilder<'_>) -> BodySet {
+    BodySet::new(ids.iter().copied().filter(|id| sim.body(*id).offers(offer)))
+}
+
 impl SolidBody {
     fn new(
         id: BodyId,
@@ -370,7 +385,7 @@ impl SolidBody {
                 format!("the material of body `{}` has more than {MAX_STATE} state columns", body.name);
             SetupError::parameter("", message, "this is a fault of the material, not of the scene")
         })?;
-        Ok(Self { id, law, state, estimate, terms, hessian, damped, stretch_factor: 1.0 })
+        Ok(Self { id, law, state, estimate, terms, hessian, control: None, damped, stretch_factor: 1.0 })
     }
 
     /// Whether it has a stabilization with an energy of its own.
@@ -396,6 +411,9 @@ impl SolidBody {
                 let released = ledger.account(hessian::RELEASED, AccountKind::Dissipated);
                 ledger.add(released, self.id, sum.hessian.released);
             }
+        }
+        if self.control.is_some() {
+            pair_control::book(sum.control, !self.state.as_slice().is_empty(), self.id, ledger);
         }
         for (&k, energy) in self.terms.iter().zip(sum.terms) {
             let FoldedTermOfBodies { account, released, .. } = &*terms[k];

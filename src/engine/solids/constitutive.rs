@@ -31,14 +31,17 @@ pub struct SolidSum {
     pub terms: [FoldedEnergy; MAX_TERMS],
     /// Energy of the difference of Laplacians, J.
     pub hessian: FoldedEnergy,
+    /// Energy of the control along pairs, J.
+    pub control: FoldedEnergy,
     /// Row with det F <= 0 that comes first of those that resist, counted from one; zero if there is none.
     pub inverted: usize,
 }
 
 impl SolidSum {
-    /// All that stress, folded terms and the difference of Laplacians hold, J.
+    /// All that stress, folded terms, the difference of Laplacians and the control along pairs hold, J.
     pub fn stored(&self) -> f64 {
-        self.strain + self.hessian.stored + self.terms.iter().map(|term| term.stored).sum::<f64>()
+        let terms = self.terms.iter().chain([&self.hessian, &self.control]);
+        self.strain + terms.map(|term| term.stored).sum::<f64>()
     }
 
     /// Adds the energies of a block, and looks for inverted particles.
@@ -64,6 +67,7 @@ impl BlockSum for SolidSum {
             sum.add(next);
         }
         self.hessian.add(&next.hessian);
+        self.control.add(&next.control);
         if self.inverted == 0 {
             self.inverted = next.inverted;
         }

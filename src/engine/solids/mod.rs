@@ -9,7 +9,7 @@
 //!                 the formulation makes what neighbours read of it: A = P M^-1                       (corrected_stress)
 //!                 `Constitutive::fold`    terms of plugins add to A and k                            (folded)
 //!                 `SolidSum::close`       energies of the block
-//!                 differences of second derivatives of positions add to A                            (hessian)
+//!                 differences of second derivatives of positions, and control along pairs, add to A  (hessian, pair_control)
 //!               `SolidBodies::book` and `limit`: energies, inverted particles, stable step           (bodies, stretches, stable_step)
 //! Boundary      contact adds couples on material points beside particles through `SolidPhase`        (local_motion)
 //! Rates         the formulation's own pass over pairs writes the force; pair terms add to it         (crate::pair)
@@ -23,6 +23,7 @@ mod fields;
 mod folded;
 mod hessian;
 mod local_motion;
+mod pair_control;
 mod pairs;
 mod phase;
 mod refit;
@@ -38,6 +39,7 @@ pub(crate) use fields::add_fields;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 pub use local_motion::LocalMotion;
+pub use pair_control::PairControl;
 pub use pairs::SolidPairs;
 pub use phase::SolidPhase;
 pub use refit::Refits;

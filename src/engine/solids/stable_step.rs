@@ -11,6 +11,8 @@
 const STRESS_FACTOR: f64 = 1.45;
 /// Bond stiffness: omega^2 = `BOND_FACTOR` s E / rho sum_j V_j w_ij.
 const BOND_FACTOR: f64 = 3.0;
+/// Control along pairs: omega^2 = `PAIR_FACTOR` sum_j k_ij / m_i.
+const PAIR_FACTOR: f64 = 1.0;
 /// Difference of second derivatives: omega^2 = `HESSIAN_FACTOR` eta^2 E / rho (h sum_j V_j w_ij)^2.
 const HESSIAN_FACTOR: f64 = 3.0;
 /// Share of the estimated critical step that is used.
@@ -42,6 +44,12 @@ impl StepEstimate {
         // Between the larger of the two (they peak at different wave numbers) and their sum.
         let omega_squared = stress.hypot(bond).hypot(hessian);
         SAFETY * 2.0 / omega_squared.sqrt()
+    }
+
+    /// Stable step, s, where control along pairs gives a particle the stiffness `pairs` over its mass, 1/s2: the sum of those of its pairs.
+    pub fn stable_step_with_pairs(&self, weight_sum: f64, mean_inverse: f64, pairs: f64) -> f64 {
+        let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
+        SAFETY * 2.0 / stress.hypot(PAIR_FACTOR * pairs).sqrt()
     }
 
     /// Whether the bond terms, not the waves, limit the step of an inner particle.

@@ -47,7 +47,7 @@ struct ForceRows<'a> {
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let EulerianRows { lists, near, points, stresses, .. } = self.packed;
+        let EulerianRows { lists, near, points, stresses, control, .. } = self.packed;
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let (place, own) = (points[i].place, &stresses[i]);
@@ -64,7 +64,7 @@ impl PlaneOrSolid for ForceRows<'_> {
                 }
                 sum = a.scale_add(weights[n] * other.traction.0[3], traction, sum);
             }
-            *force = Force(sum.xyz() * own.traction.0[3]);
+            *force = Force(sum.xyz() * own.traction.0[3] + control.force[i].xyz());
         }
     }
 }

@@ -14,6 +14,7 @@
 //! depends on when they were built.
 
 mod artificial_stress;
+mod control;
 mod force;
 mod lists;
 mod near;
@@ -26,4 +27,5 @@ mod start;
 mod stress;
 
 pub use artificial_stress::{ArtificialStress, TensileStress};
+pub use control::HourglassEnergy;
 pub use parameters::{Divergence, Eulerian};

@@ -32,6 +32,8 @@ pub(super) struct Near {
     pub weights: Vec<f64>,
     /// Kernel values W_ij.
     pub kernels: Vec<f64>,
+    /// Second derivatives W''_ij.
+    pub curvatures: Vec<f64>,
     pub around: Vec<Surroundings>,
 }
 
@@ -51,6 +53,7 @@ pub(super) struct NearRows<'a> {
     pub neighbors: &'a mut [u32],
     pub weights: &'a mut [f64],
     pub kernels: &'a mut [f64],
+    pub curvatures: &'a mut [f64],
     pub around: &'a mut [Surroundings],
 }
 
@@ -60,19 +63,21 @@ impl Split for NearRows<'_> {
     }
 
     fn split(self, at: usize) -> (Self, Self) {
-        let Self { offsets, neighbors, weights, kernels, around } = self;
+        let Self { offsets, neighbors, weights, kernels, curvatures, around } = self;
         let cut = offsets[at] - offsets[0];
         let (neighbors, neighbors_rest) = neighbors.split_at_mut(cut);
         let (weights, weights_rest) = weights.split_at_mut(cut);
         let (kernels, kernels_rest) = kernels.split_at_mut(cut);
+        let (curvatures, curvatures_rest) = curvatures.split_at_mut(cut);
         let (around, around_rest) = around.split_at_mut(at);
         (
-            Self { offsets: &offsets[..=at], neighbors, weights, kernels, around },
+            Self { offsets: &offsets[..=at], neighbors, weights, kernels, curvatures, around },
             Self {
                 offsets: &offsets[at..],
                 neighbors: neighbors_rest,
                 weights: weights_rest,
                 kernels: kernels_rest,
+                curvatures: curvatures_rest,
                 around: around_rest,
             },
         )
@@ -115,34 +120,39 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
         let begin = rows.offsets[0];
         for k in 0..rows.around.len() {
             let own = points[first + k].place;
-            let (mut moment, mut reach) = ([Lanes4::ZERO; D], Lanes4::ZERO);
-            let (mut weight_sum, mut filled) = (0.0, itself * own.0[3]);
             let start = rows.offsets[k] - begin;
-            let mut at = start;
             let list = if own.0[3] > 0.0 { rows.offsets[k]..rows.offsets[k + 1] } else { 0..0 };
+            // Who is near comes first, without a branch: it cannot be guessed.
+            let mut count = 0;
             for &j in &lists[list] {
                 let other = points[j as usize].place;
                 let arm = a.minus(other, own);
                 let square = arm.dot3(arm);
-                let volume = other.0[3];
-                if square < limit && volume > 0.0 {
-                    let distance = square.sqrt();
-                    let weight = kernel.pair_weight(distance);
-                    let value = kernel.w(distance);
-                    (rows.neighbors[at], rows.weights[at], rows.kernels[at]) = (j, weight, value);
-                    at += 1;
-                    let weighted = a.scale(volume * weight, arm);
-                    for axis in 0..D {
-                        moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
-                    }
-                    reach = a.plus(reach, weighted);
-                    weight_sum += volume * weight;
-                    filled += volume * value;
+                rows.neighbors[start + count] = j;
+                count += usize::from((square < limit) & (square > 0.0) & (other.0[3] > 0.0));
+            }
+            let (mut moment, mut reach) = ([Lanes4::ZERO; D], Lanes4::ZERO);
+            let (mut weight_sum, mut filled) = (0.0, itself * own.0[3]);
+            let part = start..start + count;
+            let pairs = rows.neighbors[part.clone()].iter().zip(&mut rows.weights[part.clone()]);
+            let pairs = pairs.zip(&mut rows.kernels[part.clone()]).zip(&mut rows.curvatures[part]);
+            for (((&j, weight), value), curvature) in pairs {
+                let other = points[j as usize].place;
+                let arm = a.minus(other, own);
+                let (distance, volume) = (arm.dot3(arm).sqrt(), other.0[3]);
+                (*weight, *value) = (kernel.pair_weight(distance), kernel.w(distance));
+                *curvature = kernel.d2w_dr2(distance);
+                let weighted = a.scale(volume * *weight, arm);
+                for axis in 0..D {
+                    moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                 }
+                reach = a.plus(reach, weighted);
+                weight_sum += volume * *weight;
+                filled += volume * *value;
             }
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
-            let count = (at - start) as u32;
+            let count = count as u32;
             rows.around[k] = Surroundings { count, inverse_moment, reach: reach.xyz(), weight_sum, filled };
         }
     }

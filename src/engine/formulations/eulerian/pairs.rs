@@ -88,15 +88,15 @@ fn put<A: Arithmetic>(
     n: usize,
     room: &mut Room<'_>,
 ) {
-    let EulerianRows { lists, near, points, originals, .. } = packed;
+    let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);
     let of: [&Point; 4] = [&points[j], &points[k], &points[l], &points[m]];
-    let (own, original) = (&points[i], originals[i]);
+    let (own, original) = (&points[i], carried[i].original);
     let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
     let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());
     let [x, y, z, _] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
     let passing = Vector::new(a, [x, y, z]) - Vector::splat(a, own.velocity.xyz());
-    let [x, y, z, _] = a.transpose([originals[j], originals[k], originals[l], originals[m]]);
+    let [x, y, z, _] = a.transpose([j, k, l, m].map(|row| carried[row].original));
     let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
     let (mut weight, mut kernel, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO, Lanes4::ZERO);
     for lane in 0..count {

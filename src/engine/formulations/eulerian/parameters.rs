@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::artificial_stress::{ArtificialStress, TensileStress};
+use super::control::{BodyControl, ControlRows, HourglassEnergy};
 use super::force::InternalForce;
 use super::lists::{ListedBody, Lists};
 use super::near::{Look, Near, NearRows, Surroundings};
@@ -21,7 +22,7 @@ use crate::schedule::{Mode, Stage, System};
 use crate::solids::{SolidBodies, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
-    BodyId, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
+    BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
     ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
@@ -76,7 +77,7 @@ impl Formulation for Eulerian {
         "Eulerian-kernel SPH of solids: N. Mohseni-Mofidi, C. Bierwisch, Comput. Part. Mech. (2020)";
     const KIND: BodyKind = BodyKind::Solid;
     const OFFERS: &'static [Offer] =
-        &[Offer::PairTerms, Offer::MirrorImages, Offer::Contact, Offer::DeformedContact];
+        &[Offer::PairTerms, Offer::PairControl, Offer::MirrorImages, Offer::Contact, Offer::DeformedContact];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
         Some(self.support * body.spacing)
@@ -101,13 +102,20 @@ impl Formulation for Eulerian {
             if let Some(artificial_stress) = parameters.artificial_stress {
                 artificial_stress.add(*id, &kernel, support, sim);
             }
-            kernels.push(BodyKernel { kernel, divergence: parameters.divergence });
+            kernels.push(BodyKernel { kernel, divergence: parameters.divergence, control: None });
             listed.push(ListedBody { id: *id, rows: sim.body(*id).rows.clone(), support, repeats });
         }
         let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         let phase = sim.body(ids[0]).phase;
         let solids = SolidBodies::new(&ids, sim)?;
         solids.require_terms_that_look(sim)?;
+        for (own, of) in solids.iter().zip(&mut kernels) {
+            let density = sim.body(own.id).material.density;
+            of.control = own.control.map(|control| BodyControl { xi: control.xi, density });
+            if of.control.is_some() {
+                sim.add_column_to::<HourglassEnergy>(&BodySet::new([own.id]));
+            }
+        }
         sim.add_setup(move |setup| set_up(listed, kernels, phase, setup));
         add_systems(phase, solids, sim);
         add_pair_systems(sim, phase, EulerianPairs(phase))
@@ -133,6 +141,8 @@ fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
         .reads::<Velocity>()
         .reads::<Mass>()
         .touches_all(state);
+    let has_control = sim.columns(phase).get(HourglassEnergy::NAME).is_some();
+    let stress = if has_control { stress.writes::<HourglassEnergy>() } else { stress };
     let has_tensile_stress = sim.columns(phase).get(TensileStress::NAME).is_some();
     sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
     let force = InternalForce { phase, gravity: sim.gravity() };
@@ -169,7 +179,8 @@ fn set_up(
         lists: Lists::new(listed),
         kernels,
         points: Vec::new(),
-        originals: Vec::new(),
+        carried: Vec::new(),
+        control: ControlRows::default(),
         near: Near { around: vec![Surroundings::default(); view.len()], ..Near::default() },
         deformation: vec![DMat3::IDENTITY; view.len()],
         stresses: Vec::new(),
@@ -203,7 +214,8 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
             offsets: &lists.offsets[rows.start..=rows.end],
             neighbors: &mut near.neighbors[of_lists.clone()],
             weights: &mut near.weights[of_lists.clone()],
-            kernels: &mut near.kernels[of_lists],
+            kernels: &mut near.kernels[of_lists.clone()],
+            curvatures: &mut near.curvatures[of_lists],
             around: &mut near.around[rows],
         };
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 
+use super::control::{BodyControl, Carried, ControlRows};
 use super::lists::Lists;
 use super::near::Near;
 use super::parameters::Divergence;
@@ -36,6 +37,8 @@ impl Point {
 pub(super) struct BodyKernel {
     pub kernel: Kernel,
     pub divergence: Divergence,
+    /// Hourglass control along pairs.
+    pub control: Option<BodyControl>,
 }
 
 /// What the systems of the formulation share.
@@ -44,13 +47,15 @@ pub(super) struct EulerianRows {
     /// Of every body, as in the lists.
     pub kernels: Vec<BodyKernel>,
     pub points: Vec<Point>,
-    /// X, for pair terms that compare with the start.
-    pub originals: Vec<Lanes4>,
+    /// X, for all that compares with the start, and what the control along pairs needs.
+    pub carried: Vec<Carried>,
     pub near: Near,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
     /// Corrected stress sigma M^-1, and in the last lane of its traction what it is weighted with: the volume V.
     pub stresses: Vec<CorrectedStress>,
+    /// What the control along pairs makes.
+    pub control: ControlRows,
     /// Stable step of each body as it is now, s.
     pub stable_step: Vec<f64>,
     /// Plane strain.
@@ -77,14 +82,16 @@ impl EulerianRows {
             self.near.neighbors.resize(pairs, 0);
             self.near.weights.resize(pairs, 0.0);
             self.near.kernels.resize(pairs, 0.0);
+            self.near.curvatures.resize(pairs, 0.0);
             let all = position.len() + self.lists.ghosts.len();
             self.points.resize(all, Point::default());
             self.stresses.resize(all, CorrectedStress::default());
-            self.originals.clear();
-            self.originals.extend(reference.iter().map(|x| Lanes4::new(*x, 0.0)));
-            self.originals.resize(all, Lanes4::ZERO);
-            let image = |ghost: Ghost<'_>, x: &Lanes4| Lanes4::new(ghost.map.place(x.xyz()), 0.0);
-            self.lists.ghosts.fill(&mut self.originals, image);
+            self.carried.resize(all, Carried::default());
+            self.control.resize(position.len());
+            for (carried, x) in self.carried.iter_mut().zip(reference) {
+                carried.original = Lanes4::new(*x, 0.0);
+            }
+            self.fill_ghost_carried();
         }
         Ok(())
     }
@@ -112,6 +119,11 @@ impl EulerianRows {
         });
         gone.for_each(|row| self.points[row].place.0[3] = 0.0);
         self.lists.ghosts.fill(&mut self.points, |ghost, point: &Point| point.image(ghost.map));
+    }
+
+    /// Hands what is carried from the start on to the ghosts.
+    pub fn fill_ghost_carried(&mut self) {
+        self.lists.ghosts.fill(&mut self.carried, |ghost: Ghost<'_>, own: &Carried| own.image(ghost.map));
     }
 
     /// Hands the corrected stresses on to the ghosts.

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::artificial_stress;
+use super::control::{self, Carried, HourglassEnergy};
 use super::force;
 use super::near::{Look, NearRows, Surroundings};
 use super::parameters::Divergence;
@@ -92,7 +93,30 @@ impl Stress {
                 SolidPart { dt, is_short, refits: None },
             );
         }
+        self.resist(&view, &mass, packed)?;
         packed.fill_ghost_stresses();
+        Ok(())
+    }
+
+    /// Adds the control along pairs.
+    fn resist(
+        &mut self,
+        view: &PhaseView<'_>,
+        mass: &[Mass],
+        packed: &mut EulerianRows,
+    ) -> Result<(), MissingColumn> {
+        if packed.kernels.iter().all(|of| of.control.is_none()) {
+            return Ok(());
+        }
+        packed.fill_ghost_carried();
+        let mut energy = view.write::<HourglassEnergy>()?;
+        for k in 0..self.solids.len() {
+            if let Some(own) = packed.kernels[k].control {
+                let rows = packed.lists.bodies[k].rows.clone();
+                let sum = control::run(packed, k, own, &mut energy[rows], mass);
+                self.solids.add_control(k, sum);
+            }
+        }
         Ok(())
     }
 
@@ -104,7 +128,7 @@ impl Stress {
         packed: &mut EulerianRows,
         part: SolidPart<'_>,
     ) {
-        let EulerianRows { lists, kernels, points, near, deformation, stresses, plane, .. } = packed;
+        let EulerianRows { lists, kernels, points, near, deformation, carried, stresses, plane, .. } = packed;
         let (body, kernel) = (&lists.bodies[k], kernels[k]);
         let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
         let own = OwnRows {
@@ -112,10 +136,12 @@ impl Stress {
                 offsets: &lists.offsets[rows.start..=rows.end],
                 neighbors: &mut near.neighbors[of_lists.clone()],
                 weights: &mut near.weights[of_lists.clone()],
-                kernels: &mut near.kernels[of_lists],
+                kernels: &mut near.kernels[of_lists.clone()],
+                curvatures: &mut near.curvatures[of_lists],
                 around: &mut near.around[rows.clone()],
             },
             deformation: &mut deformation[rows.clone()],
+            carried: &mut carried[rows.clone()],
             stresses: &mut stresses[rows.clone()],
         };
         let pass = StressPass {
@@ -126,6 +152,7 @@ impl Stress {
             volume,
             mass,
             plane: *plane,
+            starts: part.dt == 0.0,
         };
         self.solids.run(k, (view, rows), columns, own, part, &|law, rows, own, block| {
             pass.block(law, rows, own, block)
@@ -169,17 +196,20 @@ impl Stress {
 
     /// The stable step of each body with the weights that it has now, s.
     fn find_stable_steps(&self, packed: &mut EulerianRows) {
-        let EulerianRows { lists, near, stable_step, plane, .. } = packed;
+        let EulerianRows { lists, near, control, stable_step, plane, .. } = packed;
         let axes = if *plane { 2.0 } else { 3.0 };
         stable_step.clear();
         for (own, body) in self.solids.iter().zip(&lists.bodies) {
-            let around = &near.around[body.rows.clone()];
-            let fastest: Largest = sum_over_blocks(around, &|_, around: &[Surroundings]| {
-                let step = |of: &Surroundings| {
+            let rows = (&near.around[body.rows.clone()], &control.stiffness[body.rows.clone()]);
+            type Rows<'a> = (&'a [Surroundings], &'a [f64]);
+            let fastest: Largest = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
+                let step = |(of, stiffness): (&Surroundings, &f64)| {
                     let inverse = of.inverse_moment.trace() / axes;
-                    1.0 / own.estimate.stable_step(of.weight_sum, inverse)
+                    1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
                 };
-                Largest::of(around.iter().filter(|of| of.inverse_moment != Sym3::ZERO).map(step))
+                let with_stress =
+                    around.iter().zip(stiffness).filter(|(of, _)| of.inverse_moment != Sym3::ZERO);
+                Largest::of(with_stress.map(step))
             });
             stable_step.push(1.0 / fastest.0);
         }
@@ -190,6 +220,7 @@ impl Stress {
 struct OwnRows<'a> {
     near: NearRows<'a>,
     deformation: &'a mut [DMat3],
+    carried: &'a mut [Carried],
     stresses: &'a mut [CorrectedStress],
 }
 
@@ -201,10 +232,16 @@ impl Split for OwnRows<'_> {
     fn split(self, at: usize) -> (Self, Self) {
         let (near, near_rest) = self.near.split(at);
         let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
+        let (carried, carried_rest) = self.carried.split_at_mut(at);
         let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
         (
-            Self { near, deformation, stresses },
-            Self { near: near_rest, deformation: deformation_rest, stresses: stresses_rest },
+            Self { near, deformation, carried, stresses },
+            Self {
+                near: near_rest,
+                deformation: deformation_rest,
+                carried: carried_rest,
+                stresses: stresses_rest,
+            },
         )
     }
 }
@@ -218,6 +255,8 @@ struct StressPass<'a> {
     volume: &'a [ReferenceVolume],
     mass: &'a [Mass],
     plane: bool,
+    /// Whether there is no step before.
+    starts: bool,
 }
 
 impl StressPass<'_> {
@@ -228,9 +267,9 @@ impl StressPass<'_> {
         own: OwnRows<'_>,
         block: &mut SolidBlock,
     ) -> SolidSum {
-        let Self { kernel: BodyKernel { kernel, divergence }, support, lists, points, plane, .. } = *self;
+        let Self { kernel: BodyKernel { kernel, divergence, .. }, support, lists, points, plane, .. } = *self;
         let (n, first) = (rows.deformation.len(), block.first);
-        let OwnRows { mut near, deformation, stresses } = own;
+        let OwnRows { mut near, deformation, carried, stresses } = own;
         kernel.dispatch(Look { kernel, support, lists, points, first, plane, rows: &mut near });
         deformation.copy_from_slice(rows.deformation);
         for (k, f) in deformation.iter().enumerate() {
@@ -239,34 +278,60 @@ impl StressPass<'_> {
         }
         block.misfit[..n].fill(0.0);
         let around = &*near.around;
-        let carried = |k: usize| if around[k].inverse_moment == Sym3::ZERO { 0.0 } else { 1.0 };
+        let share = |k: usize| if around[k].inverse_moment == Sym3::ZERO { 0.0 } else { 1.0 };
         let mut sum = SolidSum::default();
-        constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {
+        constitutive.stress(&mut rows, block, share, &mut sum, |stress| {
             for (k, out) in stresses.iter_mut().enumerate() {
                 let f = &deformation[k];
                 let cauchy = stress[k] * f.transpose() * (1.0 / f.determinant());
-                *out = match divergence {
-                    Divergence::Adjoint => weighted(
-                        &(cauchy * around[k].inverse_moment.to_matrix()),
-                        points[first + k].place.0[3],
-                    ),
-                    Divergence::Shepard => {
-                        let density = self.mass[first + k].0 / points[first + k].place.0[3];
-                        weighted(
-                            &(cauchy * (1.0 / (density * density * around[k].filled))),
-                            self.mass[first + k].0,
-                        )
-                    }
+                let (mass, volume) = (self.mass[first + k].0, points[first + k].place.0[3]);
+                let measure = match divergence {
+                    Divergence::Adjoint => volume,
+                    Divergence::Shepard => mass,
                 };
-                if points[first + k].place.0[3] <= 0.0 {
+                *out = weighted(&corrected(divergence, &cauchy, &around[k], (mass, volume)), measure);
+                if volume <= 0.0 {
                     *out = CorrectedStress::default();
                 }
             }
         });
         // Terms that only look: they leave the stresses as they are.
-        constitutive.fold(&mut constitutive.folded(&mut rows, block, stresses), &mut sum);
+        let mut folded = constitutive.folded(&mut rows, block, stresses);
+        let controlled = self.kernel.control.is_some();
+        if controlled {
+            for (carried, before) in carried.iter_mut().zip(&*folded.memory.modulus) {
+                carried.set_modulus_before(*before);
+            }
+        }
+        constitutive.fold(&mut folded, &mut sum);
+        if controlled {
+            for (k, carried) in carried.iter_mut().enumerate() {
+                let modulus = folded.memory.modulus[k];
+                if self.starts {
+                    carried.set_modulus_before(modulus);
+                }
+                carried.set(&deformation[k], modulus, self.volume[first + k].0);
+            }
+        }
         sum.close(&rows, block);
         sum
+    }
+}
+
+/// What neighbours read of a Cauchy stress of a particle of that mass and volume.
+#[inline(always)]
+pub(super) fn corrected(
+    divergence: Divergence,
+    stress: &DMat3,
+    around: &Surroundings,
+    (mass, volume): (f64, f64),
+) -> DMat3 {
+    match divergence {
+        Divergence::Adjoint => *stress * around.inverse_moment.to_matrix(),
+        Divergence::Shepard => {
+            let density = mass / volume;
+            *stress * (1.0 / (density * density * around.filled))
+        }
     }
 }
 
