@@ -6,6 +6,7 @@
 use glam::{DMat3, DVec3};
 
 use super::cloud::{FlowCloud, Group};
+use super::surface_distance::{apart, dyad};
 use crate::plugin::SimBuilder;
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
@@ -132,19 +133,17 @@ fn place_in_body(
 ) -> Option<DVec3> {
     let position = |j: u32| cloud.records[j as usize].position();
     let from = cloud.records[i].position();
-    let away = |j: u32| cloud.offset(position(j), from);
+    let away = |j: u32| -cloud.offset(from, position(j));
     let nearest = near.iter().copied().min_by(|a, b| away(*a).length().total_cmp(&away(*b).length()))?;
     let x = away(nearest);
     if x.length() > NEAREST * spacing {
         return None;
     }
-    let origin = |j: u32| reference[j as usize - other.cloud.start].0;
-    let dyad = |a: DVec3, b: DVec3| DMat3::from_cols(a * b.x, a * b.y, a * b.z);
     let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
     for &j in near {
-        let now = cloud.offset(position(nearest), position(j));
+        let [now, home] = apart(cloud, other, reference, from, [nearest, j]);
         moment += dyad(now, now);
-        map += dyad(cloud.offset(origin(nearest), origin(j)), now);
+        map += dyad(home, now);
     }
     if cloud.plane {
         moment.z_axis.z = 1.0;
@@ -153,5 +152,5 @@ fn place_in_body(
     // Too few particles to fit a map to: those of a body that has barely moved.
     let fits = moment.determinant() > 1e-6 * spacing.powi(if cloud.plane { 4 } else { 6 });
     let moved = if fits { map * (moment.inverse() * x) } else { x };
-    Some(origin(nearest) + moved)
+    Some(reference[nearest as usize - other.cloud.start].0 + moved)
 }

@@ -9,6 +9,7 @@ mod advice;
 mod assemble;
 mod axial;
 mod batch;
+mod body_motion;
 mod body_spin;
 #[cfg(test)]
 mod channel_tests;

@@ -100,16 +100,17 @@ impl Repulsion {
             let view = step.world.phase(surface.group.phase);
             let reference = view.read::<ReferencePosition>()?;
             let reference = &reference[surface.group.rows.clone()];
-            let shift = surface.shift(cloud, reference);
+            let motion = surface.motion(cloud, reference);
             let rows = (&mut out[..], &self.close[..]);
             for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
                 for (out, &i) in out.iter_mut().zip(close) {
-                    if shift.is_some_and(|shift| surface.is_beyond(self.range, cloud, i as usize, shift)) {
+                    let i = i as usize;
+                    if motion.is_some_and(|motion| surface.is_beyond(self.range, cloud, i, &motion)) {
                         continue;
                     }
-                    let found = surface.place(cloud, i as usize, reference);
+                    let found = surface.place(cloud, i, reference, motion.as_ref());
                     let Some(place) = found.filter(|place| place.distance < out.distance) else { continue };
-                    let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&(i as usize)));
+                    let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&i));
                     let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
                     out.distance = place.distance;
                     out.boundary = surface.group.cloud.start;

@@ -148,3 +148,24 @@ fn a_particle_that_starts_nearer_than_the_range_is_not_pushed() {
         assert!(column::<Velocity>(&sim, 0).iter().all(|v| v.0 == DVec3::ZERO));
     }
 }
+
+#[test]
+fn particles_between_a_turned_body_and_its_periodic_image_are_not_pushed() {
+    let (spacing, thickness, period) = (SPACING, 4.0 * SPACING, 6.4 * SPACING);
+    let mut sim = simulation(&format!(
+        r#"(dimension: Three, domain: (min: (-1, -1, 0), max: (1, 1, {period}), periodic: [Z]), materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND})}},
+            bodies: [
+                (name: "water", material: "water", spacing: {spacing}, formulation: Fluid(pressure: 0.0), shape: Box(min: (0.06, 0.06, {thickness}), max: (0.1, 0.1, {period}))),
+                (name: "block", {WALL}, spacing: {spacing}, shape: Box(min: (0, 0, 0), max: (0.16, 0.16, {thickness}))),
+            ], time: (end: 1.0))"#
+    ));
+    sim.start().expect("a start");
+    for body in [BodyId(0), BodyId(1)] {
+        let (view, rows) = sim.world().body_view(body);
+        let mut x = view.write::<Position>().expect("places");
+        rows.for_each(|row| x[row].0 = glam::DMat3::from_rotation_z(0.8) * x[row].0);
+    }
+    sim.run(|sim| sim.clock().step < 20).expect("a run");
+    assert!(column::<Velocity>(&sim, 0).iter().all(|v| v.0 == DVec3::ZERO));
+    assert!(!sim.warnings().iter().any(|text| text.contains(" is inside of ")), "{:?}", sim.warnings());
+}

@@ -1,12 +1,14 @@
 //! Distance of fluid particles from the shape of a body that has moved and bent.
 //!
-//! A particle is taken back to where it would be in the body as the scene has it, by the affine map that fits the particles of the body around it, which is exact for
-//! rigid motions, and is compared with the shape there.
+//! A particle is taken back to where it would be in the body as the scene has it, and is compared with the shape there: by the motion of the whole body, where that is one
+//! affine map, else by the affine map that fits the particles of the body around it.
 
 use glam::{DMat3, DVec3};
 
+use super::body_motion::BodyMotion;
 use super::cloud::{FlowCloud, Group};
 use super::near::part;
+use super::record::Record;
 use super::repulsion::Shares;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
@@ -36,22 +38,27 @@ pub(super) struct Place {
 }
 
 impl Shape {
-    /// How far the body has moved if all of its particles have moved alike, m.
-    pub fn shift(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<DVec3> {
-        let mut moved =
-            self.group.cloud.clone().zip(reference).map(|(j, x)| cloud.records[j].position() - x.0);
-        let first = moved.next()?;
-        let margin = 1e-9 * self.spacing;
-        moved.all(|next| (next - first).abs().max_element() <= margin).then_some(first)
+    /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
+    pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
+        let now = cloud.records[self.group.cloud.clone()].iter().map(Record::position);
+        BodyMotion::new(now, reference.iter().map(|x| x.0), (self.spacing, cloud.plane))
     }
 
-    /// Whether particle `i` is farther than `range`, m, from a body that has moved by `shift`, m.
-    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, shift: DVec3) -> bool {
-        self.distance(cloud, cloud.records[i].position() - shift) >= range
+    /// Whether particle `i` is farther than `range`, m, from a body with that motion.
+    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, motion: &BodyMotion) -> bool {
+        let place = motion.home(cloud.records[i].position());
+        motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
     }
 
-    /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its particles in the scene.
-    pub fn place(&self, cloud: &FlowCloud, i: usize, reference: &[ReferencePosition]) -> Option<Place> {
+    /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its particles in the scene, `motion` is that of the whole body, if it
+    /// has one.
+    pub fn place(
+        &self,
+        cloud: &FlowCloud,
+        i: usize,
+        reference: &[ReferencePosition],
+        motion: Option<&BodyMotion>,
+    ) -> Option<Place> {
         let row = part(cloud.near.row(i), &self.group.cloud);
         let from = cloud.records[i].position();
         let offset = |j: u32| cloud.offset(from, cloud.records[j as usize].position());
@@ -65,7 +72,7 @@ impl Shape {
             return None;
         }
         let origin = reference[nearest as usize - self.group.cloud.start].0;
-        let home = |j: u32| cloud.offset(origin, reference[j as usize - self.group.cloud.start].0);
+        let home = |j: u32| apart(cloud, &self.group, reference, from, [nearest, j])[1];
         let (mut total, mut mean, mut mean_home) = (0.0, DVec3::ZERO, DVec3::ZERO);
         for &j in row {
             let weight = weight(j);
@@ -88,19 +95,40 @@ impl Shape {
         let powers = if cloud.plane { 4 } else { 6 };
         let fits = moment.determinant() > 1e-6 * self.spacing.powi(powers);
         let inverse = if fits { moment.inverse() } else { DMat3::ZERO };
-        let map = if fits { moved * inverse } else { DMat3::IDENTITY };
-        let at = if fits { origin + mean_home - map * mean } else { origin - offset(nearest) };
+        let (map, at) = match motion {
+            Some(motion) => (motion.map, origin - motion.map * offset(nearest)),
+            None if fits => {
+                let map = moved * inverse;
+                (map, origin + mean_home - map * mean)
+            }
+            None => (DMat3::IDENTITY, origin - offset(nearest)),
+        };
         let shares = Shares { total, mean, slope: -(inverse * mean) };
         Some(Place { at, distance: self.distance(cloud, at), map, shares })
     }
 
-    /// Distance from the shape or from its periodic image, m.
+    /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
     fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
-        let distance = self.region.distance(at);
         if !cloud.periods.any() {
-            return distance;
+            return self.region.distance(at);
         }
-        distance.min(self.region.distance(cloud.pairs.periodic().wrap(at)))
+        let periodic = cloud.pairs.periodic();
+        let (lengths, inside) = (periodic.lengths(), periodic.wrap(at));
+        let mut distance = self.region.distance(inside);
+        // Beyond a side of the domain that is near, the body may go on.
+        let from_low = inside - periodic.min();
+        let side = |axis: usize, low: bool| {
+            let gap = if low { from_low[axis] } else { lengths[axis] - from_low[axis] };
+            periodic.axes()[axis] && gap < self.reach
+        };
+        for n in 1..27 {
+            let digits = [n % 3, n / 3 % 3, n / 9];
+            if (0..3).all(|axis| digits[axis] == 0 || side(axis, digits[axis] == 1)) {
+                let turns = DVec3::from_array(digits.map(|digit| [0.0, 1.0, -1.0][digit]));
+                distance = distance.min(self.region.distance(inside + turns * lengths));
+            }
+        }
+        distance
     }
 
     /// Gradient of the distance with respect to the place in space, by central differences.
@@ -116,7 +144,24 @@ impl Shape {
     }
 }
 
+/// The vector between two particles of a body, now and in the body as the scene has it, m: of the images that are nearest to `from`, which need not be those that are nearest to
+/// each other.
+pub(super) fn apart(
+    cloud: &FlowCloud,
+    group: &Group,
+    reference: &[ReferencePosition],
+    from: DVec3,
+    [first, second]: [u32; 2],
+) -> [DVec3; 2] {
+    let position = |j: u32| cloud.records[j as usize].position();
+    let origin = |j: u32| reference[j as usize - group.cloud.start].0;
+    let now = cloud.offset(from, position(second)) - cloud.offset(from, position(first));
+    let periods = now - (position(second) - position(first));
+    let home = origin(second) - origin(first);
+    [now, if cloud.periods.any() { home + periods } else { home }]
+}
+
 /// `a (x) b`.
-fn dyad(a: DVec3, b: DVec3) -> DMat3 {
+pub(super) fn dyad(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
