@@ -8,7 +8,7 @@ use meshless_engine::plugin::Registry;
 use super::failure::Failure;
 use super::text::unsaid;
 use super::{
-    bench, check, completions, new, picture, plugins, resume, schema, sweep, validate, version, view,
+    bench, check, completions, new, picture, plugins, resume, schema, surface, sweep, validate, version, view,
 };
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
@@ -32,6 +32,7 @@ enum Command {
     Validate(validate::Arguments),
     View(view::Arguments),
     Picture(picture::Arguments),
+    Surface(surface::Arguments),
     Completions(completions::Arguments),
     Manual(completions::Manual),
 }
@@ -54,6 +55,7 @@ impl Command {
             Self::Validate(arguments) => validate::execute(&arguments, registry),
             Self::View(arguments) => view::execute(&arguments),
             Self::Picture(arguments) => picture::execute(&arguments),
+            Self::Surface(arguments) => surface::execute(&arguments),
             Self::Completions(arguments) => completions::execute(&arguments),
             Self::Manual(_) => completions::manual(),
         }

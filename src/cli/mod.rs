@@ -21,6 +21,7 @@ mod run;
 mod scene_file;
 mod schema;
 mod summary;
+mod surface;
 mod sweep;
 mod template;
 mod text;

@@ -19,6 +19,8 @@ mod recording;
 #[cfg(not(feature = "rerun"))]
 #[path = "without_rerun.rs"]
 mod recording;
+#[cfg(feature = "surfaces")]
+mod surface;
 
 pub use colormap::Colormap;
 #[cfg(feature = "rerun")]
@@ -28,3 +30,5 @@ pub use plugin::{RerunRecorder, register};
 pub use reading::{ReadError, RecordedBody, RecordedFrame, read_frame};
 #[cfg(feature = "rerun")]
 pub use recording::{RerunError, RerunFile, WebViewer, WebViewerError};
+#[cfg(feature = "surfaces")]
+pub use surface::{SurfaceError, SurfaceMesh, surface_of};

@@ -33,6 +33,8 @@ pub struct RerunRecorder {
     pub grey: Option<Vec<String>>,
     /// Dots where the particles were in the first frame. Default: false.
     pub undeformed: bool,
+    /// Bodies drawn as closed surfaces, in three dimensions. It needs a program built with `--features surfaces`. Default: none.
+    pub surfaces: Vec<String>,
     /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
     pub radius_scale: f64,
     /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written all the same.
@@ -47,6 +49,7 @@ impl Default for RerunRecorder {
             colormap: None,
             grey: None,
             undeformed: false,
+            surfaces: Vec::new(),
             radius_scale: 1.0,
             connect: None,
         }
@@ -60,6 +63,7 @@ impl Plugin for RerunRecorder {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         self.check()?;
         let grey = self.grey_bodies(sim.scene())?;
+        self.check_surfaces(sim.scene(), sim.dimension())?;
         let gravity = sim.gravity().to_array();
         let up = match sim.dimension() {
             Dimension::Two => [0.0, 1.0, 0.0],
@@ -77,14 +81,30 @@ impl RerunRecorder {
             let walls = scene.bodies.iter().filter(|body| body.formulation.name() == Wall::NAME);
             return Ok(walls.map(|body| body.name.clone()).collect());
         };
-        match named.iter().find(|name| scene.bodies.iter().all(|body| body.name != **name)) {
-            None => Ok(named.clone()),
-            Some(unknown) => {
-                let known: Vec<_> = scene.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-                let message = format!("there is no body `{unknown}`");
-                Err(SetupError::parameter("grey", message, format!("the bodies are {}", known.join(", "))))
-            }
+        bodies_of("grey", named, scene)?;
+        Ok(named.clone())
+    }
+
+    fn check_surfaces(&self, scene: &Scene, dimension: Dimension) -> Result<(), SetupError> {
+        if self.surfaces.is_empty() {
+            return Ok(());
         }
+        bodies_of("surfaces", &self.surfaces, scene)?;
+        let refused =
+            |message: &str, help: &str| Err(SetupError::parameter("surfaces", message.to_owned(), help));
+        if dimension == Dimension::Two {
+            return refused(
+                "`surfaces` are meshes in three dimensions, and this scene is plane",
+                "`meshless picture --smooth` draws plane bodies as areas",
+            );
+        }
+        if cfg!(feature = "rerun") && !cfg!(feature = "surfaces") {
+            return refused(
+                "this program was built without `surfaces`",
+                "build it with `cargo build --release --features surfaces`, or leave `surfaces` out",
+            );
+        }
+        Ok(())
     }
 
     fn check(&self) -> Result<(), SetupError> {
@@ -115,6 +135,16 @@ impl RerunRecorder {
         }
         Ok(())
     }
+}
+
+/// Checks that the scene has all bodies that the parameter `field` names.
+fn bodies_of(field: &'static str, named: &[String], scene: &Scene) -> Result<(), SetupError> {
+    let Some(unknown) = named.iter().find(|name| scene.bodies.iter().all(|body| body.name != **name)) else {
+        return Ok(());
+    };
+    let known: Vec<_> = scene.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
+    let message = format!("there is no body `{unknown}`");
+    Err(SetupError::parameter(field, message, format!("the bodies are {}", known.join(", "))))
 }
 
 /// The unit vector along the axis nearest to the direction opposite to gravity; z without gravity.

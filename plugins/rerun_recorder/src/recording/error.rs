@@ -35,6 +35,10 @@ pub enum RerunError {
     /// Data did not reach the file.
     #[error("the recording cannot be written, is the disk full? {0}")]
     Flush(#[from] SinkFlushError),
+    /// A surface could not be made.
+    #[cfg(feature = "surfaces")]
+    #[error(transparent)]
+    Surface(#[from] crate::surface::SurfaceError),
     /// A frame came before the start of the run, or after its end.
     #[error("the recording is not open")]
     NotOpen,

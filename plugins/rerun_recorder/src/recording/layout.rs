@@ -9,8 +9,8 @@ use re_sdk_types::blueprint::components::{
 };
 use re_sdk_types::components::{Color, Position3D, Vector3D};
 use re_sdk_types::datatypes::{Bool, Range2D};
-use rerun::RecordingStreamResult;
 use rerun::log::LogMsg;
+use rerun::{EntityPath, RecordingStreamResult};
 
 use super::blueprint::{Blueprint, Tile, View, only, with_children, without};
 use super::legend;
@@ -30,6 +30,8 @@ pub struct Layout {
     pub bodies: Vec<String>,
     /// What the colours mean: name of the field, if there is one.
     pub colors: Option<String>,
+    /// Bodies that are drawn as surfaces.
+    pub surfaces: Vec<String>,
     /// Whether the particles of the first frame are shown, too.
     pub undeformed: bool,
     /// Simulated time, s.
@@ -90,6 +92,12 @@ impl Layout {
         blueprint.container(ContainerKind::Vertical, &tiles)
     }
 
+    /// What is drawn of a body: its particles, or its surface.
+    fn shown(&self, body: &str) -> EntityPath {
+        let as_surface = self.surfaces.iter().any(|name| name == body);
+        if as_surface { paths::surface(body) } else { paths::body(body) }
+    }
+
     fn space(
         &self,
         blueprint: &Blueprint,
@@ -103,7 +111,7 @@ impl Layout {
             .with_look_target(Position3D::from(single(eye.target)))
             .with_eye_up(Vector3D::from(single(eye.up)));
         let grid = LineGrid3D::new().with_visible(false);
-        let mut contents: Vec<String> = self.bodies.iter().map(|body| only(&paths::body(body))).collect();
+        let mut contents: Vec<String> = self.bodies.iter().map(|body| only(&self.shown(body))).collect();
         if self.undeformed {
             contents.extend(self.bodies.iter().map(|body| only(&paths::undeformed(body))));
         }

@@ -11,6 +11,7 @@ mod output;
 pub mod paths;
 mod recorder;
 mod series;
+mod surface;
 mod web_viewer;
 
 pub use add::{add, check_address};

@@ -22,6 +22,11 @@ pub fn field(body: &str, name: &str) -> EntityPath {
     entity(["bodies", body, name])
 }
 
+/// The surface of a body.
+pub fn surface(body: &str) -> EntityPath {
+    entity(["bodies", body, "surface"])
+}
+
 /// Where the particles of a body were in the first frame.
 pub fn undeformed(body: &str) -> EntityPath {
     entity(["bodies", body, "undeformed"])

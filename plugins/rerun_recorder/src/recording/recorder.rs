@@ -15,6 +15,7 @@ use super::notes::Notes;
 use super::output::Output;
 use super::paths;
 use super::series::SeriesTable;
+use super::surface::show_surface;
 use crate::camera::Bounds;
 use crate::colormap::Colormap;
 use crate::plugin::RerunRecorder;
@@ -100,6 +101,7 @@ impl RerunFile {
                 up: self.up,
                 bodies: bodies.clone(),
                 colors: colors.map(|field| field.name.to_owned()),
+                surfaces: self.settings.surfaces.clone(),
                 undeformed: self.settings.undeformed,
                 duration: run.end_time - run.start_time,
             },
@@ -164,6 +166,9 @@ impl RerunFile {
                 .with_colors(colors(shown, scale, map))
                 .with_radii([radius]);
             open.output.log(&paths::body(body.name), &points)?;
+            if self.settings.surfaces.iter().any(|name| name == body.name) {
+                show_surface(&open.output, body, &colors(shown, scale, map))?;
+            }
             for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name))
             {
                 let numbers = Scalars::new(field.values.iter().copied());
