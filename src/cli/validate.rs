@@ -35,6 +35,7 @@ mod level_at_rest;
 mod lid_driven_cavity;
 mod measure;
 mod metal_cutting;
+mod moving_square;
 mod neighbor_lists;
 mod oscillating_plate;
 mod patch;

@@ -90,6 +90,7 @@ macro_rules! for_each_case {
             F7 dam_break_box::CASE;
             F8 floating_box::CASE;
             F9 rotating_patch::CASE;
+            F10 moving_square::CASE;
             F12 rotating_flows::CASE;
             F13 vortices::CASE;
             F14 wedge_entry::CASE;
