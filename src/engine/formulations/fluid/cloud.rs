@@ -29,6 +29,12 @@ pub struct FluidState {
 }
 
 impl FluidState {
+    /// Bulk modulus rho_0 c_0^2, Pa.
+    #[inline]
+    pub fn bulk_modulus(&self) -> f64 {
+        self.density * self.sound_speed * self.sound_speed
+    }
+
     /// Harmonic mean of the viscosities of two fluids, Pa s.
     #[inline]
     pub fn viscosity_with(&self, other: &Self) -> f64 {

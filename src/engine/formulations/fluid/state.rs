@@ -1,6 +1,6 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
-use super::cloud::{FlowCloud, FluidState};
+use super::cloud::{FlowCloud, FluidState, Group};
 use super::mach::Mach;
 use super::record::Record;
 use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
@@ -10,6 +10,9 @@ use crate::world::{Density, Mass, Pressure, Removed};
 /// Stable step in units of h / (c_0 + v). A tank at rest is stable up to 1.6, and grows at once at 1.8; the
 /// energy of impacts asks for less.
 const COURANT: f64 = 0.4;
+/// Stable step of a light fluid beside a stiff one in units of h / sqrt(K / rho), with the largest bulk modulus K of all fluids: the pressure of the stiff one moves the mass of
+/// the light one. Water below air of a thousandth of its density is stable at 3.5 and not at 11.
+const INTERFACE: f64 = 1.7;
 /// Stable step in units of rho h^2 / mu, over the factor of friction. Eigenvalues of friction are up to 3.3 (a lattice) and 4.4
 /// (irregular particles) of that factor times nu / h^2; explicit steps of friction stand two over the largest.
 const VISCOUS: f64 = 0.32;
@@ -47,6 +50,8 @@ impl Run for EquationOfState {
         let viscous = VISCOUS / viscosities.factor() * h * h;
         let account = step.ledger.account("compression", AccountKind::Stored);
         self.mach.resize(groups.len(), Mach::default());
+        let fluids = groups.iter().filter_map(Group::fluid);
+        let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
         for (group, mach) in groups.iter().zip(&mut self.mach) {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
@@ -68,6 +73,8 @@ impl Run for EquationOfState {
             let name = &step.world.body(group.body).name;
             mach.look(speed, state, name, step)?;
             step.limits.propose(COURANT * h / (sound + speed), format_args!("sound speed of `{name}`"));
+            let limit = INTERFACE * h / (stiffest / state.density).sqrt();
+            step.limits.propose(limit, format_args!("stiffer fluids beside `{name}`"));
             if state.viscosity > 0.0 {
                 let limit = viscous * state.density / state.viscosity;
                 step.limits.propose(limit, format_args!("viscosity of `{name}`"));
