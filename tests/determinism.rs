@@ -5,6 +5,7 @@ mod common;
 use common::coupled::coupled;
 use common::thin::thin;
 use common::touching::{tool_of_triangles, touching};
+use common::wearing::wearing;
 use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
@@ -35,6 +36,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (2, crash()),
         (2, touching()),
         (3, tool_of_triangles()),
+        (2, wearing()),
     ];
     for (dimension, source) in scenes {
         let one = hash_after(&source, 1, 150);

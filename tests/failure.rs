@@ -4,7 +4,7 @@ use meshless::prelude::DVec3;
 use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
-use meshless::world::{BodyId, Damage, Mass, Velocity};
+use meshless::world::{BodyId, Damage, Mass, ReferencePosition, Removed, Velocity};
 use meshless::{assembly, standard_plugins};
 
 /// A notched strip of metal that is pulled apart, with the given plugins.
@@ -114,5 +114,48 @@ fn cracks_keep_momentum_and_books_with_every_control() {
             let error = sim.ledger().relative_error();
             assert!(error.abs() < 1e-2, "{form} {then}: balance error {error}");
         }
+    }
+}
+
+/// Whether each particle of a block of 7 x 5 at (0.1, 0.1), (0.2, 0.1) and so on has been removed after some steps at rest, when those that are named have failed.
+fn left_of_block(formulation: &str, failed: &[(i32, i32)]) -> Vec<(i32, i32)> {
+    let text = format!(
+        r#"(dimension: Two, materials: {{"glass": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
+            bodies: [(name: "block", material: "glass", shape: Box(min: (0.05, 0.05), max: (0.75, 0.55)), spacing: 0.1, formulation: {formulation},
+                      plugins: [failure(criterion: MaximumPrincipalStrain(limit: 0.5), then: RemovedAtSurface)])],
+            time: (end: 10.0))"#
+    );
+    let (scene, source) = parse(Source::new("block.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    let mut sim =
+        assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+    let place = |sim: &Simulation, row: usize| {
+        let x = sim.world().body_view(BodyId(0)).0.read::<ReferencePosition>().expect("places")[row].0 * 10.0;
+        (x.x.round() as i32, x.y.round() as i32)
+    };
+    let rows = sim.world().body_view(BodyId(0)).1;
+    for row in rows.clone() {
+        if failed.contains(&place(&sim, row)) {
+            sim.world().body_view(BodyId(0)).0.write::<Damage>().expect("damage")[row].0 = 1.0;
+        }
+    }
+    sim.run(|sim| sim.clock().step < 6).expect("a run");
+    let view = sim.world().body_view(BodyId(0)).0;
+    let removed = view.read::<Removed>().expect("a column");
+    rows.filter(|&row| removed[row] == Removed::YES).map(|row| place(&sim, row)).collect()
+}
+
+#[test]
+fn what_has_failed_is_worn_off_from_the_surface_inwards() {
+    for formulation in ["TotalLagrangian()", "UpdatedLagrangian()", "Eulerian()"] {
+        // Inside of the block, and with a sound layer above.
+        assert_eq!(left_of_block(formulation, &[(4, 3)]), [], "{formulation}");
+        assert_eq!(left_of_block(formulation, &[(4, 3), (4, 4), (5, 4)]), [], "{formulation}");
+        // At a face, a corner, and layer by layer below a part of a face.
+        assert_eq!(left_of_block(formulation, &[(4, 5), (4, 2)]), [(4, 5)], "{formulation}");
+        assert_eq!(left_of_block(formulation, &[(1, 1)]), [(1, 1)], "{formulation}");
+        let pit = [(3, 4), (4, 4), (5, 4), (3, 5), (4, 5), (5, 5)];
+        let mut found = left_of_block(formulation, &pit);
+        found.sort_by_key(|(x, y)| (*y, *x));
+        assert_eq!(found, pit, "{formulation}");
     }
 }

@@ -5,6 +5,7 @@ mod common;
 use common::coupled::coupled;
 use common::thin::thin;
 use common::touching::{tool_of_triangles, touching};
+use common::wearing::wearing;
 use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
 
 #[test]
@@ -30,6 +31,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (crash(), 200, 22),
         (touching(), 300, 23),
         (tool_of_triangles(), 150, 24),
+        (wearing(), 300, 25),
+        (wearing(), 300, 26),
     ];
     for (scene, (source, steps, seed)) in scenes.into_iter().enumerate() {
         let break_at = 1 + seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) % (steps - 1);

@@ -51,6 +51,7 @@ const TEMPLATES: &[Template] = &templates![
     "brittle_bar",
     "projectile",
     "metal_cutting",
+    "abrasive_flow",
     "dam_break",
     "dam_break_3d",
     "dam_break_obstacle",

@@ -3,6 +3,7 @@
 //! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way `--set` sets
 //! them, and one file here, which says what is measured and what it is compared with.
 
+mod abrasive_flow;
 mod bar_impact;
 mod bending_column;
 mod bending_cylinder;

@@ -4,6 +4,7 @@
 pub mod coupled;
 pub mod thin;
 pub mod touching;
+pub mod wearing;
 
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;

@@ -3,6 +3,7 @@
 
 mod criterion;
 mod energy;
+mod exposure;
 mod johnson_cook;
 mod law;
 mod removal;
@@ -37,6 +38,8 @@ column! {
     pub struct DamagedEnergy(f64) = "damaged_energy", "psi_D", "J/m^3";
     /// Deformation gradient at the end of the last step; of a failed particle that at failure.
     pub struct DamagedDeformation(glam::DMat3) = "damaged_deformation", "F_D", "1";
+    /// Whether a failed particle has been at a surface of its body at the end of the last step: 1 or 0.
+    pub struct Exposed(u32) = "exposed", "-", "1";
     /// Volume ratio of a failed particle at the end of the last step; infinite for one that has lost its integrity.
     pub struct FailedVolume(f64) = "failed_volume", "J_D", "1";
     /// Mean stress of a failed particle at the end of the last step.
@@ -108,8 +111,10 @@ impl Plugin for Failure {
                 Ok(FailingLaw::new(Watch::new(criterion, &*inner, &name)?, inner, growth, then))
             })?;
         }
-        if self.then == Then::Removed {
-            sim.add_removal_rule(removal::Failed { bodies: bodies.clone() });
+        match self.then {
+            Then::Removed => sim.add_removal_rule(removal::Failed { bodies: bodies.clone() }),
+            Then::RemovedAtSurface => exposure::add(sim, &bodies),
+            Then::NoTension | Then::NoDeviator => {}
         }
         energy::add_system(sim, bodies);
         Ok(())

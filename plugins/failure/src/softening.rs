@@ -16,6 +16,8 @@ pub enum Then {
     NoDeviator,
     /// It is taken out of the run. On the way there damage takes from positive principal stresses.
     Removed,
+    /// It is worn off: taken out of the run as soon as it is at a surface of its body. Inside, it is as with `NoDeviator`.
+    RemovedAtSurface,
 }
 
 impl Then {
@@ -23,7 +25,7 @@ impl Then {
     pub(crate) fn soften(self, stress: &Sym3, damage: f64) -> Sym3 {
         let left = 1.0 - damage;
         match self {
-            Self::NoDeviator => {
+            Self::NoDeviator | Self::RemovedAtSurface => {
                 let mean = Sym3::from_diagonal(DVec3::splat(stress.trace() / 3.0));
                 stress.deviator() * left + mean
             }
@@ -35,7 +37,12 @@ impl Then {
 
     /// The mean stress, Pa, that a failed particle bears of the one that its volume would have.
     pub(crate) fn borne(self, mean: f64) -> f64 {
-        if self == Self::NoDeviator { mean } else { mean.min(0.0) }
+        if self.is_liquid() { mean } else { mean.min(0.0) }
+    }
+
+    /// Whether what has failed resists changes of its volume alone.
+    fn is_liquid(self) -> bool {
+        matches!(self, Self::NoDeviator | Self::RemovedAtSurface)
     }
 
     /// Whether a failed particle of that deformation, volume ratio and cofactor is no liquid any more: it would pull on what is far
@@ -43,7 +50,7 @@ impl Then {
     pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
         let [x, y, z] = [cofactor.x_axis, cofactor.y_axis, cofactor.z_axis];
         let area = ((x.length_squared() + y.length_squared() + z.length_squared()) / 3.0).sqrt();
-        self == Self::NoDeviator && !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
+        self.is_liquid() && !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
     }
 }
 

@@ -97,6 +97,7 @@ macro_rules! for_each_case {
             F15 level_at_rest::CASE;
             X1 water_on_plate::CASE;
             X2 dam_break_obstacle::CASE;
+            X4 abrasive_flow::CASE;
             X5 closed_box::CASE;
             X6 viscous_layers::CASE;
         }

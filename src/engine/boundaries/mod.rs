@@ -12,6 +12,9 @@ mod image_tests;
 mod initial_displacement;
 mod initial_velocity;
 mod load;
+mod mean_velocity;
+#[cfg(test)]
+mod mean_velocity_tests;
 mod part;
 mod prescribed;
 mod pressure;
@@ -32,6 +35,7 @@ pub use fix::Fix;
 pub use force::Force;
 pub use initial_displacement::InitialDisplacement;
 pub use initial_velocity::InitialVelocity;
+pub use mean_velocity::MeanVelocity;
 pub use pressure::Pressure;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
@@ -52,6 +56,7 @@ pub fn register(registry: &mut Registry) {
         .condition::<Pressure>()
         .condition::<Force>()
         .condition::<BodyForce>()
+        .condition::<MeanVelocity>()
         .condition::<Symmetry>()
         .condition::<Turn>();
 }

@@ -38,8 +38,10 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
     let (mut skins, mut warnings) = (Skins::default(), Vec::new());
-    for (k, contact) in scene.contacts.iter().enumerate() {
-        if let Some(problem) = named_before(&scene.contacts[..k], contact, k) {
+    let pairs: Vec<(usize, Contact)> = scene.contact_pairs().collect();
+    for (n, (k, contact)) in pairs.iter().enumerate() {
+        let k = *k;
+        if let Some(problem) = named_before(&pairs[..n], contact, k) {
             problems.push(problem);
             continue;
         }
@@ -93,10 +95,11 @@ fn own_contact_not_offered(contact: &Contact, k: usize, sim: &SimBuilder<'_>) ->
     Some(Problem::at_path(format!("contacts[{k}].between"), message).help(help))
 }
 
-fn named_before(others: &[Contact], contact: &Contact, k: usize) -> Option<Problem> {
+fn named_before(others: &[(usize, Contact)], contact: &Contact, k: usize) -> Option<Problem> {
     let (a, b) = &contact.between;
-    let same =
-        |other: &Contact| other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone());
+    let same = |(_, other): &(usize, Contact)| {
+        other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone())
+    };
     others.iter().any(same).then(|| {
         let message = format!("the contact between `{a}` and `{b}` is given twice");
         Problem::at_path(format!("contacts[{k}].between"), message).help("give each pair of bodies once")
@@ -113,19 +116,21 @@ impl Surfaces<'_> {
     fn of(
         &mut self,
         body: &BodyPlan,
-        contact: &Contact,
+        (contact, number): (&Contact, usize),
         planes: &[MirrorPlane],
         sim: &SimBuilder<'_>,
     ) -> Option<Arc<Skin>> {
         match self.skins.of(body, contact.surface, planes, sim) {
             Ok(skin) => Some(skin),
             Err(reason) => {
-                let (name, (a, b)) = (&body.name, &contact.between);
-                self.warnings.extend(reason.map(|reason| {
+                let (name, (a, b)) = (&body.name, &sim.scene().contacts[number].between);
+                let told = reason.map(|reason| {
                     format!(
                         "body `{name}` touches with its particles in the contact of `{a}` and `{b}`: {reason}"
                     )
-                }));
+                });
+                // Once for all pairs of a contact.
+                self.warnings.extend(told.filter(|told| !self.warnings.contains(told)));
                 None
             }
         }
@@ -174,7 +179,7 @@ fn pairs_of(
     Ok(match (is_rigid(first), is_rigid(second)) {
         (false, false) => {
             if first.id != second.id {
-                let mut skin = |body| surfaces.of(body, contact, planes, sim);
+                let mut skin = |body| surfaces.of(body, (contact, number), planes, sim);
                 if let (Some(first), Some(second)) = (skin(first), skin(second)) {
                     return Ok(vec![Touching::Skins(Box::new(SkinPair::new(of_skins()?, [first, second])))]);
                 }
@@ -198,7 +203,7 @@ fn pairs_of(
         }
         (false, true) | (true, false) => {
             let (soft, tool) = if is_rigid(second) { (first, second) } else { (second, first) };
-            vec![match surfaces.of(soft, contact, planes, sim) {
+            vec![match surfaces.of(soft, (contact, number), planes, sim) {
                 Some(skin) => Touching::SkinOnTool(Box::new(SkinOnTool::new(
                     of_skins()?,
                     skin,

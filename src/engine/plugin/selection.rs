@@ -38,7 +38,7 @@ pub(super) fn resolve(
 ) -> Result<Selection, SetupError> {
     let path = |name: &str| if field.is_empty() { name.to_owned() } else { format!("{field}.{name}") };
     if let Some(name) = &select.body
-        && !bodies.iter().any(|body| body.name == *name)
+        && !bodies.iter().any(|body| select.means(&body.name))
     {
         let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
         let (message, helps) = unknown("body", name, &known);
@@ -59,7 +59,7 @@ pub(super) fn resolve(
         None => None,
     };
     let mut parts = Vec::new();
-    for body in bodies.iter().filter(|body| select.body.as_ref().is_none_or(|name| body.name == *name)) {
+    for body in bodies.iter().filter(|body| select.means(&body.name)) {
         let chosen = |p: DVec3| {
             within.as_ref().is_none_or(|region| region.contains(p))
                 && select.face.is_none_or(|face| on_face(face, body, p))
@@ -77,7 +77,7 @@ pub(super) fn resolve(
         parts = nearest(parts, bodies, point.0);
     }
     if parts.is_empty() {
-        let extents = bodies.iter().filter(|body| select.body.as_ref().is_none_or(|name| body.name == *name));
+        let extents = bodies.iter().filter(|body| select.means(&body.name));
         let extents: Vec<String> = extents
             .map(|body| format!("`{}` extends from {} to {}", body.name, body.bounds.min, body.bounds.max))
             .collect();

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::contact::ANY;
 use super::names::unknown;
 use super::{Axis, Dimension, Face, Problem, Scene, Select, Step, probe_check};
 use crate::notation::number;
@@ -126,7 +127,7 @@ fn check_bodies(scene: &Scene, problems: &mut Vec<Problem>) {
 fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
     for (i, contact) in scene.contacts.iter().enumerate() {
         for (side, name) in [&contact.between.0, &contact.between.1].into_iter().enumerate() {
-            if let Some((message, help)) = unknown_body(scene, name) {
+            if let Some((message, help)) = unknown_bodies(scene, name) {
                 problems
                     .push(Problem::at_path(format!("contacts[{i}].between[{side}]"), message).helps(help));
             }
@@ -146,7 +147,7 @@ impl Select {
     /// What is wrong with the selection in this scene: for each the field, the message and what would be right.
     pub fn problems(&self, scene: &Scene) -> Vec<(&'static str, String, Vec<String>)> {
         let mut problems = Vec::new();
-        if let Some((message, help)) = self.body.as_deref().and_then(|name| unknown_body(scene, name)) {
+        if let Some((message, help)) = self.body.as_deref().and_then(|name| unknown_bodies(scene, name)) {
             problems.push(("body", message, help));
         }
         if scene.dimension == Dimension::Two {
@@ -165,6 +166,18 @@ impl Select {
 pub(super) fn unknown_body(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
     let names: Vec<_> = scene.bodies.iter().map(|body| &body.name).collect();
     scene.body(name).is_none().then(|| unknown("body", name, &names))
+}
+
+/// What is wrong with a name that may stand for several bodies.
+pub(super) fn unknown_bodies(scene: &Scene, name: &str) -> Option<(String, Vec<String>)> {
+    match name.strip_suffix(ANY) {
+        None => unknown_body(scene, name),
+        Some(start) => scene.bodies_named(name).next().is_none().then(|| {
+            let names: Vec<_> = scene.bodies.iter().map(|body| &body.name).collect();
+            let (_, help) = unknown("body", start, &names);
+            (format!("no body has a name that begins with `{start}`"), help)
+        }),
+    }
 }
 
 pub(super) fn usable_name(kind: &str, name: &str, at: String, problems: &mut Vec<Problem>) {

@@ -3,13 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Item;
+use super::{Body, Item};
 
 /// Two bodies that touch, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// The names of the two bodies; twice the same name is contact of a body with itself.
+    /// The names of the two bodies; twice the same name is contact of a body with itself. `"grain*"` stands for all bodies whose names begin
+    /// with `grain`: `("grain*", "floor")` is each of them with the floor, `("grain*", "grain*")` each with each other.
     pub between: (String, String),
     /// How the force follows from the overlap of the surfaces: `Penalty`, `Hertz`.
     pub law: Item,
@@ -35,6 +36,34 @@ pub enum ContactSurface {
     Skin,
     /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.
     Particles,
+}
+
+impl Contact {
+    /// The pairs of names that it stands for, each once.
+    pub(super) fn pairs<'s>(&self, bodies: &'s [Body]) -> Vec<(&'s str, &'s str)> {
+        let named = |name: &str| {
+            bodies.iter().map(|body| &*body.name).filter(|known| is_meant(name, known)).collect()
+        };
+        let (first, second): (Vec<&str>, Vec<&str>) = (named(&self.between.0), named(&self.between.1));
+        let is_itself = self.between.0 == self.between.1 && !self.between.0.ends_with(ANY);
+        let mut pairs = Vec::new();
+        for &a in &first {
+            for &b in &second {
+                if (a != b || is_itself) && !pairs.contains(&(b, a)) {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+/// What stands for any rest of a name; no name has it.
+pub(super) const ANY: char = '*';
+
+/// Whether `name` of a scene means the body with this name: the same, or its beginning followed by a star.
+pub(super) fn is_meant(name: &str, body: &str) -> bool {
+    name.strip_suffix(ANY).map_or(name == body, |start| body.starts_with(start))
 }
 
 const fn elastic() -> f64 {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::contact::is_meant;
 use super::{Body, Contact, Dimension, Domain, Expression, Item, Probe, Record, Table, Time, Vec3};
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
@@ -56,6 +57,20 @@ impl Scene {
     /// The body with this name.
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
+    }
+
+    /// The bodies that a name means: one, or with a star at its end all whose names begin like it.
+    pub fn bodies_named(&self, name: &str) -> impl Iterator<Item = &Body> {
+        self.bodies.iter().filter(move |body| is_meant(name, &body.name))
+    }
+
+    /// The contacts pair by pair, each with the number of the contact that it is from.
+    pub fn contact_pairs(&self) -> impl Iterator<Item = (usize, Contact)> {
+        self.contacts.iter().enumerate().flat_map(|(k, contact)| {
+            let pairs = contact.pairs(&self.bodies).into_iter();
+            let named = pairs.map(|(a, b)| (a.to_owned(), b.to_owned()));
+            named.map(move |between| (k, Contact { between, ..contact.clone() }))
+        })
     }
 
     /// The values of the parameters.

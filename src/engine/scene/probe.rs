@@ -141,6 +141,15 @@ pub enum Quantity {
         /// The point about which the force turns \[m\].
         about: Vec3,
     },
+    /// Volume of the particles of the selection that have been taken out of the run, in the reference configuration: what has been worn off or cut off
+    /// \[m3; m2 in two dimensions\].
+    RemovedVolume,
+    /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every column that is a spacing wide \[m\]: the
+    /// arithmetic mean deviation `Ra` from the mean height, the difference `Rz` of the highest and the lowest height, and the mean height.
+    Roughness {
+        /// Direction out of the surface.
+        normal: Vec3,
+    },
 }
 
 impl Quantity {
@@ -153,6 +162,8 @@ impl Quantity {
             | Self::Moment { .. }
             | Self::Energy
             | Self::FluidForce
+            | Self::RemovedVolume
+            | Self::Roughness { .. }
             | Self::FluidTorque { .. } => Some(false),
             Self::Displacement | Self::Position | Self::Velocity | Self::Distance | Self::Field(_) => None,
         }

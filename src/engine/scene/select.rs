@@ -4,13 +4,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Vec3;
+use super::contact::is_meant;
 use crate::shapes::Shape;
 
 /// The particles that meet all criteria that are given, in their places at the start. Without any criterion: all.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Select {
-    /// Those of the body with this name.
+    /// Those of the body with this name; `"grain*"` stands for all bodies whose names begin with `grain`.
     #[serde(default)]
     pub body: Option<String>,
     /// Those within this shape.
@@ -25,6 +26,13 @@ pub struct Select {
     /// Of loads, and of probes of fields: that part of the surface of the body.
     #[serde(default)]
     pub surface: Option<SurfacePart>,
+}
+
+impl Select {
+    /// Whether its particles may be of the body with this name.
+    pub fn means(&self, body: &str) -> bool {
+        self.body.as_ref().is_none_or(|name| is_meant(name, body))
+    }
 }
 
 /// A part of the surface of a body.

@@ -236,3 +236,38 @@ fn a_hard_body_that_falls_into_an_empty_corner_of_a_tank_bounces_with_the_speed_
     let (x, v) = centre(&sim, 2);
     assert!((v.y - 2.0).abs() < 0.02 && x.y > 0.08, "{x} {v}");
 }
+
+/// Three balls in a row on one line, the first of which flies at the others; `contacts` are those of the scene.
+fn cradle(contacts: &str) -> Simulation {
+    let ball = |k: usize, x: f64, speed: f64| {
+        format!(
+            r#"(name: "ball {k}", material: "steel", shape: Sphere(center: ({x}, 0, 0), radius: 0.01), spacing: 0.005, formulation: Rigid(), velocity: ({speed:?}, 0, 0)),"#
+        )
+    };
+    let balls: String = [(0.0, 1.0), (0.021, 0.0), (0.042, 0.0)]
+        .into_iter()
+        .enumerate()
+        .map(|(k, (x, speed))| ball(k + 1, x, speed))
+        .collect();
+    simulation(&format!(
+        r#"(dimension: Three, materials: {{"steel": NeoHookean(density: 7850, young: 2.1e11, poisson: 0.3)}},
+            bodies: [{balls}], contacts: [{contacts}], time: (end: 3e-3))"#
+    ))
+}
+
+#[test]
+fn a_star_stands_for_all_bodies_whose_names_begin_alike() {
+    let one_by_one: String = [(1, 2), (1, 3), (2, 3)]
+        .map(|(a, b)| format!(r#"Contact(between: ("ball {a}", "ball {b}"), law: Hertz()),"#))
+        .concat();
+    let all = r#"Contact(between: ("ball*", "ball*"), law: Hertz())"#;
+    let each = r#"Contact(between: ("ball 1", "ball*"), law: Hertz()), Contact(between: ("ball 2", "ball 3"), law: Hertz())"#;
+    let hashes = [&one_by_one, all, each].map(|contacts| {
+        let mut sim = cradle(contacts);
+        sim.run(|_| true).unwrap();
+        // The last ball leaves with the speed of the first.
+        assert!((centre(&sim, 2).1.x - 1.0).abs() < 5e-3, "{}", centre(&sim, 2).1);
+        sim.state_hash()
+    });
+    assert!(hashes[0] == hashes[1] && hashes[0] == hashes[2]);
+}

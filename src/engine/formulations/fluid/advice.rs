@@ -24,7 +24,7 @@ pub(super) fn undamped_density(terms: Option<&PhaseTerms>, groups: &[Group], sim
 
 /// Pairs of names of bodies that have a contact.
 pub(super) fn contacts(sim: &SimBuilder<'_>) -> Vec<(String, String)> {
-    sim.scene().contacts.iter().map(|contact| contact.between.clone()).collect()
+    sim.scene().contact_pairs().map(|(_, contact)| contact.between).collect()
 }
 
 /// Whether there is a contact between two bodies.

@@ -25,10 +25,10 @@ pub(super) fn walls_have_fluid(
 ) -> Result<(), SetupError> {
     for wall in walls {
         let body = sim.body(wall.id);
-        let touches = |contact: &crate::scene::Contact| {
+        let touches = |(_, contact): (usize, crate::scene::Contact)| {
             contact.between.0 == body.name || contact.between.1 == body.name
         };
-        if !sim.scene().contacts.iter().any(touches) {
+        if !sim.scene().contact_pairs().any(touches) {
             let message =
                 format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
             let help = "add a body with `formulation: Fluid`, or a contact of the wall with another body";

@@ -32,6 +32,8 @@ struct Body {
     id: BodyId,
     region: Box<dyn Region>,
     spacing: f64,
+    /// Whether it has lost particles.
+    is_worn: bool,
 }
 
 /// The deepest particle of a fluid in a body.
@@ -47,7 +49,7 @@ impl Intrusion {
         let body = |body: &crate::plugin::BodyPlan| {
             let shape = &sim.scene().bodies[body.id.0].shape;
             let region = shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
-            Some(Body { id: body.id, region, spacing: body.spacing })
+            Some(Body { id: body.id, region, spacing: body.spacing, is_worn: false })
         };
         let bodies = sim.bodies().iter().filter_map(body).collect();
         Self { bodies, least: DEPTH * spacing, told: Vec::new() }
@@ -57,9 +59,12 @@ impl Intrusion {
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) -> Result<(), StepError> {
         for fluid in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
             for other in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
-                let Some(body) = self.bodies.iter().find(|body| body.id == other.body) else { continue };
+                let Some(body) = self.bodies.iter_mut().find(|body| body.id == other.body) else { continue };
                 let reference = step.world.phase(other.phase).read::<ReferencePosition>()?;
                 let reference = &reference[other.rows.clone()];
+                body.is_worn |=
+                    cloud.records[other.cloud.clone()].iter().any(|record| record.volume() <= 0.0);
+                let body = &*body;
                 if let Some(deepest) = deepest(cloud, [fluid, other], body, reference, self.least) {
                     self.warn([fluid, other], &deepest, cloud, step)?;
                 }
@@ -109,6 +114,10 @@ fn deepest(
     for (row, i) in fluid.cloud.clone().enumerate().filter(|(_, i)| cloud.records[*i].volume() > 0.0) {
         let near = super::near::part(cloud.near.row(i), &other.cloud);
         let Some(place) = place_in_body(cloud, i, near, other, body.spacing, reference) else { continue };
+        // The shape tells nothing of a body that has lost particles.
+        if body.is_worn && !is_enclosed(cloud, i, near, body.spacing) {
+            continue;
+        }
         let depth = -body.region.distance(place);
         if depth < least {
             continue;
@@ -134,13 +143,18 @@ fn place_in_body(
     let position = |j: u32| cloud.records[j as usize].position();
     let from = cloud.records[i].position();
     let away = |j: u32| -cloud.offset(from, position(j));
-    let nearest = near.iter().copied().min_by(|a, b| away(*a).length().total_cmp(&away(*b).length()))?;
+    let is_there = |j: &u32| cloud.records[*j as usize].volume() > 0.0;
+    let nearest = near
+        .iter()
+        .copied()
+        .filter(is_there)
+        .min_by(|a, b| away(*a).length().total_cmp(&away(*b).length()))?;
     let x = away(nearest);
     if x.length() > NEAREST * spacing {
         return None;
     }
     let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
-    for &j in near {
+    for &j in near.iter().filter(|j| is_there(j)) {
         let [now, home] = apart(cloud, other, reference, from, [nearest, j]);
         moment += dyad(now, now);
         map += dyad(home, now);
@@ -153,4 +167,24 @@ fn place_in_body(
     let fits = moment.determinant() > 1e-6 * spacing.powi(if cloud.plane { 4 } else { 6 });
     let moved = if fits { map * (moment.inverse() * x) } else { x };
     Some(reference[nearest as usize - other.cloud.start].0 + moved)
+}
+
+/// Mean direction of the particles of a body, over the sum of their distances, below which they surround a fluid particle.
+const ENCLOSED: f64 = 0.1;
+/// Distance of the nearest of them beyond which it is not among them, over their spacing; the middle of a square is 0.71 away.
+const AMONG: f64 = 0.75;
+
+/// Whether the particles of a body that are left surround a fluid particle.
+fn is_enclosed(cloud: &FlowCloud, i: usize, near: &[u32], spacing: f64) -> bool {
+    let from = cloud.records[i].position();
+    let (mut sum, mut total, mut nearest) = (DVec3::ZERO, 0.0, f64::INFINITY);
+    for other in near.iter().map(|&j| &cloud.records[j as usize]).filter(|other| other.volume() > 0.0) {
+        let x = cloud.offset(from, other.position());
+        let weight = other.volume() * cloud.kernel.weight(x.length());
+        sum += weight * x;
+        total += weight * x.length();
+        nearest = nearest.min(x.length());
+    }
+    // In a crack that is a particle wide, both sides are farther away.
+    nearest < AMONG * spacing && sum.length() < ENCLOSED * total
 }

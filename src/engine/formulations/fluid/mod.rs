@@ -80,6 +80,8 @@ mod wall;
 mod wall_pressure;
 mod wall_state;
 mod watch;
+#[cfg(test)]
+mod worn_tests;
 
 pub use assemble::add_systems;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};

@@ -53,6 +53,8 @@ pub(super) struct Shares {
     pub total: f64,
     pub mean: DVec3,
     pub slope: DVec3,
+    /// The particle that bears all of it, if there is one.
+    pub only: Option<u32>,
 }
 
 /// Finds the particles that are repelled.
@@ -89,23 +91,27 @@ impl Repulsion {
             let stiffness = groups.iter().map_while(stiffness).collect();
             let reach = range + NEAREST * body.spacing;
             widest = f64::max(widest, reach);
-            surfaces.push(Shape { group: group.clone(), region, stiffness, spacing: body.spacing, reach });
+            let (group, spacing) = (group.clone(), body.spacing);
+            surfaces.push(Shape { group, region, stiffness, spacing, is_worn: false, reach });
         }
         (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }
 
     /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of those within its range.
-    fn measure(&self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
-        for surface in &self.surfaces {
+    fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
+        let (range, close) = (self.range, &self.close[..]);
+        for surface in &mut self.surfaces {
             let view = step.world.phase(surface.group.phase);
             let reference = view.read::<ReferencePosition>()?;
             let reference = &reference[surface.group.rows.clone()];
+            surface.wear(cloud);
+            let surface = &*surface;
             let motion = surface.motion(cloud, reference);
-            let rows = (&mut out[..], &self.close[..]);
+            let rows = (&mut out[..], close);
             for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
                 for (out, &i) in out.iter_mut().zip(close) {
                     let i = i as usize;
-                    if motion.is_some_and(|motion| surface.is_beyond(self.range, cloud, i, &motion)) {
+                    if motion.is_some_and(|motion| surface.is_beyond(range, cloud, i, &motion)) {
                         continue;
                     }
                     let found = surface.place(cloud, i, reference, motion.as_ref());
@@ -114,7 +120,7 @@ impl Repulsion {
                     let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
                     out.distance = place.distance;
                     out.boundary = surface.group.cloud.start;
-                    if place.distance < self.range {
+                    if place.distance < range {
                         out.force = stiffness * surface.direction(cloud, &place);
                         out.shares = place.shares;
                     }
@@ -197,6 +203,9 @@ impl FlowCloud {
 impl Shares {
     /// The share of particle `j` in what acts on `i`.
     pub fn of(&self, cloud: &FlowCloud, i: usize, j: usize) -> f64 {
+        if let Some(only) = self.only {
+            return if only as usize == j { 1.0 } else { 0.0 };
+        }
         let record = &cloud.records[j];
         let x = cloud.offset(cloud.records[i].position(), record.position());
         let weight = record.volume() * cloud.kernel.value(x.length());

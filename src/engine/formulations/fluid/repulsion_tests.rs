@@ -7,12 +7,12 @@ use crate::kernels::{Kernel, KernelName};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, Density, Force, Mass, Position, Pressure, ReferenceVolume, Velocity};
 
-const SPACING: f64 = 0.02;
+pub(super) const SPACING: f64 = 0.02;
 const SOUND: f64 = 10.0;
 const DENSITY: f64 = 1000.0;
 
 /// Lone particles above a body whose surface is at y = 0, at a height in spacings, from right above a particle of it to right above a gap; their density is over that at rest.
-fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &str) -> Simulation {
+pub(super) fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &str) -> Simulation {
     let (name, size, floor) = if dimension == 3 {
         ("Three", "(0.04, 1.04, 0.04)", "Box(min: (-0.2, -0.08, -0.2), max: (0.8, 0.0, 0.2))")
     } else {
@@ -44,7 +44,7 @@ fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &st
     sim
 }
 
-const WALL: &str = r#"material: "wall", formulation: Wall()"#;
+pub(super) const WALL: &str = r#"material: "wall", formulation: Wall()"#;
 
 #[test]
 fn lone_particles_do_not_pass_a_wall_and_keep_their_energy() {

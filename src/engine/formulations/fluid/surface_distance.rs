@@ -2,6 +2,9 @@
 //!
 //! A particle is taken back to where it would be in the body as the scene has it, and is compared with the shape there: by the motion of the whole body, where that is one
 //! affine map, else by the affine map that fits the particles of the body around it.
+//!
+//! What is left of a body that has lost particles has another shape. Its particles are spheres, and the distance is that from the nearest. They overlap, so that nothing passes between
+//! two of them in the plane or four in space, and end before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
 
@@ -13,6 +16,9 @@ use super::repulsion::Shares;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
+/// Radii of the spheres of a worn body in the plane and in space, over its spacing.
+const SPHERES: [f64; 2] = [0.65, 0.75];
+
 /// The shape of a boundary.
 pub(super) struct Shape {
     pub group: Group,
@@ -21,13 +27,15 @@ pub(super) struct Shape {
     pub stiffness: Vec<f64>,
     /// Spacing of its particles, m.
     pub spacing: f64,
+    /// Whether it has lost particles.
+    pub is_worn: bool,
     /// Distance of the nearest of its particles beyond which a particle is not beside it, m.
     pub reach: f64,
 }
 
 /// A fluid particle in the body as the scene has it.
 pub(super) struct Place {
-    /// Where it is there, m.
+    /// Where it is there, m; beside one particle alone, the direction away from that.
     at: DVec3,
     /// Distance from the shape, negative inside of it, m.
     pub distance: f64,
@@ -38,6 +46,14 @@ pub(super) struct Place {
 }
 
 impl Shape {
+    /// Takes notice of the first particle that is gone.
+    pub fn wear(&mut self, cloud: &FlowCloud) {
+        if !self.is_worn {
+            self.is_worn =
+                cloud.records[self.group.cloud.clone()].iter().any(|record| record.volume() <= 0.0);
+        }
+    }
+
     /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
     pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
         let now = cloud.records[self.group.cloud.clone()].iter().map(Record::position);
@@ -71,6 +87,9 @@ impl Shape {
         if offset(nearest).length() > self.reach {
             return None;
         }
+        if self.is_worn {
+            return Some(self.beside(cloud, nearest, offset(nearest)));
+        }
         let origin = reference[nearest as usize - self.group.cloud.start].0;
         let home = |j: u32| apart(cloud, &self.group, reference, from, [nearest, j])[1];
         let (mut total, mut mean, mut mean_home) = (0.0, DVec3::ZERO, DVec3::ZERO);
@@ -103,8 +122,15 @@ impl Shape {
             }
             None => (DMat3::IDENTITY, origin - offset(nearest)),
         };
-        let shares = Shares { total, mean, slope: -(inverse * mean) };
+        let shares = Shares { total, mean, slope: -(inverse * mean), only: None };
         Some(Place { at, distance: self.distance(cloud, at), map, shares })
+    }
+
+    /// Beside the sphere of one particle, which is at `offset` from here.
+    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> Place {
+        let distance = offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing;
+        let shares = Shares { only: Some(particle), ..Shares::default() };
+        Place { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
     }
 
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
@@ -133,6 +159,9 @@ impl Shape {
 
     /// Gradient of the distance with respect to the place in space, by central differences.
     pub fn direction(&self, cloud: &FlowCloud, place: &Place) -> DVec3 {
+        if place.shares.only.is_some() {
+            return place.at;
+        }
         let step = 1e-4 * self.spacing;
         let axes = if cloud.plane { 2 } else { 3 };
         let mut gradient = DVec3::ZERO;

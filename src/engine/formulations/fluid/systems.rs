@@ -40,9 +40,10 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
 
 /// The phases that take short steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
 pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
+    let pairs = advice::contacts(sim);
     let touched = |group: &Group| {
         let name = &sim.body(group.body).name;
-        sim.scene().contacts.iter().any(|contact| contact.between.0 == *name || contact.between.1 == *name)
+        pairs.iter().any(|(first, second)| first == name || second == name)
     };
     let moved = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.moved);
     if !groups.iter().any(moved) {

@@ -16,6 +16,7 @@ mod taken;
 #[cfg(test)]
 mod tests;
 mod torque;
+mod wear;
 
 pub use energies::EnergyColumns;
 pub use flow::{pressure_on_face, water_level};

@@ -11,6 +11,7 @@ use super::planar::Planar;
 use super::point::PointGauge;
 use super::relative::Relative;
 use super::torque::TorqueGauge;
+use super::wear;
 use crate::fields::{ChosenField, FieldTable};
 use crate::plugin::{Selection, SetupError, SimBuilder};
 use crate::scene::{self, Dimension, Problem, Quantity, Select};
@@ -100,6 +101,9 @@ impl Probe {
     ) -> Result<Self, Vec<Problem>> {
         let on = || select(k, &probe.on.clone().unwrap_or_default(), sim);
         if let Some(gauge) = flow::resolve(k, probe, on, sim)? {
+            return Ok(Self::new(probe, Gauge::Measure(gauge), sim));
+        }
+        if let Some(gauge) = wear::resolve(k, probe, on, sim)? {
             return Ok(Self::new(probe, Gauge::Measure(gauge), sim));
         }
         let gauge = match field_name(&probe.quantity) {

@@ -1,0 +1,205 @@
+//! Flows that are driven so that their mean velocity stays: a channel with a constant flux.
+//!
+//! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies together at the end of a step, weighted by mass,
+//! `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::load::{self, LoadLaw};
+use super::part::Part;
+use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
+use crate::scene::{PerAxis, Select};
+use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::world::{BodyId, BodySet, Mass, Removed, Velocity};
+
+/// Keeps the mean velocity of bodies, weighted by mass, by a force per mass that is the same for all of their particles: the pressure gradient of a channel
+/// with a constant flux. Its work is in the account `mean_velocity`.
+///
+/// A suspension in a periodic channel: `MeanVelocity(bodies: ["water", "grain*"], value: (1.0, None))`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeanVelocity {
+    /// Fluids and rigid bodies, whose mean is taken together; `"grain*"` stands for all bodies whose names begin with `grain`.
+    pub bodies: Vec<String>,
+    /// Velocity along each axis \[m/s\]; `None` leaves an axis alone.
+    pub value: PerAxis<f64>,
+}
+
+/// Steps within which a deviation decays.
+const STEPS: f64 = 10.0;
+
+impl Plugin for MeanVelocity {
+    const NAME: &'static str = "MeanVelocity";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let selection = self.selection(sim)?;
+        let wanted = self.wanted(sim)?;
+        let controlled = [0, 1, 2].map(|axis| f64::from(u8::from(self.value.0[axis].is_some())));
+        let control = Control { wanted, axes: DVec3::from_array(controlled), state: ControlState::default() };
+        let shared = Arc::new(Mutex::new(control));
+        let bodies: Vec<BodyId> = selection.parts.iter().map(|(id, _)| *id).collect();
+        let phases = sim.phases_of(&BodySet::new(bodies.iter().copied()));
+        let measure = Measure { control: Arc::clone(&shared), bodies };
+        sim.add_system(
+            System::new(Stage::PreStep, "mean_velocity_control", measure)
+                .on_phases(phases)
+                .in_long_steps()
+                .reads::<Velocity>()
+                .reads::<Mass>()
+                .reads::<Removed>(),
+        );
+        load::apply("mean_velocity", Uniform(shared), &selection, sim, System::reads::<Mass>);
+        Ok(())
+    }
+}
+
+impl MeanVelocity {
+    fn selection(&self, sim: &SimBuilder<'_>) -> Result<Selection, SetupError> {
+        let mut all = Selection::default();
+        for (k, name) in self.bodies.iter().enumerate() {
+            let field = format!("bodies[{k}]");
+            let select = Select { body: Some(name.clone()), ..Select::default() };
+            let found = sim.select(&select, &field).map_err(|error| match error {
+                SetupError::Parameter { message, help, .. } => {
+                    SetupError::Parameter { field: field.clone(), message, help }
+                }
+                other @ SetupError::Problems(_) => other,
+            })?;
+            for (id, rows) in found.parts {
+                let body = sim.body(id);
+                if !matches!(body.kind, BodyKind::Fluid | BodyKind::Rigid) {
+                    let message = format!("body `{}` is neither a fluid nor rigid", body.name);
+                    let help = "solids and walls are moved by `Velocity`";
+                    return Err(SetupError::parameter(field, message, help));
+                }
+                if all.parts.iter().all(|(known, _)| *known != id) {
+                    all.parts.push((id, rows));
+                }
+            }
+        }
+        if all.parts.is_empty() {
+            let help = "name fluids or rigid bodies";
+            return Err(SetupError::parameter("bodies", "no body is named", help));
+        }
+        all.parts.sort_by_key(|(id, _)| *id);
+        Ok(all)
+    }
+
+    fn wanted(&self, sim: &SimBuilder<'_>) -> Result<DVec3, SetupError> {
+        let value = &self.value.0;
+        let help = "give a velocity along at least one axis of the scene, such as `(1.0, None)`";
+        if value.iter().all(Option::is_none) {
+            return Err(SetupError::parameter("value", "no axis has a value", help));
+        }
+        for axis in 0..3 {
+            let (given, entry) = (value[axis], format!("value[{axis}]"));
+            if given.is_some() && axis >= sim.dimension().count() {
+                return Err(SetupError::parameter(entry, "a two-dimensional scene has no axis z", help));
+            }
+            if given.is_some_and(|value| !value.is_finite()) {
+                return Err(SetupError::parameter(entry, "the velocity must be finite", help));
+            }
+        }
+        Ok(DVec3::from_array(value.map(Option::unwrap_or_default)))
+    }
+}
+
+/// What drives the bodies.
+struct Control {
+    wanted: DVec3,
+    /// 1 along controlled axes, else 0.
+    axes: DVec3,
+    state: ControlState,
+}
+
+/// The part that a checkpoint keeps.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+struct ControlState {
+    /// Force per mass, N/kg.
+    force: DVec3,
+    /// Mean velocity at the end of the last step, m/s; none before the first.
+    last: Option<DVec3>,
+}
+
+type Shared = Arc<Mutex<Control>>;
+
+/// Momentum and mass.
+#[derive(Clone, Copy, Default)]
+struct Moving(DVec3, f64);
+
+impl BlockSum for Moving {
+    fn add(&mut self, next: &Self) {
+        self.0 += next.0;
+        self.1 += next.1;
+    }
+}
+
+/// Measures the mean velocity, and sets the force of the step that begins.
+struct Measure {
+    control: Shared,
+    bodies: Vec<BodyId>,
+}
+
+impl Run for Measure {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut moving = Moving::default();
+        for &body in &self.bodies {
+            let (view, rows) = step.world.body_view(body);
+            let (velocity, mass) = (view.read::<Velocity>()?, view.read::<Mass>()?);
+            let removed = view.read::<Removed>()?;
+            let all = (&velocity[rows.clone()], &mass[rows.clone()], &removed[rows]);
+            type Rows<'a> = (&'a [Velocity], &'a [Mass], &'a [Removed]);
+            moving.add(&sum_over_blocks(all, &|_, (velocity, mass, removed): Rows<'_>| {
+                let mut sum = Moving::default();
+                for (k, velocity) in velocity.iter().enumerate().filter(|(k, _)| removed[*k] == Removed::NO) {
+                    sum.add(&Moving(mass[k].0 * velocity.0, mass[k].0));
+                }
+                sum
+            }));
+        }
+        let dt = step.clock.dt;
+        if moving.1 > 0.0 && dt > 0.0 {
+            let mut control = self.control.lock().unwrap_or_else(PoisonError::into_inner);
+            let (mean, wanted, axes) = (moving.0 / moving.1, control.wanted, control.axes);
+            let change = mean - control.state.last.unwrap_or(mean);
+            let correction = (wanted - mean) / (STEPS * STEPS) - 2.0 * change / STEPS;
+            control.state.force += axes * correction / dt;
+            control.state.last = Some(mean);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let control = self.control.lock().unwrap_or_else(PoisonError::into_inner);
+        postcard::to_stdvec(&control.state).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok(state) = postcard::from_bytes(state) else { return false };
+        self.control.lock().unwrap_or_else(PoisonError::into_inner).state = state;
+        true
+    }
+}
+
+/// The force per mass, the same for all particles.
+struct Uniform(Shared);
+
+impl LoadLaw for Uniform {
+    fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
+        let force = self.0.lock().unwrap_or_else(PoisonError::into_inner).state.force;
+        let mass = step.world.body_view(part.body).0.read::<Mass>()?;
+        out.clear();
+        out.extend(part.rows.iter().map(|&row| force * mass[row as usize].0));
+        Ok(())
+    }
+
+    fn is_constant(&self) -> bool {
+        false
+    }
+}
