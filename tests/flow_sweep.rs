@@ -88,7 +88,8 @@ fn every_shipped_flow_is_swept() {
         let path = entry.expect("an entry").path();
         let text = std::fs::read_to_string(&path).expect("a scene");
         let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name").to_owned();
-        if text.contains("formulation: Fluid") {
+        // Flows that wear their walls are no test of single plugins: case X4 runs them.
+        if text.contains("formulation: Fluid") && !text.contains("RemovedAtSurface") {
             assert!(flows().any(|flow| flow == name), "{name}");
             assert!(COARSE.iter().any(|(flow, _)| *flow == name), "{name}");
         }

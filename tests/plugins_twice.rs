@@ -31,6 +31,11 @@ const PLUGINS: &[(&str, Of, [&str; 2])] = &[
         Of::Solids,
         ["criterion: MaximumPrincipalStrain(limit: 0.02)", "criterion: MaximumPrincipalStress(limit: 1e4)"],
     ),
+    (
+        "heat_conduction",
+        Of::Solids,
+        ["conductivity: 10.0, specific_heat: 500.0", "conductivity: 1.0, specific_heat: 900.0"],
+    ),
     ("local_damping", Of::Solids, ["rate: 10.0", "mode: Relaxation(stop: false)"]),
     ("local_damping", Of::Fluids, ["rate: 10.0", "rate: 5.0"]),
 ];

@@ -129,6 +129,10 @@ impl SolidLaw for FailingLaw {
         self.inner.remembers_path()
     }
 
+    fn specific_heat(&self) -> Option<f64> {
+        self.inner.specific_heat()
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.inner.stable_step_factor(stretches)
     }

@@ -84,7 +84,9 @@ pub(super) fn plastic(
     };
     let rise = heating.map_or(0.0, |heating| heating.rise(density));
     let temperature = heating.map(|heating| heating.temperature);
-    Ok(Material::solid(density, PlasticLaw { elastic, hardening, pressure, rise, temperature }))
+    let specific_heat = heating.and_then(|heating| heating.specific_heat);
+    let law = PlasticLaw { elastic, hardening, pressure, rise, temperature, specific_heat };
+    Ok(Material::solid(density, law))
 }
 
 /// The law of [`J2`] and [`JohnsonCook`](super::JohnsonCook).
@@ -97,6 +99,8 @@ struct PlasticLaw {
     rise: f64,
     /// Temperature at the start, K, if it plays a part.
     temperature: Option<f64>,
+    /// Specific heat, J/(kg K), if the metal heats up.
+    specific_heat: Option<f64>,
 }
 
 impl SolidLaw for PlasticLaw {
@@ -114,6 +118,10 @@ impl SolidLaw for PlasticLaw {
 
     fn initial_yield_stress(&self) -> Option<f64> {
         Some(self.hardening.static_stress(0.0, self.temperature.unwrap_or_default()))
+    }
+
+    fn specific_heat(&self) -> Option<f64> {
+        self.specific_heat
     }
 
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {

@@ -155,6 +155,11 @@ pub trait SolidLaw: Send + Sync {
         None
     }
 
+    /// Specific heat, J/(kg K), of laws that have a temperature which heat changes.
+    fn specific_heat(&self) -> Option<f64> {
+        None
+    }
+
     /// Factor of the stable time step at the extreme stretches of a body, as seen from the undeformed configuration.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
 
