@@ -208,6 +208,7 @@ fn place_bodies<'r>(
             material,
             sites,
             carried: Vec::new(),
+            hidden: Vec::new(),
             bounds,
             velocity: body.velocity,
         };

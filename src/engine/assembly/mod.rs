@@ -12,6 +12,7 @@ mod placement;
 mod plausibility;
 mod spawn;
 mod standard;
+mod support_faces;
 #[cfg(test)]
 mod support_tests;
 mod supports;

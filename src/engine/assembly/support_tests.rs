@@ -10,11 +10,15 @@ use crate::world::{BodyId, ReferencePosition};
 
 /// A strip from x = -0.03 to 0.1 with a spacing of 0.01, with that condition.
 fn strip(condition: &str) -> Simulation {
+    strip_of("TotalLagrangian", 0.3, condition)
+}
+
+fn strip_of(formulation: &str, poisson: f64, condition: &str) -> Simulation {
     let text = format!(
         r#"(dimension: Two, gravity: (0, -10),
-            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: {poisson:?})}},
             bodies: [(name: "strip", material: "soft", shape: Box(min: (-0.03, 0), max: (0.1, 0.04)), spacing: 0.01,
-                formulation: TotalLagrangian)],
+                formulation: {formulation})],
             conditions: [{condition}],
             time: (end: 0.05))"#
     );
@@ -59,7 +63,8 @@ fn other_supports_leave_particles_in_their_lattice() {
         "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))), edge: Particles)",
         "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))), axes: [X])",
         "Velocity(on: Select(within: Box(min: (-1, -1), max: (0, 1))), value: (None, 0))",
-        "Fix(on: Select(face: MinX))",
+        "Fix(on: Select(face: MinX), edge: Particles)",
+        "Symmetry(plane: X, at: -0.03), Fix(on: Select(face: MinX), axes: [X])",
         "Fix(on: Select(within: Box(min: (-1, -1), max: (1, 1))))",
         "InitialVelocity(on: Select(within: Box(min: (-1, -1), max: (0, 1))), value: (0, 1))",
     ] {
@@ -85,4 +90,51 @@ fn a_strip_that_swings_in_its_clamp_keeps_its_energy() {
     sim.run(|_| true).unwrap();
     let error = sim.ledger().relative_error().abs();
     assert!(error < 1e-3, "{error}");
+}
+
+#[test]
+fn a_side_is_held_where_it_is() {
+    for (condition, moved) in [
+        ("Fix(on: Select(face: MinX))", 4),
+        ("Fix(on: Select(face: MinX), axes: [X])", 4),
+        ("Velocity(on: Select(face: MinX), value: (None, 0))", 4),
+        (
+            "Displacement(on: Select(face: MinX, within: Box(min: (-1, -1), max: (1, 0.02))), value: (0, 0))",
+            2,
+        ),
+    ] {
+        let (x, off) = columns(&strip(condition));
+        assert!((x[0] + 0.03).abs() < 2e-6 && off == moved, "{condition}: {x:?} {off}");
+    }
+    // A disc has no side: its outermost particles stay.
+    let text = r#"(dimension: Two, materials: {"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "disc", material: "soft", shape: Sphere(center: (0, 0), radius: 0.1), spacing: 0.01, formulation: TotalLagrangian)],
+        conditions: [Fix(on: Select(face: MinX))], time: (end: 0.05))"#;
+    let (scene, source) = parse(Source::new("supports.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+    let (x, _) = columns(&build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}")));
+    assert!(x[0] > -0.099, "{x:?}");
+}
+
+/// Without lateral contraction the energy of a uniform strain is that of the part of the strip that is not held.
+#[test]
+fn what_is_stretched_up_to_its_support_has_the_energy_of_that_length() {
+    let strain = 1e-4;
+    let within = |end: f64| format!("Fix(on: Select(within: Box(min: (-1, -1), max: ({end:?}, 1))))");
+    let cases = [-0.004, -0.0025, 0.0, 0.001, 0.0025, 0.005, 0.0055].map(|end| (end, within(end)));
+    for (edge, condition) in cases.into_iter().chain([(-0.03, "Fix(on: Select(face: MinX))".to_owned())]) {
+        for formulation in ["TotalLagrangian", "UpdatedLagrangian()"] {
+            let stretch = format!(
+                "{condition}, InitialDisplacement(on: Select(within: Box(min: ({:?}, -1), max: (1, 1))), value: (\"{strain}*(x - {edge:?})\", \"0\"))",
+                edge + 1e-5
+            );
+            let mut sim = strip_of(formulation, 0.0, &stretch);
+            sim.step().unwrap();
+            let strain_energy = sim.ledger().stored_at_start();
+            let expected = 0.5 * 1e6 * strain * strain * 0.04 * (0.1 - edge);
+            assert!(
+                (strain_energy / expected - 1.0).abs() < 2e-3,
+                "{formulation} {condition}: {strain_energy} {expected}"
+            );
+        }
+    }
 }

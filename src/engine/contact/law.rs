@@ -46,7 +46,7 @@ pub struct Touch {
 }
 
 /// The elastic part of a normal force.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spring {
     /// Force, N.
     pub force: f64,

@@ -3,7 +3,7 @@
 use crate::parallel::BlockSum;
 
 /// The least of lengths, m; infinite where there is none.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Least(pub f64);
 
 impl Default for Least {

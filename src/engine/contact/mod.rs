@@ -26,6 +26,7 @@ mod skin_foot;
 mod skin_near;
 mod skin_on_tool;
 mod skin_pair;
+mod skin_points;
 mod skins_of;
 mod start;
 mod stiffness;

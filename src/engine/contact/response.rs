@@ -65,11 +65,34 @@ impl Interaction {
         dt: f64,
         before: &Memory,
     ) -> Response {
-        let Meeting { touch, normal, velocity, scale, area, arms } = meeting;
+        let Meeting { touch, normal, velocity, scale, area, .. } = meeting;
         let mut spring = self.law.at(touch).along(*scale).over(*area);
-        let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
         spring.force *= share_of_step(touch, scale * approach * dt, before);
+        self.beside(spring, meeting, inverse_mass, dt, before)
+    }
+
+    /// The spring of a point of a surface that remembers nothing, of an area over that for which the law holds: where it was in the last step and will be in the
+    /// next follows from the speed at which it approaches, m/s.
+    pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
+        let mut spring = self.law.at(touch).over(area);
+        let way = approach.abs() * dt;
+        spring.force *= share_of_way(touch, way);
+        spring
+    }
+
+    /// The force of a spring with all that is beside it.
+    pub fn beside(
+        &self,
+        spring: Spring,
+        meeting: &Meeting,
+        inverse_mass: impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &Memory,
+    ) -> Response {
+        let Meeting { touch, normal, velocity, scale, arms, .. } = meeting;
+        let across = if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(*normal) };
+        let approach = -velocity.dot(*normal);
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
         let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
         let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force - taken_up, dt);
@@ -154,8 +177,12 @@ fn is_held(touch: &Touch) -> bool {
 /// half of that force in the mean; in its last it acts until they part. Without this share a touch would miss up to an eighth of
 /// `k (v dt)^2` of its energy at either end. Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
 fn share_of_step(touch: &Touch, approach: f64, before: &Memory) -> f64 {
+    share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
+}
+
+/// The same, for an overlap that began or ends within the way of a step, m.
+fn share_of_way(touch: &Touch, way: f64) -> f64 {
     let overlap = touch.overlap;
-    let way = if before.is_none() { approach } else { before.overlap - overlap };
     if way > overlap && is_held(touch) { 0.5 + 0.5 * overlap / way } else { 1.0 }
 }
 

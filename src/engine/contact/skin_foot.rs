@@ -17,16 +17,39 @@ pub(super) struct Foot {
     pub distance: f64,
 }
 
-/// The foot of `x` on the nearest one of some facets of a patch, if it is no farther than `farthest`, m.
-pub(super) fn foot(patch: &Patch, facets: &[u32], x: DVec3, farthest: f64) -> Option<Foot> {
+/// Centre of a facet, m, and how far it reaches from there, with something for round-off, m.
+pub(super) type Ball = (DVec3, f64);
+
+/// Works out the balls around the facets of a patch; `balls` has one for every facet of the skin.
+pub(super) fn enclose(patch: &Patch, facets: &[u32], balls: &mut Vec<Ball>) {
+    let axes = patch.skin.facets.axes;
+    balls.resize(patch.skin.facets.corners.len(), (DVec3::ZERO, 0.0));
+    for &facet in facets {
+        let corners = patch.corners(facet).map(|corner| corner.place);
+        let center = corners[..axes].iter().sum::<DVec3>() / axes as f64;
+        let squared = corners.map(|corner| corner.distance_squared(center));
+        let radius = squared[0].max(squared[1]).max(squared[2]).sqrt();
+        balls[facet as usize] = (center, radius * (1.0 + 1e-9));
+    }
+}
+
+/// The foot of `x` on the nearest one of some facets of a patch, if it is no farther than `farthest`, m. Facets whose balls are farther than the nearest
+/// one so far are passed over.
+pub(super) fn foot(patch: &Patch, balls: &[Ball], facets: &[u32], x: DVec3, farthest: f64) -> Option<Foot> {
     let axes = patch.skin.facets.axes;
     let mut nearest: Option<(f64, u32, [f64; 3])> = None;
+    let mut reach = farthest;
     for &facet in facets {
+        let (center, radius) = balls[facet as usize];
+        if center.distance_squared(x) > (reach + radius).powi(2) {
+            continue;
+        }
         let corners = patch.corners(facet).map(|corner| corner.place);
         let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
         let squared = point(&corners, shares).distance_squared(x);
         if squared < nearest.map_or(farthest * farthest, |(squared, ..)| squared) {
             nearest = Some((squared, facet, shares));
+            reach = squared.sqrt();
         }
     }
     let (squared, facet, shares) = nearest?;

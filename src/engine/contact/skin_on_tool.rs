@@ -1,7 +1,8 @@
 //! Contact of the skin of a deformable body with the exact surface of a rigid one.
 //!
 //! The energy is the integral of that of the law over the skin, by points with areas of the reference configuration; the overlap is the exact distance of
-//! a point from the surface. Both bodies are pushed at the point itself. The points stand so close that a curved tool does not feel them.
+//! a point from the surface. Where the points stand is told in `skin_points`. Both bodies are pushed at the vertices of the skin, by what the points around them add up to; the dashpot and
+//! friction belong to vertices, too.
 
 use std::sync::Arc;
 
@@ -15,18 +16,14 @@ use super::pace::Pace;
 use super::response::{Interaction, Meeting};
 use super::sides::Sides;
 use super::skin_near::NearTool;
+use super::skin_points::{Extremes, Points, Pressed, Pressing, Reached, Seen};
 use super::stiffness;
 use super::tally::Tally;
 use crate::parallel::{BlockSum, Largest, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
-use crate::skins::{Patch, Rule, Skin, SkinColumns, Vertex, Wanted};
+use crate::skins::{Patch, Skin, SkinColumns, Vertex, Wanted};
 use crate::world::BodyId;
-
-/// No point of a facet is farther from its nearest vertex than that share of its longest side.
-const BEYOND: f64 = 0.6;
-/// Parts of a segment of half a spacing, and rows of a triangle of a spacing, each with a point.
-const PARTS: [usize; 2] = [8, 2];
 
 /// Contact of a skin with a rigid body.
 pub(super) struct SkinOnTool {
@@ -35,65 +32,60 @@ pub(super) struct SkinOnTool {
     pub tool: BodyId,
     /// The particles and the surface, which must not overlap at the start.
     pub sides: Sides,
-    rule: Rule,
+    points: Points,
     near: NearTool,
-    candidates: Vec<PairKey>,
-    /// Of every vertex of the patch its distance from the tool, m.
-    distances: Vec<f64>,
-    pub meetings: Meetings<Meet, Push, Least>,
+    /// What every vertex of the patch sees of the tool, and which points of every facet near it may touch.
+    seen: Vec<Seen>,
+    reached: Vec<Reached>,
+    /// What presses on the vertices of every facet near the tool, and on every vertex of the patch.
+    on_facets: Vec<[Pressed; 3]>,
+    pressed: Vec<Pressed>,
+    /// Of every vertex of the patch the area of even facets that is its own, m2 (m).
+    even: Vec<f64>,
+    /// Vertices that touch, with their numbers in the patch, and what dashpot and friction add there, N.
+    touching: Vec<PairKey>,
+    pub meetings: Meetings<u32, DVec3, ()>,
 }
 
-/// A point of the skin that touches.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Meet {
-    /// Where it is, m.
-    x: DVec3,
-    /// Outward normal of the tool there.
-    normal: DVec3,
-    /// How deep it is in the tool, m.
-    overlap: f64,
-}
-
-/// What a point does.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Push {
-    /// Where, m.
-    x: DVec3,
-    /// Force on the skin, N.
-    force: DVec3,
-    /// Stiffness over the area, N/m3 (N/m2 in two dimensions), and times the inverse mass of the tool, 1/s2.
-    stiffness: f64,
-    of_tool: f64,
-}
-
-/// The sums over all points that touch.
+/// The sums over all vertices that touch.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     on_tool: Wrench,
-    stiffest: Largest,
     of_tool: f64,
+    stored: f64,
 }
 
 impl BlockSum for Sums {
     fn add(&mut self, next: &Self) {
         self.on_tool.add(&next.on_tool);
-        self.stiffest.add(&next.stiffest);
         self.of_tool += next.of_tool;
+        self.stored += next.stored;
     }
 }
 
 impl SkinOnTool {
     /// Contact of a skin with the surface of a rigid body.
     pub fn new(interaction: Interaction, skin: Arc<Skin>, sides: Sides) -> Self {
-        let axes = skin.facets.axes;
-        let rule = Rule::fine(axes, PARTS[axes - 2]);
-        let points = rule.len() * skin.facets.corners.len();
-        let (near, tool) = (NearTool::new(&skin), sides.second);
-        let (patch, candidates, mut meetings) =
-            (Patch::new(skin), Vec::with_capacity(points), Meetings::default());
-        meetings.reserve(points);
-        let distances = Vec::with_capacity(patch.skin.vertices());
-        Self { interaction, patch, tool, sides, rule, near, candidates, distances, meetings }
+        let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
+        let mut meetings = Meetings::default();
+        if !interaction.is_elastic() {
+            meetings.reserve(vertices);
+        }
+        Self {
+            interaction,
+            tool: sides.second,
+            sides,
+            points: Points::new(skin.facets.axes),
+            near: NearTool::new(&skin),
+            seen: Vec::with_capacity(vertices),
+            reached: Vec::with_capacity(facets),
+            on_facets: Vec::with_capacity(facets),
+            pressed: Vec::with_capacity(vertices),
+            even: Vec::with_capacity(vertices),
+            touching: Vec::with_capacity(vertices),
+            patch: Patch::new(skin),
+            meetings,
+        }
     }
 
     /// Works out the forces of all points that touch, and pushes the rigid body.
@@ -110,19 +102,15 @@ impl SkinOnTool {
         let speeds = [paces[0].speed, paces[1].speed];
         if self.near.is_old(speeds, dt) {
             self.near.find(&skin, &view, tool);
-            let facets = &self.near.facets;
-            self.patch.select(facets.iter().copied());
-            let count = self.rule.len() as u32;
-            self.candidates.clear();
-            let points = facets.iter().flat_map(|facet| (0..count).map(move |k| (facet * count + k, 0)));
-            self.candidates.extend(points);
+            self.patch.select(self.near.facets.iter().copied());
         }
         let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Mobility };
         self.patch.update(&view, dt, wanted);
-        let gap = self.find(tool);
-        let tally = self.evaluate(tool, dt);
-        let Sums { on_tool, mut stiffest, of_tool } = self.push(tool);
-        stiffest.add(&Largest(self.expected(tool, gap, speeds[0] + speeds[1], dt)));
+        let Extremes { gap, mut stiffest } = self.press(tool, dt);
+        let mut tally = if self.interaction.is_elastic() { Tally::default() } else { self.rub(tool, dt) };
+        let Sums { on_tool, of_tool, stored } = self.push(tool);
+        tally.stored += stored;
+        stiffest.add(&Largest(self.expected(tool, gap.0, speeds[0] + speeds[1], dt)));
         tool.push(&on_tool);
         self.patch.hand_on();
         let squared = stiffness::OF_SKIN * stiffest.0 * skin.lightness + of_tool;
@@ -130,127 +118,153 @@ impl SkinOnTool {
         Ok(tally)
     }
 
-    /// The law at an overlap of zero.
-    fn touch(&self, tool: &RigidBody) -> Touch {
+    /// The law at an overlap of zero, and the area for which it holds, m2 (m).
+    fn touch(&self, tool: &RigidBody) -> (Touch, f64) {
         let length = self.patch.skin.spacing;
         let own = 0.5 * length;
         let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
-        Touch { overlap: 0.0, radius, length, depth: own }
+        (
+            Touch { overlap: 0.0, radius, length, depth: own },
+            length.powi(self.patch.skin.facets.axes as i32 - 1),
+        )
     }
 
     /// The stiffness over the area that a touch may soon have, N/m3 (N/m2 in two dimensions).
     fn expected(&self, tool: &RigidBody, gap: f64, speed: f64, dt: f64) -> f64 {
-        let touch = self.touch(tool);
-        let usual = touch.length.powi(self.patch.skin.facets.axes as i32 - 1);
+        let (touch, usual) = self.touch(tool);
         stiffness::expected(&*self.interaction.law, &touch, gap, speed, dt) / usual
     }
 
-    /// Finds the points that touch; returns the least gap of the others, m.
-    fn find(&mut self, tool: &RigidBody) -> f64 {
-        let Self { patch, rule, meetings, candidates, distances, .. } = self;
-        let count = rule.len();
-        distances.resize(patch.vertices().len(), 0.0);
-        let rows = (&mut distances[..], patch.vertices());
-        for_each_block(rows, &mut Vec::new(), &|_, (distances, vertices): (&mut [f64], &[Vertex])| {
-            for (distance, vertex) in distances.iter_mut().zip(vertices) {
-                *distance = tool.surface.closest(tool.reference(vertex.place)).signed_distance;
+    /// Works out what presses on the vertices.
+    fn press(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+        let (touch, usual) = self.touch(tool);
+        let Self { interaction, patch, points, near, seen, reached, on_facets, pressed, even, .. } = self;
+        let (interaction, patch, points) = (&*interaction, &*patch, &*points);
+        let on = Pressing { interaction, patch, tool, touch, usual, dt };
+        let vertices = patch.vertices();
+        seen.resize(vertices.len(), Seen::default());
+        let rows = (&mut seen[..], vertices);
+        for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [Seen], &[Vertex])| {
+            for (seen, vertex) in seen.iter_mut().zip(vertices) {
+                let (distance, normal, approach) = on.look(vertex.place, vertex.velocity);
+                *seen = Seen { distance, normal, approach };
             }
         });
-        let gap = meetings.find(candidates, |(point, _), gap: &mut Least| {
-            let (facet, point) = (point / count as u32, point as usize % count);
-            let [a, b, c] = patch.numbers(facet).map(|vertex| distances[vertex]);
-            let corners = patch.corners(facet);
-            let [p, q, r] = corners.map(|corner| corner.place);
-            let size = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p)).sqrt();
-            let least = a.min(b).min(c) - BEYOND * size;
-            if least >= 0.0 {
-                gap.add(&Least(least));
-                return None;
+        reached.resize(near.facets.len(), Reached::Partly);
+        on_facets.resize(near.facets.len(), Default::default());
+        let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
+        type Rows<'a> = (&'a [u32], &'a mut [Reached], &'a mut [[Pressed; 3]]);
+        let mut extremes = sum_over_blocks(rows, &|_, (facets, reached, on_facets): Rows<'_>| {
+            let mut extremes = Extremes::default();
+            for ((&facet, reached), on_facet) in facets.iter().zip(reached).zip(on_facets) {
+                let corners = patch.corners(facet);
+                let seen = patch.numbers(facet).map(|number| &seen[number]);
+                *reached = if corners.iter().all(|corner| corner.is_there) {
+                    Reached::of(corners.map(|corner| corner.place), seen)
+                } else {
+                    Reached::No(f64::INFINITY)
+                };
+                match *reached {
+                    Reached::No(distance) => extremes.gap.add(&Least(distance)),
+                    Reached::Evenly => {}
+                    reached => *on_facet = points.press(&on, facet, (reached, seen), &mut extremes),
+                }
             }
-            let shares = rule.shares(point);
-            let x =
-                shares[0] * corners[0].place + shares[1] * corners[1].place + shares[2] * corners[2].place;
-            let nearest = tool.surface.closest(tool.reference(x));
-            if !corners.iter().all(|corner| corner.is_there) {
-                return None;
-            }
-            if nearest.signed_distance >= 0.0 {
-                gap.add(&Least(nearest.signed_distance));
-            }
-            (nearest.signed_distance < 0.0).then(|| Meet {
-                x,
-                normal: tool.state.rotation * nearest.normal,
-                overlap: -nearest.signed_distance,
-            })
+            extremes
         });
-        gap.0
+        let axes = patch.skin.facets.axes;
+        pressed.clear();
+        pressed.resize(vertices.len(), Pressed::default());
+        even.clear();
+        even.resize(vertices.len(), 0.0);
+        for ((&facet, reached), on) in near.facets.iter().zip(&*reached).zip(&*on_facets) {
+            let numbers = patch.numbers(facet);
+            let part = patch.skin.measure[facet as usize] / axes as f64;
+            match reached {
+                Reached::No(_) => {}
+                Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
+                _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
+            }
+        }
+        let rows = (&mut pressed[..], &seen[..], &even[..]);
+        type Ends<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
+        let at_vertices = sum_over_blocks(rows, &|_, (pressed, seen, even): Ends<'_>| {
+            let mut extremes = Extremes::default();
+            for ((pressed, seen), &area) in
+                pressed.iter_mut().zip(seen).zip(even).filter(|(_, area)| **area > 0.0)
+            {
+                pressed.add(1.0, &on.spring(seen, area, &mut extremes), seen.normal, area, -seen.distance);
+            }
+            extremes
+        });
+        extremes.add(&at_vertices);
+        extremes
     }
 
-    /// Works out what every point does.
-    fn evaluate(&mut self, tool: &RigidBody, dt: f64) -> Tally {
-        let usual_touch = self.touch(tool);
-        let Self { interaction, patch, rule, meetings, .. } = self;
-        let (patch, rule) = (&*patch, &*rule);
-        let skin = &patch.skin;
-        let (length, count) = (skin.spacing, rule.len());
-        let usual = length.powi(skin.facets.axes as i32 - 1);
-        let at = |point: u32| {
-            let facet = point / count as u32;
-            (facet, patch.corners(facet), rule.shares(point as usize % count))
-        };
-        let velocity = |key: PairKey| {
-            let (_, corners, shares) = at(key.0);
-            (0..3).map(|k| shares[k] * corners[k].velocity).sum::<DVec3>()
-        };
-        let respond = |key: PairKey, meet: &Meet, before: &Memory, tally: &mut Tally| {
-            let (facet, corners, shares) = at(key.0);
-            let Meet { x, normal, overlap } = *meet;
-            let velocity = velocity(key) - tool.velocity_at(x);
+    /// Works out dashpot and friction at the vertices that are pressed.
+    fn rub(&mut self, tool: &RigidBody, dt: f64) -> Tally {
+        let (usual, _) = self.touch(tool);
+        let Self { interaction, patch, pressed, touching, meetings, .. } = self;
+        let (patch, pressed) = (&*patch, &*pressed);
+        touching.clear();
+        let numbers = patch.vertex_numbers().iter().zip(0..);
+        touching.extend(
+            numbers.filter(|(_, k)| pressed[*k as usize].spring.force > 0.0).map(|(vertex, _)| (*vertex, 0)),
+        );
+        meetings.find(touching, |(vertex, _), ()| Some(patch.number(vertex) as u32));
+        let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(vertex.place);
+        let respond = |_: PairKey, number: &u32, before: &Memory, tally: &mut Tally| {
+            let (vertex, pressed) = (&patch.vertices()[*number as usize], &pressed[*number as usize]);
+            let velocity = velocity(vertex);
             if !before.is_elastic() {
                 tally.losses.add_work(1.0, before, velocity, dt);
             }
-            let area = skin.measure[facet as usize] / count as f64;
-            let mobility = (0..3).map(|k| shares[k] * corners[k].mobility).sum::<DVec3>() / area;
+            let normal = pressed.force.normalize_or_zero();
             let meeting = Meeting {
-                touch: Touch { overlap, ..usual_touch },
+                touch: Touch { overlap: pressed.depth / pressed.area, ..usual },
                 normal,
                 scale: 1.0,
-                area: area / usual,
+                area: 1.0,
                 arms: [DVec3::ZERO; 2],
                 velocity,
             };
-            let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(x, n);
-            let response = interaction.respond(&meeting, inverse_mass, dt, before);
+            let mobility = vertex.mobility / pressed.area;
+            let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(vertex.place, n);
+            let response = interaction.beside(pressed.spring, &meeting, inverse_mass, dt, before);
             tally.losses.add_work(1.0, &response.memory, velocity, dt);
             tally.losses.keep(1.0, before, &response.memory);
-            tally.stored += response.spring.energy + response.memory.energy();
-            let stiffness = response.spring.stiffness;
-            let of_tool = stiffness * tool.inverse_mass_at(x, normal);
-            (response.memory, Push { x, force: response.force, stiffness: stiffness / area, of_tool })
+            tally.stored += response.memory.energy();
+            (response.memory, response.force - pressed.spring.force * normal)
         };
-        let end = |key: PairKey, memory: &Memory, tally: &mut Tally| {
-            let (_, corners, shares) = at(key.0);
-            let x = (0..3).map(|k| shares[k] * corners[k].place).sum::<DVec3>();
-            tally.losses.add_work(1.0, memory, velocity(key) - tool.velocity_at(x), dt);
+        let end = |(vertex, _): PairKey, memory: &Memory, tally: &mut Tally| {
+            if !memory.is_elastic() && patch.has(vertex) {
+                tally.losses.add_work(1.0, memory, velocity(patch.vertex(vertex)), dt);
+            }
             tally.losses.keep(1.0, memory, &Memory::default());
         };
         meetings.respond(respond, end)
     }
 
-    /// Pushes the vertices; returns what is on the tool about its centre, and the stiffness.
+    /// Pushes the vertices; returns what is on the tool about its centre.
     fn push(&mut self, tool: &RigidBody) -> Sums {
-        let Self { patch, rule, meetings, .. } = self;
-        let count = rule.len();
-        for (((point, _), _), push) in meetings.met().iter().zip(meetings.pushes()) {
-            let shares = rule.shares(*point as usize % count);
-            patch.push(point / count as u32, shares, push.force, None);
+        let Self { patch, pressed, meetings, .. } = self;
+        for ((_, number), beside) in meetings.met().iter().zip(meetings.pushes()) {
+            pressed[*number as usize].force += *beside;
         }
-        sum_over_blocks(meetings.pushes(), &|_, pushes: &[Push]| {
+        for (number, pressed) in pressed.iter().enumerate().filter(|(_, pressed)| pressed.spring.force > 0.0)
+        {
+            patch.push_vertex(number, pressed.force);
+        }
+        let rows = (patch.vertices(), &pressed[..]);
+        sum_over_blocks(rows, &|_, (vertices, pressed): (&[Vertex], &[Pressed])| {
             let mut sums = Sums::default();
-            for Push { x, force, stiffness, of_tool } in pushes {
-                sums.on_tool.push(*x - tool.state.center, -*force);
-                sums.stiffest.add(&Largest(*stiffness));
-                sums.of_tool += of_tool;
+            for (vertex, Pressed { force, spring, .. }) in vertices.iter().zip(pressed) {
+                if spring.force > 0.0 {
+                    sums.on_tool.push(vertex.place - tool.state.center, -*force);
+                    sums.of_tool +=
+                        spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
+                    sums.stored += spring.energy;
+                }
             }
             sums
         })

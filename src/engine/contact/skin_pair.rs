@@ -21,7 +21,7 @@ use super::memory::{Memory, PairKey};
 use super::pace::Pace;
 use super::response::{Interaction, Meeting};
 use super::skin_between::NearSkins;
-use super::skin_foot::{Foot, foot, slopes};
+use super::skin_foot::{Ball, Foot, enclose, foot, slopes};
 use super::stiffness;
 use super::tally::Tally;
 use crate::neighbors::NeighborError;
@@ -41,6 +41,8 @@ pub(super) struct SkinPair {
     pub patches: [Patch; 2],
     rule: Rule,
     near: NearSkins,
+    /// Around the facets of each side that are near the other.
+    balls: [Vec<Ball>; 2],
     /// The points of each side against the facets of the other.
     pub passes: [Meetings<Meet, Push, Least>; 2],
 }
@@ -72,6 +74,8 @@ pub(super) struct Push {
 struct Side<'a> {
     own: &'a Patch,
     other: &'a Patch,
+    /// Around the facets of the other one.
+    balls: &'a [Ball],
     rule: &'a Rule,
     /// Length for which the law holds, m.
     length: f64,
@@ -86,8 +90,9 @@ impl SkinPair {
             meetings.reserve(rule.len() * skin.facets.corners.len());
             meetings
         });
+        let balls = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
         let (near, patches) = (NearSkins::default(), skins.map(Patch::new));
-        Self { interaction, patches, rule, near, passes }
+        Self { interaction, patches, rule, near, balls, passes }
     }
 
     /// Works out the forces of all points that touch.
@@ -122,6 +127,9 @@ impl SkinPair {
         }
         let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Gradients };
         self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
+        for (side, balls) in self.balls.iter_mut().enumerate() {
+            enclose(&self.patches[side], &self.near.facets[side], balls);
+        }
         let mut tally = Tally::default();
         let mut stiffest = Largest::default();
         for side in 0..2 {
@@ -150,8 +158,9 @@ impl SkinPair {
     /// What the points of one side do, and the least gap of points that do not touch, m.
     fn evaluate(&mut self, side: usize, dt: f64) -> (Tally, f64) {
         let length = self.length();
-        let Self { interaction, patches, rule, near, passes } = self;
-        let side_of = Side { own: &patches[side], other: &patches[1 - side], rule, length };
+        let Self { interaction, patches, rule, near, balls, passes } = self;
+        let (own, other, balls) = (&patches[side], &patches[1 - side], &balls[1 - side][..]);
+        let side_of = Side { own, other, balls, rule, length };
         let at = &side_of;
         let gap = passes[side].find(&near.candidates[side], |(point, _), gap: &mut Least| {
             at.meet(point, near.facets_near(side, point / at.rule.len() as u32), gap)
@@ -267,7 +276,7 @@ impl Side<'_> {
         let (facet, shares) = self.corners(point);
         let corners = self.own.corners(facet);
         let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
-        let foot = foot(self.other, facets, x, DEPTH * self.length)?;
+        let foot = foot(self.other, self.balls, facets, x, DEPTH * self.length)?;
         Some(Meet { x, foot, weight: 0.0 })
     }
 

@@ -62,6 +62,7 @@ impl Offer {
         Self::Contact,
         Self::SelfContact,
         Self::DeformedContact,
+        Self::Supports,
     ];
 
     /// What the formulations of solids with a Lagrangian kernel take.
@@ -73,6 +74,7 @@ impl Offer {
         Self::Contact,
         Self::SelfContact,
         Self::DeformedContact,
+        Self::Supports,
     ];
 
     /// What it is, in words.

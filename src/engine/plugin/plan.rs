@@ -37,8 +37,10 @@ pub struct BodyPlan {
     pub material: Material,
     /// Places and volumes of the particles, in row order.
     pub sites: Vec<Site>,
-    /// Shares of their stress that held particles beside others carry, by their numbers, ascending; all others carry all of theirs.
+    /// Shares of their stress that particles beside the edge of what is held carry, by their numbers; all others carry all of theirs.
     pub carried: Vec<(u32, f64)>,
+    /// Held particles behind that edge, which no other one sees, by their numbers, ascending.
+    pub hidden: Vec<u32>,
     /// Box around its shape, m.
     pub bounds: Aabb,
     /// Velocity at the start, m/s.

@@ -3,14 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where the part of a body that a condition holds or moves along all axes ends, if it is selected by `within`.
+/// Where the part of a Lagrangian body that a condition holds or moves ends: along all axes if it is selected by `within`, along any if by `face`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Edge {
-    /// On the surface of the stated shape: the outermost held particles stand on it, and of the bonds between what is held and what is not the
-    /// held side carries no more than its share.
+    /// On the surface of the stated shape, or on the stated side: the outermost held particles stand there, nothing sees what is held behind them,
+    /// and the particles beside the edge carry the share of their stress that their cells have before it.
     #[default]
     Stated,
-    /// At the outermost held particles, half a spacing inside of the stated shape: particles stay in their lattice.
+    /// At the outermost held particles, mostly half a spacing inside: particles stay in their lattice.
     Particles,
 }

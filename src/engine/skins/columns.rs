@@ -70,12 +70,32 @@ impl SkinView<'_> {
         carriers.fold(zero, |sum, carrier| sum + of(carrier, self.first_row + carrier.particle as usize))
     }
 
+    /// Where a vertex is, m; how much a traction moves the layer of particles there along each axis, m2/kg (m/kg in two dimensions), if that is asked
+    /// for; and whether none of its carriers has been removed.
+    pub fn look(&self, vertex: u32, moving: bool) -> (DVec3, DVec3, bool) {
+        let (mut place, mut mobility, mut is_there) = (DVec3::ZERO, DVec3::ZERO, true);
+        for carrier in self.skin.carriers(vertex) {
+            let row = self.first_row + carrier.particle as usize;
+            place += carrier.weight * self.carried(carrier, row);
+            is_there &= self.removed[row] == Removed::NO;
+            if moving {
+                mobility +=
+                    self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize]);
+            }
+        }
+        (place, mobility, is_there)
+    }
+
+    /// Where the linear field of a carrier has a vertex, m.
+    #[inline]
+    fn carried(&self, carrier: &Carrier, row: usize) -> DVec3 {
+        let place = self.position[row].0 + self.gradient[row].0 * carrier.arm;
+        if carrier.map == 0 { place } else { self.skin.map(carrier).place(place) }
+    }
+
     /// Where a vertex is, m.
     pub fn place(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| {
-            let place = self.position[row].0 + self.gradient[row].0 * carrier.arm;
-            carrier.weight * if carrier.map == 0 { place } else { self.skin.map(carrier).place(place) }
-        })
+        self.mean(vertex, DVec3::ZERO, |carrier, row| carrier.weight * self.carried(carrier, row))
     }
 
     /// Mean velocity of the particles that carry a vertex, m/s.
@@ -91,18 +111,5 @@ impl SkinView<'_> {
             let gradient = self.gradient[row].0;
             carrier.weight * if carrier.map == 0 { gradient } else { self.skin.map(carrier).tensor(gradient) }
         })
-    }
-
-    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).
-    pub fn mobility(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| {
-            self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize])
-        })
-    }
-
-    /// Whether no carrier of a vertex has been removed.
-    pub fn is_there(&self, vertex: u32) -> bool {
-        let mut carriers = self.skin.carriers(vertex).iter();
-        carriers.all(|carrier| self.removed[self.first_row + carrier.particle as usize] == Removed::NO)
     }
 }

@@ -76,6 +76,8 @@ pub(crate) struct Patch {
     now: Vec<Vertex>,
     forces: Vec<DVec3>,
     couples: Vec<DMat3>,
+    /// Whether there are couples on vertices in this step.
+    has_couples: bool,
     particles: Vec<u32>,
     starts: Vec<u32>,
     ends: Vec<End>,
@@ -98,6 +100,7 @@ impl Patch {
             now: Vec::with_capacity(vertices),
             forces: Vec::with_capacity(vertices),
             couples: Vec::with_capacity(vertices),
+            has_couples: false,
             particles: Vec::with_capacity(particles),
             starts: Vec::with_capacity(particles + 1),
             ends: Vec::with_capacity(carriers),
@@ -163,7 +166,9 @@ impl Patch {
     /// Works out where the vertices are and how they move, and takes the forces off them. `dt` is the length of the step, s.
     pub fn update(&mut self, view: &SkinView<'_>, dt: f64, wanted: Wanted) {
         self.forces.fill(DVec3::ZERO);
-        self.couples.fill(DMat3::ZERO);
+        if std::mem::take(&mut self.has_couples) {
+            self.couples.fill(DMat3::ZERO);
+        }
         let Self { vertices, last, now, .. } = self;
         let rows = (Picked::new(vertices, last), &mut now[..]);
         type Rows<'a> = (Picked<'a, Last>, &'a mut [Vertex]);
@@ -171,7 +176,7 @@ impl Patch {
             for (k, now) in now.iter_mut().enumerate() {
                 let vertex = last.number(k) as u32;
                 let last = last.row(k);
-                let place = view.place(vertex);
+                let (place, mobility, is_there) = view.look(vertex, wanted != Wanted::Places);
                 let is_new = last.place.is_nan();
                 let change = |new: DVec3| if dt > 0.0 { (new - last.place) / dt } else { DVec3::ZERO };
                 let velocity = if is_new { view.velocity(vertex) } else { change(place) };
@@ -182,9 +187,8 @@ impl Patch {
                         rate = (gradient - last.gradient) * (1.0 / dt);
                     }
                 }
-                let mobility = if wanted == Wanted::Places { DVec3::ZERO } else { view.mobility(vertex) };
                 *last = Last { place, gradient };
-                *now = Vertex { place, velocity, gradient, rate, mobility, is_there: view.is_there(vertex) };
+                *now = Vertex { place, velocity, gradient, rate, mobility, is_there };
             }
         });
     }
@@ -192,6 +196,21 @@ impl Patch {
     /// All vertices of the patch.
     pub fn vertices(&self) -> &[Vertex] {
         &self.now
+    }
+
+    /// The same by their numbers in the skin, ascending.
+    pub fn vertex_numbers(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// Whether a vertex of the skin belongs to the patch.
+    pub fn has(&self, vertex: u32) -> bool {
+        self.numbers[vertex as usize] != NONE
+    }
+
+    /// The number in the patch of a vertex of the skin that belongs to it.
+    pub fn number(&self, vertex: u32) -> u32 {
+        self.numbers[vertex as usize]
     }
 
     /// The numbers of the vertices of a facet among those of the patch; segments have two, and the last one twice.
@@ -217,8 +236,14 @@ impl Patch {
             self.forces[number] += share * force;
             if let Some(couple) = couple {
                 self.couples[number] += *couple * share;
+                self.has_couples = true;
             }
         }
+    }
+
+    /// Pushes the vertex of that number in the patch by a force, N.
+    pub fn push_vertex(&mut self, number: usize, force: DVec3) {
+        self.forces[number] += force;
     }
 
     /// Pushes one vertex of a facet by a force, N.
@@ -240,7 +265,9 @@ impl Patch {
 
     /// Hands the forces on the vertices on to the particles.
     pub fn hand_on(&mut self) {
-        let Self { skin, forces, couples, starts, ends, on_particles, couples_on_particles, .. } = self;
+        let Self { skin, forces, couples, has_couples, starts, ends, .. } = self;
+        let (skin, forces, couples, has_couples) = (&**skin, &forces[..], &couples[..], *has_couples);
+        let (on_particles, couples_on_particles) = (&mut self.on_particles, &mut self.couples_on_particles);
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
         type Rows<'a> = (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]);
         for_each_block(rows, &mut Vec::new(), &|first, (on, alone): Rows<'_>| {
@@ -248,14 +275,20 @@ impl Patch {
                 let ends = &ends[starts[first + k] as usize..starts[first + k + 1] as usize];
                 let (mut force, mut couple) = (DVec3::ZERO, DMat3::ZERO);
                 for end in ends {
-                    let (mut f, mut turning) = (forces[end.vertex as usize], couples[end.vertex as usize]);
-                    if end.map != 0 {
-                        let map = &skin.maps[end.map as usize];
-                        (f, turning) = (map.vector(f), map.tensor(turning));
+                    let mut f = forces[end.vertex as usize];
+                    let map = (end.map != 0).then(|| &skin.maps[end.map as usize]);
+                    if has_couples {
+                        let turning = couples[end.vertex as usize];
+                        couple += map.map_or(turning, |map| map.tensor(turning)) * end.weight;
+                    }
+                    if f == DVec3::ZERO {
+                        continue;
+                    }
+                    if let Some(map) = map {
+                        f = map.vector(f);
                     }
                     f *= end.weight;
                     force += f;
-                    couple += turning * end.weight;
                     couple += DMat3::from_cols(f * end.arm.x, f * end.arm.y, f * end.arm.z);
                 }
                 (*on, *alone) = ((force, couple), couple);

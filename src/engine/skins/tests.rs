@@ -43,6 +43,7 @@ pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -
         material: crate::materials::Material::nothing(),
         sites,
         carried: Vec::new(),
+        hidden: Vec::new(),
         bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
         velocity: None,
         kind: crate::plugin::BodyKind::Solid,

@@ -67,6 +67,8 @@ pub(in crate::formulations) struct BodyBonds<'a> {
     pub ghosts: &'a Ghosts,
     /// Rows of the ghosts of this body.
     pub ghost_rows: Range<usize>,
+    /// Particles that no other one sees, by their numbers in the body, ascending.
+    pub hidden: &'a [u32],
 }
 
 impl BodyBonds<'_> {
@@ -88,6 +90,15 @@ impl BodyBonds<'_> {
             find(&position, &support)?;
         }
         Ok(list)
+    }
+
+    /// Whether a particle is seen, by its number in [`BodyBonds::neighbors`].
+    fn is_seen(&self, number: u32) -> bool {
+        let own = match (number as usize).checked_sub(self.rows.len()) {
+            None => number,
+            Some(ghost) => (self.ghosts.source(self.ghost_rows.start + ghost) - self.rows.start) as u32,
+        };
+        self.hidden.binary_search(&own).is_err()
     }
 
     /// The row of the phase that a number of [`BodyBonds::neighbors`] means.
@@ -115,7 +126,10 @@ impl Bonds {
         }
         let first_bond = self.neighbors.len();
         for k in 0..rows.len() {
-            self.neighbors.extend(list.row(k).iter().map(|&j| body.row(j)));
+            if body.is_seen(k as u32) {
+                let seen = list.row(k).iter().filter(|&&j| body.is_seen(j));
+                self.neighbors.extend(seen.map(|&j| body.row(j)));
+            }
             self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
         }
         self.weights.resize(self.neighbors.len(), 0.0);

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::bonds::{BodyBonds, Bonds};
 use super::cracks::Cracks;
+use super::held::Held;
 use super::hessian::HessianRows;
 use super::internal_force;
 use super::pairs::{BodyKernel, BondPairs};
@@ -101,8 +102,8 @@ impl Formulation for TotalLagrangian {
         let estimates: Vec<StepEstimate> = solids.iter().map(|body| body.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
         let terms: Vec<Option<HessianDifference>> = solids.iter().map(|body| body.hessian).collect();
-        let carried = carried(&ids, sim);
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, (phase, carried), setup));
+        let held = Held::of(&ids, sim);
+        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, (phase, held), setup));
         let state = solids.access();
         let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
@@ -183,25 +184,12 @@ impl TotalLagrangian {
     }
 }
 
-/// The share of its stress that every row of the phase carries; empty where all carry all of it.
-fn carried(bodies: &[BodyId], sim: &SimBuilder<'_>) -> Vec<f64> {
-    let bodies = || bodies.iter().map(|id| sim.body(*id));
-    if bodies().all(|body| body.carried.is_empty()) {
-        return Vec::new();
-    }
-    let mut all = vec![1.0; bodies().map(|body| body.rows.end).max().unwrap_or(0)];
-    for body in bodies() {
-        body.carried.iter().for_each(|(k, share)| all[body.rows.start + *k as usize] = *share);
-    }
-    all
-}
-
 fn set_up(
     bodies: &[(BodyId, TotalLagrangian)],
     estimates: &[StepEstimate],
     terms: &[Option<HessianDifference>],
     repeats: &[Vec<Repeat>],
-    (phase, carried): (PhaseId, Vec<f64>),
+    (phase, held): (PhaseId, Held),
     setup: &mut Setup<'_>,
 ) -> Result<(), SetupError> {
     let view = setup.world.phase(phase);
@@ -242,13 +230,22 @@ fn set_up(
         kernels.push(BodyKernel { body: *id, kernel, support: uniform });
         let rows = body.rows.clone();
         let ghost_rows = ghosts.add(rows.clone(), position, parameters.support * body.spacing, repeats);
-        let body_bonds =
-            BodyBonds { rows: rows.clone(), position, volume, support, kernel, ghosts: &ghosts, ghost_rows };
+        let hidden = held.hidden_of(*id);
+        let body_bonds = BodyBonds {
+            rows: rows.clone(),
+            position,
+            volume,
+            support,
+            kernel,
+            ghosts: &ghosts,
+            ghost_rows,
+            hidden,
+        };
         bonds.append(&body_bonds, &mut search).map_err(|error| {
             let help = "use a larger `support`, or more particles across the body";
             SetupError::parameter(format!("bodies[{}].formulation", id.0), error.to_string(), help)
         })?;
-        let free = bonds.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
+        let free = bonds.free.iter().filter(|&&row| rows.contains(&(row as usize))).count() - hidden.len();
         if free > 0 {
             let text = format!(
                 "{free} particles of body `{}` have too few neighbours and carry no stress",
@@ -268,7 +265,7 @@ fn set_up(
     for (site, (x, v)) in sites.iter_mut().zip(position.iter().zip(volume)) {
         *site = Site::new(*x - origin, DVec3::ZERO, *v);
     }
-    bonds.carried = carried;
+    bonds.carried = held.carried;
     let terms = bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term));
     let mut hessian = HessianRows::new(terms);
     hessian.resize(view.len(), ghosts.len());

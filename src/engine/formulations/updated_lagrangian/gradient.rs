@@ -87,7 +87,12 @@ impl GradientPass<'_> {
             block.volume[k] = if volume[k] > 0.0 { self.reference_volume[first + k] } else { 0.0 };
         }
         let inverse_moment = &self.bonds.inverse_moment[first..first + n];
-        let carried = |k: usize| if inverse_moment[k] == Sym3::ZERO { 0.0 } else { 1.0 };
+        let shares = self.bonds.carried.get(first..first + n);
+        let carried = |k: usize| match shares {
+            _ if inverse_moment[k] == Sym3::ZERO => 0.0,
+            Some(shares) => shares[k],
+            None => 1.0,
+        };
         let mut sum = SolidSum::default();
         let reference_volume = block.volume;
         constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {

@@ -8,7 +8,7 @@ use super::force::InternalForce;
 use super::phase::UpdatedRows;
 use super::reference::set_up;
 use super::system::UpdatedSolids;
-use crate::formulations::total_lagrangian::BondPairs;
+use crate::formulations::total_lagrangian::{BondPairs, Held};
 use crate::kernels::KernelName;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
@@ -101,7 +101,10 @@ impl Formulation for UpdatedLagrangian {
         let state = solids.access();
         let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
         let (estimates, terms, has_control) = (system.estimates(), system.terms(), system.has_control());
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, repeats, phase, has_control, setup));
+        let held = Held::of(&ids, sim);
+        sim.add_setup(move |setup| {
+            set_up(&bodies, &estimates, &terms, (repeats, held), phase, has_control, setup)
+        });
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])
             .reads::<Position>()

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::formulations::total_lagrangian::{
-    BodyKernel, BondedRows, Bonds, Cracks, Frame, HessianRows, Site,
+    BodyKernel, BondedRows, Bonds, Cracks, Frame, Held, HessianRows, Site,
 };
 use crate::neighbors::NeighborSearch;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -14,6 +14,8 @@ use crate::world::{Mobility, Velocity};
 pub(super) struct UpdatedRows {
     /// Neighbours, weights and moments of the reference.
     pub bonds: Bonds,
+    /// What no particle sees.
+    pub held: Held,
     pub ghosts: Ghosts,
     /// Of every body, in the order of rows.
     pub repeats: Vec<Vec<Repeat>>,

@@ -8,7 +8,7 @@ use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
 use super::parameters::UpdatedLagrangian;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
-    BodyBonds, BodyKernel, BondError, Bonds, Cracks, HessianRows, Site,
+    BodyBonds, BodyKernel, BondError, Bonds, Cracks, Held, HessianRows, Site,
 };
 use crate::kernels::Kernel;
 use crate::neighbors::NeighborSearch;
@@ -26,7 +26,7 @@ pub(super) fn set_up(
     bodies: &[(BodyId, UpdatedLagrangian)],
     estimates: &[StepEstimate],
     terms: &[Option<HessianDifference>],
-    repeats: Vec<Vec<Repeat>>,
+    (repeats, mut held): (Vec<Vec<Repeat>>, Held),
     phase: PhaseId,
     has_control: bool,
     setup: &mut Setup<'_>,
@@ -55,8 +55,10 @@ pub(super) fn set_up(
             kernels.push(BodyKernel { body: *id, kernel, support: Some(radius) });
         }
     }
+    let carried = std::mem::take(&mut held.carried);
     let mut rows = UpdatedRows {
-        bonds: Bonds::default(),
+        bonds: Bonds { carried, ..Bonds::default() },
+        held,
         ghosts: Ghosts::default(),
         repeats,
         origin: DVec3::ZERO,
@@ -88,6 +90,7 @@ pub(super) fn set_up(
     for kernel in &rows.kernels {
         let body = setup.world.body(kernel.body);
         let free = rows.bonds.free.iter().filter(|&&row| body.rows.contains(&(row as usize))).count();
+        let free = free - rows.held.hidden_of(kernel.body).len();
         if free > 0 {
             let name = &body.name;
             let text =
@@ -140,7 +143,7 @@ impl UpdatedRows {
         };
         let (low, high) = bounds(0..position.len());
         self.origin = 0.5 * (low + high);
-        self.bonds = Bonds::default();
+        self.bonds = Bonds { carried: std::mem::take(&mut self.bonds.carried), ..Bonds::default() };
         self.ghosts = Ghosts::new(view.len());
         self.stable_step.clear();
         for (kernel, repeats) in self.kernels.iter().zip(&self.repeats) {
@@ -159,6 +162,7 @@ impl UpdatedRows {
                 kernel: kernel.kernel,
                 ghosts,
                 ghost_rows,
+                hidden: self.held.hidden_of(kernel.body),
             };
             let made = self.bonds.append(&body, &mut self.search);
             made.map_err(|error| RenewError { body: kernel.body, error })?;
