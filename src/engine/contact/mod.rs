@@ -27,6 +27,7 @@ mod skin_near;
 mod skin_on_tool;
 mod skin_pair;
 mod skin_points;
+mod skin_region;
 mod skins_of;
 mod start;
 mod stiffness;

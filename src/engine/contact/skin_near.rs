@@ -1,8 +1,11 @@
 //! Which facets of a skin may touch a tool, found again when the bodies may have moved by the skin of the search.
+//!
+//! The search looks at a region of the skin alone, which is found again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 
-use crate::parallel::for_each_block;
+use super::skin_region::Region;
+use crate::parallel::{Picked, for_each_block};
 use crate::rigid::RigidBody;
 use crate::skins::{Skin, SkinView};
 
@@ -17,7 +20,9 @@ pub(super) const FASTER: f64 = 3.0;
 pub(super) struct NearTool {
     /// How far the bodies may still move until there are others, m.
     left: f64,
-    places: Vec<(u32, DVec3, f64)>,
+    region: Region,
+    /// Where the vertices are, m, and how far from the tool.
+    places: Vec<(DVec3, f64)>,
     /// The facets near the tool, ascending.
     pub facets: Vec<u32>,
 }
@@ -26,35 +31,34 @@ impl NearTool {
     /// None yet, with room for all of a skin.
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
-        Self { left: 0.0, places: Vec::with_capacity(vertices), facets: Vec::with_capacity(facets) }
+        let places = vec![(DVec3::ZERO, f64::INFINITY); vertices];
+        Self { left: 0.0, region: Region::new(skin), places, facets: Vec::with_capacity(facets) }
     }
 
     /// Takes in a step of that length, s, with largest speeds of skin and tool, m/s. Says whether the facets have to be found again.
     pub fn is_old(&mut self, speeds: [f64; 2], dt: f64) -> bool {
-        self.left -= (FASTER * speeds[0] + speeds[1]) * dt;
+        let way = (FASTER * speeds[0] + speeds[1]) * dt;
+        self.left -= way;
+        self.region.left -= way;
         // What is not a number must not keep old candidates.
         self.left.is_nan() || self.left <= 0.0
     }
 
     /// Finds the facets near the tool.
     pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, tool: &RigidBody) {
-        let vertices = (0..skin.vertices() as u32).map(|vertex| (vertex, DVec3::ZERO, 0.0));
-        self.places.clear();
-        self.places.extend(vertices);
-        for_each_block(&mut self.places[..], &mut Vec::new(), &|_, places: &mut [(u32, DVec3, f64)]| {
-            for (vertex, place, distance) in places {
-                *place = view.place(*vertex);
-                *distance = tool.surface.closest(tool.reference(*place)).signed_distance;
-            }
-        });
         let near = NEAR * skin.spacing;
-        self.left = f64::INFINITY;
+        if self.region.is_old() {
+            self.region.take_all(skin);
+            self.look(view, tool);
+            let places = &self.places;
+            self.region.choose(skin, near, |facet| gap(skin, places, facet));
+        } else {
+            self.look(view, tool);
+        }
+        self.left = self.region.left + near;
         self.facets.clear();
-        for facet in 0..skin.facets.corners.len() as u32 {
-            let [a, b, c] = skin.facets.corners[facet as usize].map(|vertex| self.places[vertex as usize]);
-            // No point of a facet is farther from all its corners than that.
-            let size = a.1.distance(b.1).max(b.1.distance(c.1)).max(c.1.distance(a.1));
-            let gap = a.2.min(b.2).min(c.2) - 0.6 * size;
+        for &facet in &self.region.facets {
+            let gap = gap(skin, &self.places, facet);
             if gap < near {
                 self.facets.push(facet);
             } else {
@@ -63,4 +67,23 @@ impl NearTool {
         }
         self.left -= MARGIN * skin.spacing;
     }
+
+    /// Looks where the vertices of the region are.
+    fn look(&mut self, view: &SkinView<'_>, tool: &RigidBody) {
+        let rows = Picked::new(&self.region.vertices, &mut self.places);
+        type Rows<'a> = Picked<'a, (DVec3, f64)>;
+        for_each_block(rows, &mut Vec::new(), &|_, mut rows: Rows<'_>| {
+            for k in 0..rows.len() {
+                let place = view.place(rows.number(k) as u32);
+                *rows.row(k) = (place, tool.surface.closest(tool.reference(place)).signed_distance);
+            }
+        });
+    }
+}
+
+/// How far a facet is from the tool at least, m: no point of it is farther from all its corners than 0.6 times its longest side.
+fn gap(skin: &Skin, places: &[(DVec3, f64)], facet: u32) -> f64 {
+    let [a, b, c] = skin.facets.corners[facet as usize].map(|vertex| places[vertex as usize]);
+    let size = a.0.distance(b.0).max(b.0.distance(c.0)).max(c.0.distance(a.0));
+    a.1.min(b.1).min(c.1) - 0.6 * size
 }

@@ -91,7 +91,8 @@ impl SkinPair {
             meetings
         });
         let balls = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
-        let (near, patches) = (NearSkins::default(), skins.map(Patch::new));
+        let near = NearSkins::new(skins.each_ref().map(|skin| &**skin));
+        let patches = skins.map(Patch::new);
         Self { interaction, patches, rule, near, balls, passes }
     }
 

@@ -17,6 +17,18 @@ impl<'a, T> Picked<'a, T> {
         Self { numbers, column, first: 0 }
     }
 
+    /// How many rows there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.numbers.is_empty()
+    }
+
     /// Number of the `k`-th row.
     #[inline]
     pub fn number(&self, k: usize) -> usize {
