@@ -62,7 +62,7 @@ fn it_has_hourglass_control_pair_terms_symmetry_and_contact() {
             ],
             contacts: [Contact(between: ("low", "high"), law: Penalty(), friction: 0.3, restitution: 0.7),
                        Contact(between: ("low", "ball"), law: Penalty(), friction: 0.3)],
-            conditions: [Symmetry(plane: Y, at: 0.0), Fix(on: Select(body: "low", face: MinX)),
+            conditions: [Symmetry(plane: Y, at: 0.0), Fix(on: Select(body: "low", face: MinX), edge: Particles),
                          InitialVelocity(on: Select(body: "low"), value: ("0", "sin(20*x)*y"))],
             plugins: [hourglass_control(), artificial_viscosity()],
             time: (end: 1))"#

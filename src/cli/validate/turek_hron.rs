@@ -13,7 +13,7 @@ use super::template::Template;
 pub(super) const CASE: Case = Case {
     id: "S9",
     title: "Turek-Hron CSM1, CSM2, CSM3",
-    resolutions: &[5, 9, 18],
+    resolutions: &[7, 9, 18],
     ci_resolution: 9,
     run: turek_hron,
 };

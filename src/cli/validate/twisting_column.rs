@@ -12,7 +12,7 @@ use super::template::Template;
 pub(super) const CASE: Case = Case {
     id: "S12",
     title: "twisting column",
-    resolutions: &[8, 12, 16],
+    resolutions: &[10, 12, 16],
     ci_resolution: 12,
     run: twisting_column,
 };

@@ -172,20 +172,7 @@ impl SkinOnTool {
             }
             extremes
         });
-        let axes = patch.skin.facets.axes;
-        pressed.clear();
-        pressed.resize(vertices.len(), Pressed::default());
-        even.clear();
-        even.resize(vertices.len(), 0.0);
-        for ((&facet, reached), on) in near.facets.iter().zip(&*reached).zip(&*on_facets) {
-            let numbers = patch.numbers(facet);
-            let part = patch.skin.measure[facet as usize] / axes as f64;
-            match reached {
-                Reached::No(_) => {}
-                Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
-                _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
-            }
-        }
+        gather(patch, (&near.facets, reached, on_facets), pressed, even);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
         type Ends<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
         let at_vertices = sum_over_blocks(rows, &|_, (pressed, seen, even): Ends<'_>| {
@@ -211,7 +198,7 @@ impl SkinOnTool {
         touching.extend(
             numbers.filter(|(_, k)| pressed[*k as usize].spring.force > 0.0).map(|(vertex, _)| (*vertex, 0)),
         );
-        meetings.find(touching, |(vertex, _), ()| Some(patch.number(vertex) as u32));
+        meetings.find(touching, |(vertex, _), ()| Some(patch.number(vertex)));
         let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(vertex.place);
         let respond = |_: PairKey, number: &u32, before: &Memory, tally: &mut Tally| {
             let (vertex, pressed) = (&patch.vertices()[*number as usize], &pressed[*number as usize]);
@@ -268,5 +255,28 @@ impl SkinOnTool {
             }
             sums
         })
+    }
+}
+
+/// Adds up what the facets press on every vertex, and the area of even facets that is its own.
+fn gather(
+    patch: &Patch,
+    (facets, reached, on_facets): (&[u32], &[Reached], &[[Pressed; 3]]),
+    pressed: &mut Vec<Pressed>,
+    even: &mut Vec<f64>,
+) {
+    let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
+    pressed.clear();
+    pressed.resize(vertices, Pressed::default());
+    even.clear();
+    even.resize(vertices, 0.0);
+    for ((&facet, reached), on) in facets.iter().zip(reached).zip(on_facets) {
+        let numbers = patch.numbers(facet);
+        let part = patch.skin.measure[facet as usize] / axes as f64;
+        match reached {
+            Reached::No(_) => {}
+            Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
+            _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
+        }
     }
 }
