@@ -8,7 +8,7 @@ use super::meetings::Meetings;
 use super::members::{MemberColumns, Particles};
 use super::memory::{Memory, PairKey};
 use super::pace::Pace;
-use super::response::{Interaction, Meeting};
+use super::response::{Interaction, Losses, Meeting};
 use super::search::{Crowd, Search};
 use super::shape::{Nearness, of_pair};
 use super::tally::Tally;
@@ -48,6 +48,8 @@ pub(super) struct Push {
     arms: [DVec3; 2],
     force: DVec3,
     stiffness: [f64; 2],
+    /// Heat of friction in the step, J.
+    heat: f64,
 }
 
 impl ParticleContact {
@@ -158,8 +160,9 @@ impl ParticleContact {
             };
             let share = share(key);
             // The forces of the last step on the motion of this one.
+            let mut losses = Losses::default();
             if !before.is_elastic() {
-                tally.losses.add_work(share, before, velocity(of, before.arms), dt);
+                losses.add_work(share, before, velocity(of, before.arms), dt);
             }
             let reach = first.radius(i) + second.radius(j);
             let radius = first.radius(i) * second.radius(j) / reach;
@@ -174,12 +177,16 @@ impl ParticleContact {
             };
             let inverse_mass = |n: DVec3| (mobility[0] + mobility[1]).dot(n * n);
             let response = interaction.respond(&meeting, inverse_mass, dt, before);
-            tally.losses.add_work(share, &response.memory, meeting.velocity, dt);
-            tally.losses.keep(share, before, &response.memory);
+            losses.add_work(share, &response.memory, meeting.velocity, dt);
+            losses.keep(share, before, &response.memory);
+            tally.losses.add(&losses);
             tally.stored += share * (response.spring.energy + response.memory.energy());
             let across = near.normal * near.normal;
             let stiffness = mobility.map(|mobility| response.spring.stiffness * mobility.dot(across));
-            (response.memory, Push { arms: near.arms, force: share * response.force, stiffness })
+            (
+                response.memory,
+                Push { arms: near.arms, force: share * response.force, stiffness, heat: losses.friction },
+            )
         };
         let end = |key: PairKey, memory: &Memory, tally: &mut Tally| {
             if !memory.is_elastic() {
@@ -192,12 +199,13 @@ impl ParticleContact {
         let tally = meetings.respond(respond, end);
         let pushes = meetings.pushes();
         let pull = |number: usize, end: End| {
-            let Push { arms, force, stiffness } = pushes[number];
-            let (force, arm, stiffness) = match end {
-                End::First => (force, arms[0], stiffness[0]),
-                End::Second => (-mirror.vector(force), mirror.vector(arms[1]), stiffness[1]),
+            let Push { arms, force, stiffness, heat } = pushes[number];
+            let (force, arm, side) = match end {
+                End::First => (force, arms[0], 0),
+                End::Second => (-mirror.vector(force), mirror.vector(arms[1]), 1),
             };
-            Pull { force, arm, stiffness, beside: DVec3::ZERO }
+            let (stiffness, heat) = (stiffness[side], interaction.heat[side] * heat);
+            Pull { force, arm, stiffness, beside: DVec3::ZERO, heat }
         };
         touched.iter_mut().for_each(|touched| touched.add_up(meetings.numbers(), &pull));
         Ok((tally, least.0.min(self.first.least() + self.second.least())))

@@ -52,6 +52,10 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
             );
             continue;
         }
+        if let Some(problem) = heat_without_temperature(contact, k, sim) {
+            problems.push(problem);
+            continue;
+        }
         if let Some(problem) = own_contact_not_offered(contact, k, sim) {
             problems.push(problem);
             continue;
@@ -95,6 +99,22 @@ fn own_contact_not_offered(contact: &Contact, k: usize, sim: &SimBuilder<'_>) ->
     Some(Problem::at_path(format!("contacts[{k}].between"), message).help(help))
 }
 
+/// The problem of a contact whose friction is to heat bodies that have no temperature.
+fn heat_without_temperature(contact: &Contact, k: usize, sim: &SimBuilder<'_>) -> Option<Problem> {
+    let (a, b) = &contact.between;
+    let is_cold = [a, b].into_iter().all(|name| specific_heat_of(find(sim, name)).is_none());
+    (contact.friction_heat.is_some() && is_cold).then(|| {
+        let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
+        Problem::at_path(format!("contacts[{k}].friction_heat"), message)
+            .help("give one of them a material with `specific_heat`, or leave `friction_heat` out")
+    })
+}
+
+/// The specific heat of a body whose material has one, J/(kg K).
+pub(super) fn specific_heat_of(body: &BodyPlan) -> Option<f64> {
+    body.solid_law().ok()?.specific_heat()
+}
+
 fn named_before(others: &[(usize, Contact)], contact: &Contact, k: usize) -> Option<Problem> {
     let (a, b) = &contact.between;
     let same = |(_, other): &(usize, Contact)| {
@@ -120,7 +140,12 @@ impl Surfaces<'_> {
         planes: &[MirrorPlane],
         sim: &SimBuilder<'_>,
     ) -> Option<Arc<Skin>> {
-        match self.skins.of(body, contact.surface, planes, sim) {
+        let found = if contact.friction_heat.is_some() && contact.surface == ContactSurface::Skin {
+            Err(Some("the heat of friction goes into particles"))
+        } else {
+            self.skins.of(body, contact.surface, planes, sim)
+        };
+        match found {
             Ok(skin) => Some(skin),
             Err(reason) => {
                 let (name, (a, b)) = (&body.name, &sim.scene().contacts[number].between);
@@ -151,12 +176,18 @@ fn pairs_of(
     let both = [first, second].into_iter().filter_map(elastic_of).map(|elastic| elastic.poisson);
     let (count, sum) = both.fold((0.0, 0.0), |(count, sum), poisson| (count + 1.0, sum + poisson));
     let poisson = if count > 0.0 { sum / count } else { 0.0 };
+    let mut heat = contact.friction_heat.map_or([0.0; 2], |share| [share, 1.0 - share]);
+    if is_rigid(first) && !is_rigid(second) {
+        // The nodes are those of the deformable one.
+        heat.reverse();
+    }
     let interaction_of = |surface| -> Result<Interaction, Vec<Problem>> {
         Ok(Interaction {
             law: make(&contact.law, &ContactPair { dimension: sim.dimension(), surface, modulus })?,
             friction: contact.friction,
             damping_ratio: damping_ratio(contact.restitution),
             tangential: 2.0 * (1.0 - poisson) / (2.0 - poisson),
+            heat,
         })
     };
     let interaction = || interaction_of(ContactSurface::Particles);

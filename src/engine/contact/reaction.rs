@@ -20,6 +20,8 @@ pub(super) struct Push {
     /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the normal turns as it moves, N.
     pub center: DVec3,
     pub turning: DVec3,
+    /// Heat of friction in the step, J.
+    pub heat: f64,
     /// Stiffness over the mass of the node and of the body with the surface, 1/s2.
     pub stiffness: [f64; 2],
 }

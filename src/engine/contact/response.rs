@@ -19,6 +19,8 @@ pub(super) struct Interaction {
     pub damping_ratio: f64,
     /// Tangential over normal stiffness (Mindlin): 2 (1 - nu)/(2 - nu).
     pub tangential: f64,
+    /// Shares of the sides in the heat of friction.
+    pub heat: [f64; 2],
 }
 
 /// A contact as it is now.
@@ -187,6 +189,12 @@ fn share_of_way(touch: &Touch, way: f64) -> f64 {
 }
 
 impl Losses {
+    /// Adds those of another contact.
+    pub fn add(&mut self, other: &Self) {
+        self.damping += other.damping;
+        self.friction += other.friction;
+    }
+
     /// Adds what the forces of a contact took at one end of the step, where the first side moves against the second at that velocity, m/s:
     /// one of the two kicks puts half of each force into the motion.
     pub fn add_work(&mut self, share: f64, memory: &Memory, velocity: DVec3, dt: f64) {

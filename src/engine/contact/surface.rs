@@ -11,7 +11,7 @@ use super::nearby::{NEAR, Nearby};
 use super::node_view::{NodeMotion, NodeView};
 use super::pace::Pace;
 use super::reaction::{Push, push};
-use super::response::{Interaction, Meeting};
+use super::response::{Interaction, Losses, Meeting};
 use super::shape::Nearness;
 use super::sides::Sides;
 use super::stiffness;
@@ -104,8 +104,8 @@ impl SurfaceContact {
         })?;
         let pushes = meetings.pushes();
         touched.add_up(meetings.numbers(), &|number, _| {
-            let Push { force, arm, turning, stiffness, .. } = pushes[number];
-            Pull { force, arm, beside: turning, stiffness: stiffness[0] }
+            let Push { force, arm, turning, stiffness, heat, .. } = pushes[number];
+            Pull { force, arm, beside: turning, stiffness: stiffness[0], heat: interaction.heat[0] * heat }
         });
         let [particle, rigid] = push(sides, pushes, &mut bodies);
         let squared = rigid + if of_particles.is_some() { touched.stiffest() } else { particle };
@@ -184,7 +184,7 @@ fn evaluate(
 ) -> Tally {
     let moving = !interaction.is_elastic();
     // The forces of the last step on the motion of this one, where they act: at the node and, for a particle, `arm` beside it.
-    let work_before = |node: u32, motion: &NodeMotion<'_>, memory: &Memory, tally: &mut Tally| {
+    let work_before = |node: u32, motion: &NodeMotion<'_>, memory: &Memory, losses: &mut Losses| {
         if !memory.is_elastic() {
             let (i, arm) = (node as usize, memory.arms[0]);
             let own_place = nodes.position(i);
@@ -192,13 +192,14 @@ fn evaluate(
             let surface = || tool.place(tool.surface.closest(tool.reference(x)).point);
             let place = nodes.place(i, x, arm, surface);
             let velocity = motion.velocity(arm, place + (own_place - x)) - tool.velocity_at(place);
-            tally.losses.add_work(1.0, memory, velocity, dt);
+            losses.add_work(1.0, memory, velocity, dt);
         }
     };
     let respond = |(node, _): PairKey, meet: &Meet, before: &Memory, tally: &mut Tally| {
         let i = node as usize;
         let motion = nodes.motion(i, moving || before.is_none());
-        work_before(node, &motion, before, tally);
+        let mut losses = Losses::default();
+        work_before(node, &motion, before, &mut losses);
         let Meet { x, shift, point, near } = *meet;
         let (arm, normal) = (near.arms[0], near.normal);
         let place = nodes.place(i, x, arm, || tool.place(point));
@@ -213,8 +214,10 @@ fn evaluate(
         let own = motion.inverse_mass(arm, place + shift);
         let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
         let response = interaction.respond(&meeting, inverse_mass, dt, before);
-        tally.losses.add_work(1.0, &response.memory, meeting.velocity, dt);
-        tally.losses.keep(1.0, before, &response.memory);
+        losses.add_work(1.0, &response.memory, meeting.velocity, dt);
+        losses.keep(1.0, before, &response.memory);
+        tally.losses.add(&losses);
+        let heat = losses.friction;
         tally.stored += response.spring.energy + response.memory.energy();
         let turning = if arm == DVec3::ZERO {
             DVec3::ZERO
@@ -223,10 +226,13 @@ fn evaluate(
         };
         let stiffness = [own(normal), tool.inverse_mass_at(place, normal)];
         let stiffness = stiffness.map(|inverse_mass| response.spring.stiffness * inverse_mass);
-        (response.memory, Push { arm, place, shift, force: response.force, center: x, turning, stiffness })
+        (
+            response.memory,
+            Push { arm, place, shift, force: response.force, center: x, turning, heat, stiffness },
+        )
     };
     let end = |(node, _): PairKey, memory: &Memory, tally: &mut Tally| {
-        work_before(node, &nodes.motion(node as usize, moving), memory, tally);
+        work_before(node, &nodes.motion(node as usize, moving), memory, &mut tally.losses);
         tally.losses.keep(1.0, memory, &Memory::default());
     };
     meetings.respond(respond, end)

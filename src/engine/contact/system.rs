@@ -3,14 +3,15 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::pace::Pace;
+use super::plan::specific_heat_of;
 use super::start;
 use super::tally::{self, Tally};
 use super::touching::{Saved, Touching};
 use crate::plugin::SimBuilder;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{
-    Body, BodyId, BodySet, DeformationGradient, Force, Mobility, Position, ReferencePosition, Removed,
-    Velocity,
+    Body, BodyId, BodySet, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition, Removed,
+    Temperature, Velocity,
 };
 
 /// Label of the system that works out the forces of contact.
@@ -22,7 +23,11 @@ const CONTACT_FORCE: &str = "contact_force";
 pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Vec<usize>, bodies: &BodySet) {
     start::refuse_bodies_within_others(sim, &touching, numbers);
     let phases = sim.phases_of(bodies);
+    // Where no contact heats anything, temperatures are left alone.
+    let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
+    let warm = |body: BodyId| Some((body, specific_heat_of(sim.body(body)).filter(|_| heats)?));
     let contacts = Contacts {
+        specific_heats: bodies.iter().filter_map(warm).collect(),
         bodies: bodies.iter().map(|body| (body, Pace::NONE)).collect(),
         tallies: Vec::with_capacity(touching.len()),
         touching,
@@ -44,7 +49,8 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
             .touches("rigid_bodies", Mode::Adds),
     );
     let push = move |step: &mut Step<'_>| lock(&shared).push(step);
-    sim.add_system(System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>());
+    let system = System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>();
+    sim.add_system(if heats { system.reads::<Mass>().adds::<Temperature>() } else { system });
 }
 
 /// The contacts of the scene: two systems share them, which run one after the other.
@@ -56,6 +62,8 @@ fn lock(contacts: &Shared) -> MutexGuard<'_, Contacts> {
 
 struct Contacts {
     bodies: Vec<(BodyId, Pace)>,
+    /// Bodies that friction may warm, with their specific heat, J/(kg K).
+    specific_heats: Vec<(BodyId, f64)>,
     touching: Vec<Touching>,
     tallies: Vec<((BodyId, BodyId), Tally)>,
 }
@@ -113,7 +121,11 @@ impl Contacts {
     fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
         for (body, touched) in self.touching.iter().flat_map(Touching::touched) {
             let (view, rows) = step.world.body_view(body);
-            touched.add_forces(&mut view.write::<Force>()?[rows]);
+            touched.add_forces(&mut view.write::<Force>()?[rows.clone()]);
+            if let Some((_, specific_heat)) = self.specific_heats.iter().find(|(id, _)| *id == body) {
+                let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
+                touched.warm(*specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+            }
         }
         for patch in self.touching.iter().flat_map(Touching::patches) {
             let (view, rows) = step.world.body_view(patch.skin.body);

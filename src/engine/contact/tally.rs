@@ -15,8 +15,7 @@ pub(super) struct Tally {
 impl BlockSum for Tally {
     fn add(&mut self, next: &Self) {
         self.stored += next.stored;
-        self.losses.damping += next.losses.damping;
-        self.losses.friction += next.losses.friction;
+        self.losses.add(&next.losses);
     }
 }
 

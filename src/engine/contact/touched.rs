@@ -9,7 +9,7 @@ use super::memory::PairKey;
 use super::sieve::BLOCKS_OF_TEST;
 use crate::parallel::{Largest, Picked, for_each_block, for_each_block_in_tasks, sum_over_blocks};
 use crate::solids::{LocalMotion, SolidPhase};
-use crate::world::Force;
+use crate::world::{Force, Mass, Temperature};
 
 /// In the place of a number in the list for particles that no candidate names.
 const NONE: u32 = u32::MAX;
@@ -31,6 +31,8 @@ pub(super) struct Pull {
     pub beside: DVec3,
     /// Stiffness over mass, 1/s2.
     pub stiffness: f64,
+    /// Heat, J.
+    pub heat: f64,
 }
 
 /// The particles of a body that may touch: those that candidates name.
@@ -50,6 +52,8 @@ pub(super) struct Touched {
     couples: Vec<DMat3>,
     /// Sums of stiffness over mass of the contacts of each, 1/s2: a bound on the square of a frequency (Gershgorin).
     stiffness: Vec<f64>,
+    /// Heat that each takes up in the step, J.
+    heat: Vec<f64>,
 }
 
 impl Touched {
@@ -64,6 +68,7 @@ impl Touched {
             forces: Vec::new(),
             couples: Vec::new(),
             stiffness: Vec::new(),
+            heat: Vec::new(),
         }
     }
 
@@ -80,6 +85,7 @@ impl Touched {
         room(&mut self.forces, count);
         room(&mut self.couples, count);
         room(&mut self.stiffness, count);
+        room(&mut self.heat, count);
     }
 
     /// Takes in the particles of a new list of candidates, which stand at these ends.
@@ -151,16 +157,17 @@ impl Touched {
     pub fn add_up(&mut self, contacts: &Numbers, pull: &(impl Fn(usize, End) -> Pull + Sync)) {
         let count = self.nodes.len();
         let (mut forces, mut couples) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.couples));
-        let mut stiffness = std::mem::take(&mut self.stiffness);
+        let (mut stiffness, mut heat) = (std::mem::take(&mut self.stiffness), std::mem::take(&mut self.heat));
         forces.resize(count, DVec3::ZERO);
         couples.resize(count, DMat3::ZERO);
         stiffness.resize(count, 0.0);
+        heat.resize(count, 0.0);
         let all = &*self;
-        let rows = (&mut forces[..], &mut couples[..], &mut stiffness[..]);
-        type Rows<'a> = (&'a mut [DVec3], &'a mut [DMat3], &'a mut [f64]);
-        for_each_block(rows, &mut Vec::new(), &|first, (forces, couples, stiffness): Rows<'_>| {
+        let rows = (&mut forces[..], &mut couples[..], &mut stiffness[..], &mut heat[..]);
+        type Rows<'a> = (&'a mut [DVec3], &'a mut [DMat3], &'a mut [f64], &'a mut [f64]);
+        for_each_block(rows, &mut Vec::new(), &|first, (forces, couples, stiffness, heats): Rows<'_>| {
             for k in 0..forces.len() {
-                let (mut force, mut couple, mut stiff) = (DVec3::ZERO, DMat3::ZERO, 0.0);
+                let (mut force, mut couple, mut stiff, mut heat) = (DVec3::ZERO, DMat3::ZERO, 0.0, 0.0);
                 for end in all.ends(first + k) {
                     let Some(number) = contacts.of(end / 2) else { continue };
                     let pull = pull(number, if end % 2 == 0 { End::First } else { End::Second });
@@ -168,11 +175,12 @@ impl Touched {
                     force += push + pull.beside;
                     couple += DMat3::from_cols(push * arm.x, push * arm.y, push * arm.z);
                     stiff += pull.stiffness;
+                    heat += pull.heat;
                 }
-                (forces[k], couples[k], stiffness[k]) = (force, couple, stiff);
+                (forces[k], couples[k], stiffness[k], heats[k]) = (force, couple, stiff, heat);
             }
         });
-        (self.forces, self.couples, self.stiffness) = (forces, couples, stiffness);
+        (self.forces, self.couples, self.stiffness, self.heat) = (forces, couples, stiffness, heat);
     }
 
     /// Stiffness over mass of the contacts of a particle that touches, 1/s2.
@@ -188,6 +196,13 @@ impl Touched {
     /// Adds what acts on the neighbourhoods; `first` is the first row of the body.
     pub fn add_couples(&self, solid: &mut dyn SolidPhase, first: usize) {
         solid.add_couples(first, &self.nodes, &self.couples);
+    }
+
+    /// Warms the particles of a body by what friction has given them.
+    pub fn warm(&self, specific_heat: f64, mass: &[Mass], temperature: &mut [Temperature]) {
+        for (&node, heat) in self.nodes.iter().zip(&self.heat).filter(|(_, heat)| **heat != 0.0) {
+            temperature[node as usize].0 += heat / (mass[node as usize].0 * specific_heat);
+        }
     }
 
     /// Adds what acts on the particles of a body.

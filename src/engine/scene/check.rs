@@ -136,6 +136,13 @@ fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
             let message = format!("`friction` must not be negative, found {}", number(contact.friction));
             problems.push(Problem::at_path(format!("contacts[{i}].friction"), message));
         }
+        if let Some(share) = contact.friction_heat.filter(|share| !(0.0..=1.0).contains(share)) {
+            let message = format!("`friction_heat` must be from 0 to 1, found {}", number(share));
+            problems.push(
+                Problem::at_path(format!("contacts[{i}].friction_heat"), message)
+                    .help("it is the share of the first of the two bodies"),
+            );
+        }
         if !(0.0..=1.0).contains(&contact.restitution) {
             let message = format!("`restitution` must be from 0 to 1, found {}", number(contact.restitution));
             problems.push(Problem::at_path(format!("contacts[{i}].restitution"), message));

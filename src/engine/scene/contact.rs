@@ -22,6 +22,10 @@ pub struct Contact {
     /// take along.
     #[serde(default = "elastic")]
     pub restitution: f64,
+    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into the second. It warms the particles that touch, of
+    /// bodies whose material has a specific heat. Without it friction warms nothing.
+    #[serde(default)]
+    pub friction_heat: Option<f64>,
     /// With what deformable bodies touch.
     #[serde(default)]
     pub surface: ContactSurface,

@@ -1,6 +1,7 @@
 //! Contact in small scenes, against closed forms and invariants.
 
 mod deformed;
+mod heat;
 mod images;
 mod laws;
 mod long;

@@ -50,7 +50,8 @@ impl Blocks {
         let axes = if dimension == "Two" { Dimension::Two } else { Dimension::Three };
         let contact = ContactPair { dimension: axes, surface: ContactSurface::Skin, modulus: 1e6 };
         let law = Penalty::default().build(&contact).unwrap();
-        let interaction = Interaction { law, friction: 0.0, damping_ratio: 0.0, tangential: 1.0 };
+        let interaction =
+            Interaction { law, friction: 0.0, damping_ratio: 0.0, tangential: 1.0, heat: [0.0; 2] };
         let skins = [0, 1].map(|k| Arc::new(skin(&sim, BodyId(k), dimension, shapes[k])));
         let reference = [0, 1].map(|k| {
             let (view, rows) = sim.world().body_view(BodyId(k));
