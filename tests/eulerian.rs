@@ -2,69 +2,14 @@
 
 mod common;
 
-use common::{all_plugins, failing, failing_metals, metals, removal, simulation};
+use common::eulerian::{Particle, after, block, particles};
+use common::simulation;
 use meshless::glam::{DMat3, DVec3};
 use meshless::kernels::{Kernel, KernelName};
 use meshless::linalg::Sym3;
 use meshless::scene::Source;
-use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{
-    BodyId, DeformationGradient, Force, Mass, PiolaStress, Position, ReferenceVolume, Velocity,
-};
-
-/// A block of 1 x 0.4 m of irregular particles with a velocity, and in three dimensions 0.4 m deep.
-fn block(dimension: usize, formulation: &str, velocity: &str, more: &str) -> Source {
-    let (name, max) = if dimension == 2 { ("Two", "(1, 0.4)") } else { ("Three", "(1, 0.4, 0.4)") };
-    let spacing = if dimension == 2 { 0.05 } else { 0.1 };
-    let text = format!(
-        r#"(dimension: {name},
-            materials: {{"rubber": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
-            bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0, 0), max: {max}), spacing: {spacing},
-                      lattice: Relaxed(seed: 5, iterations: 2), formulation: {formulation})],
-            conditions: [InitialVelocity(on: Select(body: "block"), value: {velocity})],
-            {more}
-            time: (end: 100.0))"#
-    );
-    Source::new("block.ron", text.replace("(0, 0, 0)", if dimension == 2 { "(0, 0)" } else { "(0, 0, 0)" }))
-}
-
-fn after(source: &Source, steps: u64) -> Simulation {
-    let mut sim = simulation(source);
-    sim.run(|sim| sim.clock().step < steps).expect("a run");
-    sim
-}
-
-/// What the sums over pairs need of a particle.
-#[derive(Clone, Copy)]
-struct Particle {
-    x: DVec3,
-    v: DVec3,
-    f: DVec3,
-    m: f64,
-    /// V_0.
-    volume: f64,
-    deformation: DMat3,
-    stress: DMat3,
-}
-
-fn particles(sim: &Simulation) -> Vec<Particle> {
-    let (view, rows) = sim.world().body_view(BodyId(0));
-    let (x, v) = (view.read::<Position>().expect("places"), view.read::<Velocity>().expect("velocities"));
-    let (f, m) = (view.read::<Force>().expect("forces"), view.read::<Mass>().expect("masses"));
-    let volume = view.read::<ReferenceVolume>().expect("volumes");
-    let deformation = view.read::<DeformationGradient>().expect("gradients");
-    let stress = view.read::<PiolaStress>().expect("stresses");
-    let of = |k: usize| Particle {
-        x: x[k].0,
-        v: v[k].0,
-        f: f[k].0,
-        m: m[k].0,
-        volume: volume[k].0,
-        deformation: deformation[k].0,
-        stress: stress[k].0,
-    };
-    rows.map(of).collect()
-}
+use meshless::simulation::Simulation;
+use meshless::world::BodyId;
 
 /// Sums over all pairs of one body.
 struct Naive {
@@ -85,11 +30,11 @@ impl Naive {
         self.all[i].volume * self.all[i].deformation.determinant()
     }
 
-    /// Neighbours with V_j w_ij and x_ij.
+    /// Neighbours with V_0,j w_ij and x_ij.
     fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64, DVec3)> {
         (0..self.all.len()).filter(move |&j| j != i).map(move |j| {
             let x_ij = self.all[j].x - self.all[i].x;
-            (j, self.volume(j) * self.kernel.pair_weight(x_ij.length(), self.h), x_ij)
+            (j, self.all[j].volume * self.kernel.pair_weight(x_ij.length(), self.h), x_ij)
         })
     }
 
@@ -116,8 +61,11 @@ impl Naive {
 
     fn forces(&self) -> Vec<DVec3> {
         let n = self.all.len();
-        let a: Vec<DMat3> = (0..n).map(|i| self.cauchy(i) * self.inverse_moment(i)).collect();
-        let force = |i| self.volume(i) * self.pairs(i).map(|(j, w, x)| (a[i] + a[j]) * x * w).sum::<DVec3>();
+        let kirchhoff = |i: usize| self.all[i].stress * self.all[i].deformation.transpose();
+        let a: Vec<DMat3> = (0..n).map(|i| kirchhoff(i) * self.inverse_moment(i)).collect();
+        let force = |i: usize| {
+            self.all[i].volume * self.pairs(i).map(|(j, w, x)| (a[i] + a[j]) * x * w).sum::<DVec3>()
+        };
         (0..n).map(force).collect()
     }
 }
@@ -315,130 +263,6 @@ fn a_thrown_body_that_turns_and_swings_keeps_its_momenta_and_its_energy() {
     }
 }
 
-/// The scene with Eulerian bodies in the place of the total-Lagrangian ones.
-fn eulerian(source: &Source) -> Source {
-    assert!(source.text.contains("formulation: TotalLagrangian"), "{}", source.name);
-    let text = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
-    let text = text.replace("formulation: TotalLagrangian", "formulation: Eulerian()");
-    let text = text.replace("form: Ganzenmueller2015", "form: Stiffness");
-    let text = text.replace("Contact(between: (\"b\", \"b\"), law: Penalty()),", "");
-    Source::new(source.name.clone(), text)
-}
-
-#[test]
-fn bits_do_not_depend_on_threads_or_on_a_restart() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("state.mlc");
-    let steps = 90;
-    for source in [all_plugins(2), all_plugins(3), removal(), failing(), failing_metals(), metals()] {
-        let source = eulerian(&source);
-        let on = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
-            pool.install(|| after(&source, steps).state_hash())
-        };
-        let one = on(1);
-        assert_eq!(one, on(3), "{}: threads", source.name);
-        after(&source, 41).save(&path, &source).expect("a checkpoint");
-        let checkpoint = Checkpoint::read(&path).expect("a checkpoint");
-        let mut second = simulation(&checkpoint.source());
-        second.restore(&checkpoint).expect("a restart");
-        second.run(|sim| sim.clock().step < steps).expect("a run");
-        assert_eq!(one, second.state_hash(), "{}: restart", source.name);
-    }
-}
-
-/// A metal block that is squeezed and turned, whole or its half above a symmetry plane.
-fn squeezed(half: bool) -> Simulation {
-    let (low, plane) = if half { ("0", "Symmetry(plane: Y, at: 0.0, side: Above),") } else { ("-0.005", "") };
-    let text = format!(
-        r#"(dimension: Two,
-            materials: {{"metal": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Linear(yield_stress: 2e8, modulus: 5e8))}},
-            bodies: [(name: "block", material: "metal", shape: Box(min: (0, {low}), max: (0.02, 0.005)), spacing: 1e-3,
-                      formulation: Eulerian(), plugins: [hourglass_control(form: Combined), artificial_viscosity()])],
-            conditions: [{plane} InitialVelocity(on: Select(body: "block"), value: ("-8000*(x - 0.01)", "2e4*y*cos(300*x)"))],
-            time: (end: 1, step: Fixed(5e-8)))"#
-    );
-    after(&Source::new("squeezed.ron", text), 300)
-}
-
-#[test]
-fn half_a_body_at_a_symmetry_plane_moves_as_half_of_the_whole() {
-    let (whole, half) = (squeezed(false), squeezed(true));
-    let upper: Vec<Particle> = particles(&whole).into_iter().filter(|p| p.x.y > 0.0).collect();
-    let half = particles(&half);
-    assert_eq!(upper.len(), half.len());
-    let mut moved = 0.0f64;
-    for a in &half {
-        let b = upper.iter().map(|b| b.x.distance(a.x)).fold(f64::INFINITY, f64::min);
-        assert!(b < 1e-10, "{b} m apart");
-        moved = moved
-            .max((a.deformation - DMat3::IDENTITY).abs().to_cols_array().into_iter().fold(0.0, f64::max));
-    }
-    assert!(moved > 0.03, "{moved}");
-    assert!(whole.ledger().relative_error().abs() < 5e-3, "{}", whole.ledger().relative_error());
-}
-
-#[test]
-fn a_body_that_fills_a_period_has_no_sides() {
-    let text = r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X]),
-        materials: {"rubber": NeoHookean(density: 1, young: 1, poisson: 0.3)},
-        bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0.2), max: (1, 0.8)), spacing: 0.05, formulation: Eulerian())],
-        conditions: [InitialVelocity(on: Select(body: "block"), value: ("5", "0.05*sin(20*y)"))],
-        time: (end: 100.0))"#;
-    let sim = after(&Source::new("period.ron", text.to_owned()), 200);
-    // It has flown through several periods, all columns alike.
-    let all = particles(&sim);
-    assert!(all[0].x.x > 2.0, "{}", all[0].x);
-    for row in all.chunks(20).take(1) {
-        let first = row[0].x.y;
-        assert!(row.iter().all(|p| (p.x.y - first).abs() < 1e-12 || (p.x.y - row[0].x.y).abs() > 0.02));
-    }
-    let (sum, size) = all.iter().fold((DVec3::ZERO, 0.0), |(sum, size), p| (sum + p.f, size + p.f.length()));
-    assert!(size > 0.0 && sum.length() < 1e-12 * size);
-    assert!(all.iter().all(|p| p.f.x.abs() < 1e-12 * size), "forces along the period");
-}
-
-/// What is wrong with a scene.
-fn fault(source: &Source) -> String {
-    let (scene, source) = meshless::scene::parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
-    match meshless::assembly::build(&scene, &source, &meshless::standard_plugins()) {
-        Ok(_) => panic!("no fault was found"),
-        Err(error) => error.to_string(),
-    }
-}
-
-#[test]
-fn what_it_does_not_offer_is_an_error_at_its_place() {
-    let at_rest = r#"("0", "0")"#;
-    for (plugin, words) in [
-        (
-            "hourglass_control(form: Ganzenmueller2015)",
-            "no hourglass control of the form `Ganzenmueller2015`",
-        ),
-        ("hourglass_control(alpha: 5)", "`alpha` is the coefficient of Lagrangian bodies"),
-        ("hourglass_control(form: Combined, chi: 1.5)", "`chi` is 1.5, outside of 0 to 1"),
-    ] {
-        let text = fault(&block(2, "Eulerian()", at_rest, &format!("plugins: [{plugin}],")));
-        assert!(text.contains(words), "{text}");
-    }
-    for form in ["Stiffness", "MohseniMofidi2020"] {
-        let plugins = format!("plugins: [hourglass_control(form: {form})],");
-        let text = fault(&block(2, "TotalLagrangian", at_rest, &plugins));
-        assert!(text.contains(&format!("no hourglass control of the form `{form}`")), "{text}");
-    }
-    for (formulation, words) in [
-        ("Eulerian(support: 1)", "`support` must be between 1.5 and 10 spacings"),
-        ("Eulerian(artificial_stress: (epsilon: -1))", "`artificial_stress.epsilon` must not be negative"),
-        ("Eulerian(artificial_stress: (exponent: 0))", "`artificial_stress.exponent` must be 1 to 16"),
-    ] {
-        let text = fault(&block(2, formulation, at_rest, ""));
-        assert!(text.contains(words), "{text}");
-    }
-    let contact = r#"contacts: [Contact(between: ("block", "block"), law: Penalty())],"#;
-    let text = fault(&block(2, "Eulerian()", at_rest, contact));
-    assert!(text.contains("contact of a body with itself"), "{text}");
-}
-
 #[test]
 fn the_divergence_of_the_paper_is_the_sum_over_all_pairs() {
     let sim = after(&block(2, "Eulerian(divergence: Shepard)", WILD[0], ""), 30);
@@ -455,7 +279,7 @@ fn the_divergence_of_the_paper_is_the_sum_over_all_pairs() {
         .collect();
     let force = |i: usize| {
         let of_pair = |(j, weight, x): (usize, f64, DVec3)| {
-            let weight = weight / naive.volume(j) * naive.all[j].m;
+            let weight = weight / naive.all[j].volume * naive.all[j].m;
             weight * ((over_density[i] + over_density[j]) * x)
         };
         naive.all[i].m * naive.pairs(i).map(of_pair).sum::<DVec3>()
@@ -482,6 +306,7 @@ fn the_artificial_stress_is_the_sum_over_all_pairs() {
     for (i, stress) in naive.forces().into_iter().enumerate() {
         let of_pair = |(j, weight, x): (usize, f64, DVec3)| {
             let near = (naive.kernel.w(x.length(), naive.h) / at_spacing).powi(3);
+            let weight = weight / naive.all[j].volume * naive.volume(j);
             -0.5 * near * weight * ((tensile(i) + tensile(j)) * x)
         };
         let repulsion = naive.volume(i) * naive.pairs(i).map(of_pair).sum::<DVec3>();
@@ -491,38 +316,4 @@ fn the_artificial_stress_is_the_sum_over_all_pairs() {
     }
     assert!(largest > 1e-2 * size, "{largest} of {size}");
     assert!(sim.ledger().total_named("artificial_stress") != 0.0);
-}
-
-#[test]
-fn it_meets_fluids_and_lagrangian_bodies_and_the_books_close() {
-    let rubber = r#""rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)"#;
-    let in_water = format!(
-        r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
-            materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 2.0), {rubber}}},
-            bodies: [
-                (name: "water", material: "water", spacing: 0.05, formulation: Fluid,
-                 shape: Difference(Box(min: (0, 0), max: (1, 1)), Box(min: (0.35, 0.35), max: (0.65, 0.65)))),
-                (name: "block", material: "rubber", spacing: 0.05, formulation: Eulerian(),
-                 shape: Box(min: (0.35, 0.35), max: (0.65, 0.65)), plugins: [hourglass_control()]),
-            ],
-            conditions: [InitialVelocity(on: Select(body: "water"), value: ("sin(2*pi*y)", "0.3"))],
-            time: (end: 1))"#
-    );
-    let touching = format!(
-        r#"(dimension: Two, materials: {{{rubber}}},
-            bodies: [
-                (name: "left", material: "rubber", shape: Box(min: (0, 0), max: (0.4, 0.3)), spacing: 0.05, formulation: Eulerian(),
-                 velocity: (2, 0)),
-                (name: "right", material: "rubber", shape: Box(min: (0.4, 0), max: (0.8, 0.3)), spacing: 0.05,
-                 formulation: TotalLagrangian, velocity: (-2, 0)),
-            ],
-            contacts: [Contact(between: ("left", "right"), law: Penalty(), friction: 0.2)],
-            plugins: [hourglass_control()],
-            time: (end: 1))"#
-    );
-    for (text, steps) in [(in_water, 60), (touching, 100)] {
-        let sim = after(&Source::new("meets.ron", text), steps);
-        assert!(sim.ledger().total_named("strain") > 0.0);
-        assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
-    }
 }

@@ -1,19 +1,27 @@
 //! Bodies that fail, with the standard plugins about them.
 
+use meshless::glam::DMat3;
 use meshless::prelude::DVec3;
 use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
-use meshless::world::{BodyId, Damage, Mass, ReferencePosition, Removed, Velocity};
+use meshless::world::{
+    BodyId, Damage, DeformationGradient, HourglassModulus, Mass, PiolaStress, ReferencePosition, Removed,
+    Temperature, Velocity,
+};
 use meshless::{assembly, standard_plugins};
 
 /// A notched strip of metal that is pulled apart, with the given plugins.
 fn strip(plugins: &str) -> Simulation {
+    strip_of("TotalLagrangian", plugins)
+}
+
+fn strip_of(formulation: &str, plugins: &str) -> Simulation {
     let text = format!(
         r#"(dimension: Two,
             materials: {{"metal": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Linear(yield_stress: 2e8, modulus: 5e8),
                                      heating: (specific_heat: 900))}},
-            bodies: [(name: "strip", material: "metal", spacing: 1e-3, formulation: TotalLagrangian, plugins: [{plugins}],
+            bodies: [(name: "strip", material: "metal", spacing: 1e-3, formulation: {formulation}, plugins: [{plugins}],
                       shape: Difference(Box(min: (0, 0), max: (0.04, 0.01)), Box(min: (0.019, 0.008), max: (0.021, 0.011))))],
             conditions: [Velocity(on: Select(face: MinX), value: ("0", "0")), Velocity(on: Select(face: MaxX), value: ("40", "0")),
                          InitialVelocity(on: Select(), value: ("1000*x", None))],
@@ -157,5 +165,59 @@ fn what_has_failed_is_worn_off_from_the_surface_inwards() {
         let mut found = left_of_block(formulation, &pit);
         found.sort_by_key(|(x, y)| (*y, *x));
         assert_eq!(found, pit, "{formulation}");
+    }
+}
+
+/// Rows that have failed, and the largest deviator of their Cauchy stress, Pa.
+fn failed_rows(sim: &Simulation) -> (Vec<usize>, f64) {
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let damage = view.read::<Damage>().expect("damage");
+    let (f, p) =
+        (view.read::<DeformationGradient>().expect("F"), view.read::<PiolaStress>().expect("stresses"));
+    let failed: Vec<usize> = rows.filter(|&row| damage[row].0 >= 1.0).collect();
+    let deviator = |&k: &usize| {
+        let cauchy = p[k].0 * f[k].0.transpose() * (1.0 / f[k].0.determinant());
+        let mean = (cauchy.x_axis.x + cauchy.y_axis.y + cauchy.z_axis.z) / 3.0;
+        (cauchy - DMat3::from_diagonal(DVec3::splat(mean)))
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()))
+    };
+    let largest = failed.iter().map(deviator).fold(0.0, f64::max);
+    (failed, largest)
+}
+
+#[test]
+fn what_johnson_and_cook_have_failed_has_no_deviator_and_no_control_for_good_in_every_formulation() {
+    let failure = "failure(criterion: JohnsonCook(d1: 0.02, d2: 0.1, d3: -1.5, d5: 0.5, reference_temperature: 293, melt_temperature: 900), then: NoDeviator)";
+    for formulation in ["TotalLagrangian", "UpdatedLagrangian(update: Every(10))", "Eulerian()"] {
+        let mut sim = strip_of(formulation, &format!("hourglass_control(), {failure}"));
+        let mut before: Vec<usize> = Vec::new();
+        for k in 1..=12 {
+            sim.run(|sim| sim.clock().time < f64::from(k) * 1e-5)
+                .unwrap_or_else(|error| panic!("{formulation}: {error}"));
+            let (failed, deviator) = failed_rows(&sim);
+            // The flow stress is 200 MPa.
+            assert!(deviator < 1.0, "{formulation}: a deviator of {deviator} Pa");
+            assert!(before.iter().all(|row| failed.contains(row)), "{formulation}: damage heals");
+            let (view, _) = sim.world().body_view(BodyId(0));
+            let modulus = view.read::<HourglassModulus>().expect("moduli");
+            assert!(
+                before.iter().all(|&row| modulus[row].0 == 0.0),
+                "{formulation}: the control holds what has failed"
+            );
+            before = failed;
+        }
+        assert!((5..300).contains(&before.len()), "{formulation}: {} have failed", before.len());
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let temperature = view.read::<Temperature>().expect("temperatures");
+        let hottest = rows.map(|row| temperature[row].0).fold(0.0, f64::max);
+        // At least 0.9 times 200 MPa times a strain of 0.02 over the heat capacity, on top of 293 K.
+        assert!(hottest > 294.4, "{formulation}: {hottest} K");
+        assert!(
+            sim.ledger().relative_error().abs() < 2e-2,
+            "{formulation}: {}",
+            sim.ledger().relative_error()
+        );
     }
 }

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "every test uses a part")]
 
 pub mod coupled;
+pub mod eulerian;
 pub mod thin;
 pub mod touching;
 pub mod wearing;

@@ -133,6 +133,10 @@ impl SolidLaw for FailingLaw {
         self.inner.specific_heat()
     }
 
+    fn initial_yield_stress(&self) -> Option<f64> {
+        self.inner.initial_yield_stress()
+    }
+
     fn stable_step_factor(&self, stretches: &Stretches) -> f64 {
         self.inner.stable_step_factor(stretches)
     }

@@ -69,7 +69,7 @@ impl Default for HourglassControl {
 /// Forms of the control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Form {
-    /// `Variational`.
+    /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically.
     Default,
     /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation gradient, in Lagrangian bodies; of the error along
     /// the bond, with the kernel of the present places, in Eulerian ones.
@@ -105,19 +105,8 @@ impl Plugin for HourglassControl {
         if !lagrangian.is_empty() {
             self.add_to_lagrangian(lagrangian, sim)?;
         }
-        // Half of twice the coefficient where the other half is viscous.
-        let (share, viscous, usual) = match self.form {
-            Form::Stiffness | Form::Variational | Form::Default => (1.0, 0.0, USUAL_XI),
-            Form::Viscous => (0.0, 1.0, 0.0),
-            _ => (1.0 - self.chi, self.chi, 2.0 * USUAL_XI),
-        };
-        let elastic = Elastic {
-            xi: share * self.xi.unwrap_or(usual),
-            after_yield: self.after_yield,
-            has_energy: !matches!(self.form, Form::Stiffness | Form::MohseniMofidi2020),
-        };
         for id in present.iter() {
-            eulerian::add(elastic, viscous * self.zeta, id, sim)?;
+            self.add_to_eulerian(id, sim)?;
         }
         Ok(())
     }
@@ -184,6 +173,27 @@ impl HourglassControl {
             let message = format!("`{given}` is the coefficient of {kind} bodies, and there is none here");
             Err(SetupError::parameter(given, message, format!("give `{meant}` instead, or neither")))
         })
+    }
+
+    fn add_to_eulerian(&self, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let flows = sim.body(id).solid_law()?.initial_yield_stress().is_some();
+        let form = match self.form {
+            Form::Default if flows => Form::Combined,
+            Form::Default => Form::Variational,
+            form => form,
+        };
+        // Half of twice the coefficient where the other half is viscous.
+        let (share, viscous, usual) = match form {
+            Form::Stiffness | Form::Variational => (1.0, 0.0, USUAL_XI),
+            Form::Viscous => (0.0, 1.0, 0.0),
+            _ => (1.0 - self.chi, self.chi, 2.0 * USUAL_XI),
+        };
+        let elastic = Elastic {
+            xi: share * self.xi.unwrap_or(usual),
+            after_yield: self.after_yield,
+            has_energy: !matches!(form, Form::Stiffness | Form::MohseniMofidi2020),
+        };
+        eulerian::add(elastic, viscous * self.zeta, id, sim)
     }
 
     fn add_to_lagrangian(&self, bodies: BodySet, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

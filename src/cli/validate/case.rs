@@ -74,6 +74,7 @@ macro_rules! for_each_case {
             M4E eulerian::SHEAR;
             S8E eulerian::PLATE;
             S15E eulerian::ALUMINIUM;
+            S21E eulerian::UPSETTING;
             C1 hertz::CASE;
             C2 incline::CASE;
             C3 restitution::CASE;

@@ -11,7 +11,7 @@ use super::disorder::Disorder;
 use super::measure::body;
 use super::oscillating_plate::{PLATES, plate};
 use super::template::Template;
-use super::{invariants, jaumann_shear, taylor_bars};
+use super::{invariants, jaumann_shear, taylor_bars, upsetting};
 
 pub(super) const AFFINE: Case =
     Case { id: "K2E", run: |_, n| (invariants::AFFINE.run)(&eulerian(), n), ..invariants::AFFINE };
@@ -37,6 +37,12 @@ pub(super) const ALUMINIUM: Case = Case {
     title: "Taylor bar of aluminium 6061-T6, Eulerian",
     run: |_, n| (taylor_bars::ALUMINIUM.run)(&eulerian(), n),
     ..taylor_bars::ALUMINIUM
+};
+pub(super) const UPSETTING: Case = Case {
+    id: "S21E",
+    title: "upsetting of an aluminium cylinder, Eulerian",
+    run: |_, n| (upsetting::CASE.run)(&eulerian(), n),
+    ..upsetting::CASE
 };
 pub(super) const TENSION: Case = Case {
     id: "S20",

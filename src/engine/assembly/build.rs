@@ -12,7 +12,7 @@ use super::overlap;
 use super::placement;
 use super::plausibility;
 use super::spawn;
-use super::supports;
+use super::{clamps, supports};
 use crate::materials::{Law, Material};
 use crate::plugin::{BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::{OutputPlan, Recorder};
@@ -68,6 +68,7 @@ fn build_in(
         return Err(overlaps);
     }
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
+    clamps::warn(scene, registry, &mut sim);
     supports::place(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;

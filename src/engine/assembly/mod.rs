@@ -1,6 +1,7 @@
 //! From a scene to a simulation, on top of everything else: materials, particles, plugins, systems, columns.
 
 mod build;
+mod clamps;
 #[cfg(test)]
 mod handed_tests;
 mod memory;

@@ -5,21 +5,21 @@
 //! ```
 //!
 //! F is no function of the places: it goes along with the velocity gradient. So U changes by the motion of the pairs at fixed F, which gives a force on the
-//! pair, and by dF/dt = L F, which gives the stress `(dU/dF_i) F_i^T / V_i`. The adjoint of L makes forces of it, as of the stress of the material. What is
+//! pair, and by dF/dt = L F, which gives the Kirchhoff stress `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L makes forces of it, as of the stress of the material. What is
 //! conserved is the sum of all energies, and as U does not change where places and F turn together, the angular momentum.
 //!
 //! Each particle resists the error of its own F, as in the variational form of Lagrangian bodies: that of the mean of both is of third order in a body that
 //! bends, and leaves it as soft as the mean gradient makes it. The weight is that of the velocity gradient: a steeper one, as W / |X|^2, needs thrice
 //! the largest stiffness for the same in bending. Pairs that were further apart than the support H, and have met in a flow, count less and less.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
-use super::near::Near;
+use super::control_pairs::ControlPairs;
 use super::parameters::Divergence;
-use super::rows::{EulerianRows, Point};
+use super::rows::EulerianRows;
 use super::stress::corrected;
 use crate::column;
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, Split, for_each_block, run_hot_in};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, Split, for_each_block, run_hot_on};
 use crate::solids::{CorrectedStress, CorrectedStressRows, FoldedEnergy};
 use crate::symmetry::Map;
 
@@ -33,7 +33,7 @@ column! {
 #[repr(C, align(64))]
 pub(super) struct Carried {
     /// The columns of F, and in their last lanes the modulus of the control, that of the last step, Pa, and the reference volume, m3.
-    columns: [Lanes4; 3],
+    pub columns: [Lanes4; 3],
     /// X.
     pub original: Lanes4,
 }
@@ -41,7 +41,7 @@ pub(super) struct Carried {
 impl Carried {
     /// Takes up F, the modulus, Pa, and the reference volume, m3.
     pub fn set(&mut self, f: &DMat3, modulus: f64, volume: f64) {
-        let before = self.modulus_before();
+        let before = self.columns[1].0[3];
         self.columns =
             [Lanes4::new(f.x_axis, modulus), Lanes4::new(f.y_axis, before), Lanes4::new(f.z_axis, volume)];
     }
@@ -54,28 +54,6 @@ impl Carried {
     fn deformation(&self) -> DMat3 {
         let [x, y, z] = self.columns;
         DMat3::from_cols(x.xyz(), y.xyz(), z.xyz())
-    }
-
-    #[inline(always)]
-    fn modulus(&self) -> f64 {
-        self.columns[0].0[3]
-    }
-
-    #[inline(always)]
-    fn modulus_before(&self) -> f64 {
-        self.columns[1].0[3]
-    }
-
-    /// The modulus, Pa, with which it resists the error of a neighbour: none across cracks.
-    #[inline(always)]
-    fn resists(&self, other: &Self) -> f64 {
-        if other.modulus() > 0.0 { self.modulus() } else { 0.0 }
-    }
-
-    /// That of the last step, Pa.
-    #[inline(always)]
-    fn resisted(&self, other: &Self) -> f64 {
-        if other.modulus_before() > 0.0 { self.modulus_before() } else { 0.0 }
     }
 
     #[inline(always)]
@@ -140,9 +118,10 @@ pub(super) fn run(
     let (divergence, support, offsets) = (kernels[k].divergence, lists.bodies[k].support, &lists.offsets[..]);
     for_each_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
-        let pass = ControlPass { control, divergence, support, offsets, near, points, carried, mass, first };
+        let pairs = ControlPairs { support, offsets, near, points, carried };
+        let pass = ControlPass { control, divergence, pairs, mass, first };
         let mut sum = FoldedEnergy::default();
-        run_hot_in(*plane, ControlLoop { pass, block, sum: &mut sum });
+        run_hot_on(*plane, ControlLoop { pass, block, sum: &mut sum });
         sum
     })
 }
@@ -150,11 +129,7 @@ pub(super) fn run(
 struct ControlPass<'a> {
     control: BodyControl,
     divergence: Divergence,
-    support: f64,
-    offsets: &'a [usize],
-    near: &'a Near,
-    points: &'a [Point],
-    carried: &'a [Carried],
+    pairs: ControlPairs<'a>,
     mass: &'a [crate::world::Mass],
     first: usize,
 }
@@ -194,29 +169,19 @@ struct ControlLoop<'a, 's> {
     sum: &'s mut FoldedEnergy,
 }
 
-/// Sums over the pairs of a row, without xi and the volume of the row.
-struct PairSums<const D: usize> {
-    /// dU/dx.
-    force: Lanes4,
-    /// The columns of dU/dF.
-    couple: [Lanes4; D],
-    stiffness: f64,
-    /// Twice the energies, with the moduli of now and of the last step.
-    energy: f64,
-    energy_before: f64,
-}
+impl HotLoop for ControlLoop<'_, '_> {
+    type Output = ();
 
-impl PlaneOrSolid for ControlLoop<'_, '_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: Arithmetic>(self, a: A) {
         let Self { pass, block, sum } = self;
         let ControlBlock { force, stiffness, stresses, energy } = block;
         let BodyControl { xi, density } = pass.control;
         for k in 0..force.len() {
-            let own = &pass.carried[pass.first + k];
-            let sums = pass.of_row::<A, D>(a, pass.first + k);
+            let own = &pass.pairs.carried[pass.first + k];
+            let sums = pass.pairs.of_row(a, pass.first + k);
             let scale = xi * own.volume();
-            force[k] = a.scale(scale, sums.force);
+            force[k] = Lanes4::new(sums.force * scale, 0.0);
             stiffness[k] = xi / density * sums.stiffness;
             let (now, with_modulus_before) = (0.25 * scale * sums.energy, 0.25 * scale * sums.energy_before);
             let last = std::mem::replace(&mut energy[k].0, now);
@@ -227,77 +192,22 @@ impl PlaneOrSolid for ControlLoop<'_, '_> {
             } else {
                 sum.released -= now;
             }
-            let mut columns = [DVec3::ZERO; 3];
-            for axis in 0..D {
-                columns[axis] = sums.couple[axis].xyz() * scale;
-            }
-            let slope = DMat3::from_cols(columns[0], columns[1], columns[2]);
+            let slope = sums.couple * scale;
             pass.add_stress(k, &(slope * own.deformation().transpose()), &mut stresses[k]);
         }
     }
 }
 
 impl ControlPass<'_> {
-    #[inline(always)]
-    fn of_row<A: Arithmetic, const D: usize>(&self, a: A, i: usize) -> PairSums<D> {
-        let Self { offsets, near, points, carried, .. } = self;
-        let (own, place) = (&carried[i], points[i].place);
-        let (neighbors, weights) = near.row(offsets[i], i);
-        let curvatures = &near.curvatures[offsets[i]..offsets[i] + neighbors.len()];
-        let support_squared = self.support * self.support;
-        let mut sums = PairSums {
-            force: Lanes4::ZERO,
-            couple: [Lanes4::ZERO; D],
-            stiffness: 0.0,
-            energy: 0.0,
-            energy_before: 0.0,
-        };
-        for n in 0..neighbors.len() {
-            let j = neighbors[n] as usize;
-            let other = &carried[j];
-            let arm = a.minus(points[j].place, place);
-            let original = a.minus(other.original, own.original);
-            let (mut own_guess, mut other_guess) = (Lanes4::ZERO, Lanes4::ZERO);
-            for axis in 0..D {
-                own_guess = a.scale_add(original.0[axis], own.columns[axis], own_guess);
-                other_guess = a.scale_add(original.0[axis], other.columns[axis], other_guess);
-            }
-            let square = arm.dot3(arm);
-            // s over |x| of both.
-            let over = 1.0 / square;
-            let own_share = own_guess.dot3(arm) * over - 1.0;
-            let other_share = other_guess.dot3(arm) * over - 1.0;
-            // Pairs that have met on the way.
-            let known = (support_squared / original.dot3(original)).min(1.0);
-            let volume = other.volume() * known * known;
-            let (own_constant, other_constant) = (volume * own.resists(other), volume * other.resists(own));
-            let (own_pull, other_pull) = (own_constant * own_share, other_constant * other_share);
-            let errors = own_pull * own_share + other_pull * other_share;
-            let half = 0.5 * weights[n];
-            // From w = -W' / r the slope of the weight is -(W'' + w) / r.
-            let slope = half * (2.0 * (own_pull + other_pull) + errors)
-                + 0.25 * (curvatures[n] + weights[n]) * errors;
-            let guess = a.scale_add(half * own_pull, own_guess, a.scale(half * other_pull, other_guess));
-            sums.force = a.plus(sums.force, a.scale_add(-slope, arm, guess));
-            for axis in 0..D {
-                sums.couple[axis] = a.scale_add(half * own_pull * original.0[axis], arm, sums.couple[axis]);
-            }
-            let error = weights[n] * volume * own_share * own_share * square;
-            sums.stiffness += half * (own_constant + other_constant);
-            sums.energy += error * own.resists(other);
-            sums.energy_before += error * own.resisted(other);
-        }
-        sums
-    }
-
-    /// Adds V_i times a stress to what neighbours read of row `k`.
+    /// Adds V_0,i times a Kirchhoff stress to what neighbours read of row `k`.
     #[inline(always)]
     fn add_stress(&self, k: usize, stress: &DMat3, row: &mut CorrectedStress) {
         let i = self.first + k;
-        let volume = self.points[i].place.0[3];
-        if volume > 0.0 {
-            let stress = *stress * (1.0 / volume);
-            let add = corrected(self.divergence, &stress, &self.near.around[i], (self.mass[i].0, volume));
+        let point = &self.pairs.points[i];
+        if point.place.0[3] > 0.0 {
+            let stress = *stress * (1.0 / point.place.0[3]);
+            let around = &self.pairs.near.around[i];
+            let add = corrected(self.divergence, &stress, around, self.mass[i].0, point);
             CorrectedStressRows(std::slice::from_mut(row)).add_scaled(0, 1.0, &add);
         }
     }

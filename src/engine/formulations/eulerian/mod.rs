@@ -3,11 +3,14 @@
 //! Neighbours, weights and corrections are those of the present places; what the body remembers is the state of its particles. A step is
 //!
 //! ```text
-//! rates     L_i = (sum_j V_j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_j w_ij x_ij (x) x_ij      with the places at mid-step
-//!           F_i <- (I - dt/2 L_i)^-1 (I + dt/2 L_i) F_i ,  V_i = V_0,i det F_i
-//! stress    F_i -> P_i (any law) ,  A_i = sigma_i M_i^-1 ,  sigma = P F^T / det F                   with the places at the end of the step
-//! force     f_i = V_i sum_j V_j w_ij (A_i + A_j) x_ij
+//! rates     L_i = (sum_j V_0,j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_0,j w_ij x_ij (x) x_ij      with the places at mid-step
+//!           F_i <- (I - dt/2 L_i)^-1 (I + dt/2 L_i) F_i
+//! stress    F_i -> P_i (any law) ,  A_i = P_i F_i^T M_i^-1                                          with the places at the end of the step
+//! force     f_i = V_0,i sum_j V_0,j w_ij (A_i + A_j) x_ij
 //! ```
+//!
+//! The weights are those of the masses: with the present volumes L would depend on F, which is known at the ends of a step alone, and a step would not be its
+//! own way back.
 //!
 //! The force is the exact adjoint of the velocity gradient at the same places: its power is that of the stress, it has no resultant and no
 //! torque. The lists have a skin; what a step reads of them are the neighbours within the support, in the order of rows, so that no bit
@@ -15,6 +18,7 @@
 
 mod artificial_stress;
 mod control;
+mod control_pairs;
 mod force;
 mod lists;
 mod near;

@@ -17,9 +17,9 @@ pub(super) struct Surroundings {
     pub count: u32,
     /// Inverse of M_i; zero for a particle with too few neighbours.
     pub inverse_moment: Sym3,
-    /// `sum_j V_j w_ij x_ij`, 1/m.
+    /// `sum_j V_0,j w_ij x_ij`, 1/m.
     pub reach: glam::DVec3,
-    /// `sum_j V_j w_ij`, 1/m2.
+    /// `sum_j V_0,j w_ij`, 1/m2.
     pub weight_sum: f64,
     /// `sum_j V_j W_ij` with the particle itself: 1 inside of a body.
     pub filled: f64,
@@ -132,23 +132,23 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
                 count += usize::from((square < limit) & (square > 0.0) & (other.0[3] > 0.0));
             }
             let (mut moment, mut reach) = ([Lanes4::ZERO; D], Lanes4::ZERO);
-            let (mut weight_sum, mut filled) = (0.0, itself * own.0[3]);
+            let (mut weight_sum, mut filled) = (0.0, itself * points[first + k].velocity.0[3]);
             let part = start..start + count;
             let pairs = rows.neighbors[part.clone()].iter().zip(&mut rows.weights[part.clone()]);
             let pairs = pairs.zip(&mut rows.kernels[part.clone()]).zip(&mut rows.curvatures[part]);
             for (((&j, weight), value), curvature) in pairs {
-                let other = points[j as usize].place;
+                let Point { place: other, velocity } = points[j as usize];
                 let arm = a.minus(other, own);
                 let (distance, volume) = (arm.dot3(arm).sqrt(), other.0[3]);
-                (*weight, *value) = (kernel.pair_weight(distance), kernel.w(distance));
-                *curvature = kernel.d2w_dr2(distance);
-                let weighted = a.scale(volume * *weight, arm);
+                let (w, kernel_value) = (kernel.pair_weight(distance), kernel.w(distance));
+                (*weight, *value, *curvature) = (w, kernel_value, kernel.d2w_dr2(distance));
+                let weighted = a.scale(volume * w, arm);
                 for axis in 0..D {
                     moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                 }
                 reach = a.plus(reach, weighted);
-                weight_sum += volume * *weight;
-                filled += volume * *value;
+                weight_sum += volume * w;
+                filled += velocity.0[3] * kernel_value;
             }
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();

@@ -63,7 +63,7 @@ impl HotLoop for Fill<'_> {
             }
             let part = lists.offsets[i]..lists.offsets[i] + near.around[i].count as usize;
             let neighbors = &near.neighbors[part.clone()];
-            let mut room = batch.add_row(points[i].place.0[3], neighbors.len());
+            let mut room = batch.add_row(points[i].velocity.0[3], neighbors.len());
             let (fours, rest) = neighbors.as_chunks::<4>();
             for n in 0..fours.len() {
                 put(a, packed, (i, fours[n], 4), part.start + 4 * n, n, &mut room);
@@ -92,11 +92,12 @@ fn put<A: Arithmetic>(
     let [j, k, l, m] = four.map(|row| row as usize);
     let of: [&Point; 4] = [&points[j], &points[k], &points[l], &points[m]];
     let (own, original) = (&points[i], carried[i].original);
-    let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
+    let [x, y, z, _] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
     let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());
-    let [x, y, z, _] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
+    let [x, y, z, volume] = a.transpose([of[0].velocity, of[1].velocity, of[2].velocity, of[3].velocity]);
     let passing = Vector::new(a, [x, y, z]) - Vector::splat(a, own.velocity.xyz());
-    let [x, y, z, _] = a.transpose([j, k, l, m].map(|row| carried[row].original));
+    let [x, y, z, _] =
+        a.transpose([carried[j].original, carried[k].original, carried[l].original, carried[m].original]);
     let then = Vector::new(a, [x, y, z]) - Vector::splat(a, original.xyz());
     let (mut weight, mut kernel, mut volume_j) = (Lanes4::ZERO, Lanes4::ZERO, Lanes4::ZERO);
     for lane in 0..count {

@@ -17,9 +17,9 @@ use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Point {
-    /// x, and the volume V in the last lane: zero for a removed particle.
+    /// x, and the reference volume V_0 in the last lane: zero for a removed particle.
     pub place: Lanes4,
-    /// v.
+    /// v, and the present volume V in the last lane.
     pub velocity: Lanes4,
 }
 
@@ -27,7 +27,7 @@ impl Point {
     fn image(&self, map: &Map) -> Self {
         Self {
             place: Lanes4::new(map.place(self.place.xyz()), self.place.0[3]),
-            velocity: Lanes4::new(map.vector(self.velocity.xyz()), 0.0),
+            velocity: Lanes4::new(map.vector(self.velocity.xyz()), self.velocity.0[3]),
         }
     }
 }
@@ -52,7 +52,7 @@ pub(super) struct EulerianRows {
     pub near: Near,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
-    /// Corrected stress sigma M^-1, and in the last lane of its traction what it is weighted with: the volume V.
+    /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume V_0.
     pub stresses: Vec<CorrectedStress>,
     /// What the control along pairs makes.
     pub control: ControlRows,
@@ -110,10 +110,9 @@ impl EulerianRows {
         );
         for_each_block(rows, &mut Vec::new(), &|_, (points, x, v, volume, f): Rows<'_>| {
             for (k, point) in points.iter_mut().enumerate() {
-                let volume = volume[k].0 * f[k].0.determinant();
                 *point = Point {
-                    place: Lanes4::new(x[k].0 - back * v[k].0, volume),
-                    velocity: Lanes4::new(v[k].0, 0.0),
+                    place: Lanes4::new(x[k].0 - back * v[k].0, volume[k].0),
+                    velocity: Lanes4::new(v[k].0, volume[k].0 * f[k].0.determinant()),
                 };
             }
         });

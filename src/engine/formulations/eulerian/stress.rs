@@ -283,14 +283,14 @@ impl StressPass<'_> {
         constitutive.stress(&mut rows, block, share, &mut sum, |stress| {
             for (k, out) in stresses.iter_mut().enumerate() {
                 let f = &deformation[k];
-                let cauchy = stress[k] * f.transpose() * (1.0 / f.determinant());
-                let (mass, volume) = (self.mass[first + k].0, points[first + k].place.0[3]);
+                let kirchhoff = stress[k] * f.transpose();
+                let (mass, point) = (self.mass[first + k].0, &points[first + k]);
                 let measure = match divergence {
-                    Divergence::Adjoint => volume,
+                    Divergence::Adjoint => point.place.0[3],
                     Divergence::Shepard => mass,
                 };
-                *out = weighted(&corrected(divergence, &cauchy, &around[k], (mass, volume)), measure);
-                if volume <= 0.0 {
+                *out = weighted(&corrected(divergence, &kirchhoff, &around[k], mass, point), measure);
+                if point.place.0[3] <= 0.0 {
                     *out = CorrectedStress::default();
                 }
             }
@@ -318,19 +318,21 @@ impl StressPass<'_> {
     }
 }
 
-/// What neighbours read of a Cauchy stress of a particle of that mass and volume.
+/// What neighbours read of the Kirchhoff stress of a particle of that mass.
 #[inline(always)]
 pub(super) fn corrected(
     divergence: Divergence,
     stress: &DMat3,
     around: &Surroundings,
-    (mass, volume): (f64, f64),
+    mass: f64,
+    point: &Point,
 ) -> DMat3 {
     match divergence {
         Divergence::Adjoint => *stress * around.inverse_moment.to_matrix(),
         Divergence::Shepard => {
+            let (reference, volume) = (point.place.0[3], point.velocity.0[3]);
             let density = mass / volume;
-            *stress * (1.0 / (density * density * around.filled))
+            *stress * (reference / (volume * density * density * around.filled))
         }
     }
 }

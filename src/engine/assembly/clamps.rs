@@ -1,0 +1,49 @@
+//! Held parts of bodies whose kernels live in the present configuration: they must be as thick as the kernel reaches.
+//!
+//! A particle before the clamp sees through a thinner one: what lies behind it is empty, as at a free surface, and the clamp is soft.
+
+use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
+use crate::notation::quantity;
+use crate::plugin::{BodyPlan, Offer, Registry, SimBuilder};
+use crate::scene::Scene;
+
+/// Warns of every body that is held along all axes and nowhere thick enough.
+pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
+    let mut held: Vec<Vec<bool>> = sim.bodies.iter().map(|body| vec![false; body.sites.len()]).collect();
+    for item in &scene.conditions {
+        registry.support(item, |support| {
+            let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
+            // What is wrong with a selection is told where the condition is built.
+            let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
+            for (id, rows) in selection.parts.iter().filter(|_| all) {
+                let first = sim.bodies[id.0].rows.start;
+                rows.iter().for_each(|row| held[id.0][*row as usize - first] = true);
+            }
+        });
+    }
+    let thin = sim.bodies.iter().zip(&held).filter_map(|(body, held)| of_body(body, held));
+    thin.collect::<Vec<_>>().into_iter().for_each(|warning| sim.warn(warning));
+}
+
+fn of_body(body: &BodyPlan, held: &[bool]) -> Option<String> {
+    let reach = body.support.filter(|_| body.offers(Offer::PairControl))?;
+    let of = |is_held: bool| -> Vec<_> {
+        let own = body.sites.iter().zip(held).filter(|(_, held)| **held == is_held);
+        own.map(|(site, _)| site.position).collect()
+    };
+    let (inside, outside) = (of(true), of(false));
+    if inside.is_empty() || outside.is_empty() {
+        return None;
+    }
+    let mut list = NeighborList::default();
+    let (targets, sources) = (Cloud::uniform(&inside, reach), Cloud::uniform(&outside, reach));
+    NeighborSearch::default().between(targets, sources, 0.0, &Periodic::NONE, &mut list).ok()?;
+    let is_thin = (0..inside.len()).all(|row| !list.row(row).is_empty());
+    is_thin.then(|| {
+        format!(
+            "body `{}` is held by a part that its kernel sees through: it is soft there; hold at least {} of it",
+            body.name,
+            quantity((reach / body.spacing).ceil() * body.spacing, "m")
+        )
+    })
+}

@@ -1,0 +1,157 @@
+//! The sums over the pairs of a particle that its hourglass control is made of, four neighbours at once.
+
+use glam::{DMat3, DVec3};
+
+use super::control::Carried;
+use super::near::Near;
+use super::rows::Point;
+use crate::parallel::{Arithmetic, Lanes4, Matrix, Number, Vector};
+
+/// The pairs of a body.
+pub(super) struct ControlPairs<'a> {
+    /// Support radius, m.
+    pub support: f64,
+    pub offsets: &'a [usize],
+    pub near: &'a Near,
+    pub points: &'a [Point],
+    pub carried: &'a [Carried],
+}
+
+/// Sums over the pairs of a particle, without xi and its volume.
+pub(super) struct RowSums {
+    /// dU/dx.
+    pub force: DVec3,
+    /// dU/dF.
+    pub couple: DMat3,
+    pub stiffness: f64,
+    /// Four times the energies, with the moduli of now and of the last step.
+    pub energy: f64,
+    pub energy_before: f64,
+}
+
+/// The particle itself, four times.
+struct Own<A> {
+    place: Vector<A>,
+    original: Vector<A>,
+    deformation: Matrix<A>,
+    modulus: f64,
+    modulus_before: f64,
+}
+
+/// The sums so far.
+struct Sums<A> {
+    force: Vector<A>,
+    couple: [Vector<A>; 3],
+    stiffness: Number<A>,
+    energy: Number<A>,
+    energy_before: Number<A>,
+}
+
+impl ControlPairs<'_> {
+    /// The sums of row `i`.
+    #[inline(always)]
+    pub fn of_row<A: Arithmetic>(&self, a: A, i: usize) -> RowSums {
+        let own = &self.carried[i];
+        let [x, y, z] = own.columns;
+        let column = |column: Lanes4| Vector::splat(a, column.xyz());
+        let own = Own {
+            place: Vector::splat(a, self.points[i].place.xyz()),
+            original: Vector::splat(a, own.original.xyz()),
+            deformation: Matrix([column(x), column(y), column(z)]),
+            modulus: x.0[3],
+            modulus_before: y.0[3],
+        };
+        let zero = Vector::zero(a);
+        let none = Number::zero(a);
+        let mut sums =
+            Sums { force: zero, couple: [zero; 3], stiffness: none, energy: none, energy_before: none };
+        let (neighbors, weights) = self.near.row(self.offsets[i], i);
+        let curvatures = &self.near.curvatures[self.offsets[i]..self.offsets[i] + neighbors.len()];
+        let (fours, rest) = neighbors.as_chunks::<4>();
+        let (weight_fours, weight_rest) = weights.as_chunks::<4>();
+        let (curvature_fours, curvature_rest) = curvatures.as_chunks::<4>();
+        for n in 0..fours.len() {
+            let kernel = (Lanes4(weight_fours[n]), Lanes4(curvature_fours[n]));
+            self.add(a, &own, fours[n], kernel, &mut sums);
+        }
+        if !rest.is_empty() {
+            // The particle itself fills the lanes that are left, without a weight.
+            let (mut four, mut kernel) = ([i as u32; 4], (Lanes4::ZERO, Lanes4::ZERO));
+            for lane in 0..rest.len() {
+                four[lane] = rest[lane];
+                (kernel.0.0[lane], kernel.1.0[lane]) = (weight_rest[lane], curvature_rest[lane]);
+            }
+            self.add(a, &own, four, kernel, &mut sums);
+        }
+        let [x, y, z] = sums.couple;
+        RowSums {
+            force: sums.force.sum(),
+            couple: DMat3::from_cols(x.sum(), y.sum(), z.sum()),
+            stiffness: sums.stiffness.sum(),
+            energy: sums.energy.sum(),
+            energy_before: sums.energy_before.sum(),
+        }
+    }
+
+    /// Adds four neighbours with their weights and second derivatives of the kernel.
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        a: A,
+        own: &Own<A>,
+        four: [u32; 4],
+        (weight, curvature): (Lanes4, Lanes4),
+        sums: &mut Sums<A>,
+    ) {
+        let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
+        let points = [&self.points[j], &self.points[k], &self.points[l], &self.points[m]];
+        let of = [&self.carried[j], &self.carried[k], &self.carried[l], &self.carried[m]];
+        let [x, y, z, _] = a.transpose([points[0].place, points[1].place, points[2].place, points[3].place]);
+        let arm = Vector::new(a, [x, y, z]) - own.place;
+        let [x, y, z, _] = a.transpose([of[0].original, of[1].original, of[2].original, of[3].original]);
+        let original = Vector::new(a, [x, y, z]) - own.original;
+        let columns =
+            |n: usize| a.transpose([of[0].columns[n], of[1].columns[n], of[2].columns[n], of[3].columns[n]]);
+        let [[ax, ay, az, modulus], [bx, by, bz, before], [cx, cy, cz, volume]] =
+            [columns(0), columns(1), columns(2)];
+        let deformation = Matrix([
+            Vector::new(a, [ax, ay, az]),
+            Vector::new(a, [bx, by, bz]),
+            Vector::new(a, [cx, cy, cz]),
+        ]);
+        let (modulus, before) = (Number::new(a, modulus), Number::new(a, before));
+        let volume = Number::new(a, volume);
+        let (weight, curvature) = (Number::new(a, weight), Number::new(a, curvature));
+        let (own_guess, other_guess) = (own.deformation * original, deformation * original);
+        let square = arm.length_squared().max(f64::MIN_POSITIVE);
+        // s over |x| of both.
+        let over = 1.0 / square;
+        let own_share = own_guess.dot(arm) * over - 1.0;
+        let other_share = other_guess.dot(arm) * over - 1.0;
+        // Pairs that have met on the way.
+        let apart = original.length_squared().max(f64::MIN_POSITIVE);
+        let known = (self.support * self.support / apart).min(1.0);
+        let volume = volume * known.squared();
+        // Nothing acts across cracks.
+        let own_modulus = (-modulus).if_below(0.0, Number::splat(a, own.modulus));
+        let other_modulus = if own.modulus > 0.0 { modulus } else { Number::zero(a) };
+        let own_before = (-before).if_below(0.0, Number::splat(a, own.modulus_before));
+        let (own_pull, other_pull) = (volume * own_modulus * own_share, volume * other_modulus * other_share);
+        let errors = own_pull * own_share + other_pull * other_share;
+        let half = 0.5 * weight;
+        // From w = -W' / r the slope of the weight is -(W'' + w) / r.
+        let slope = half * (2.0 * (own_pull + other_pull) + errors) + 0.25 * (curvature + weight) * errors;
+        let own_force = half * own_pull;
+        let guess = own_guess.mul_add(own_force, other_guess * (half * other_pull));
+        sums.force += guess - arm * slope;
+        sums.couple[0] = arm.mul_add(own_force * original.x, sums.couple[0]);
+        sums.couple[1] = arm.mul_add(own_force * original.y, sums.couple[1]);
+        if A::AXES == 3 {
+            sums.couple[2] = arm.mul_add(own_force * original.z, sums.couple[2]);
+        }
+        let error = weight * volume * own_share.squared() * square;
+        sums.stiffness += half * volume * (own_modulus + other_modulus);
+        sums.energy = error.mul_add(own_modulus, sums.energy);
+        sums.energy_before = error.mul_add(own_before, sums.energy_before);
+    }
+}
