@@ -57,7 +57,7 @@ pub(crate) struct SimulationParts {
     pub world: World,
     pub resources: Resources,
     pub schedule: Schedule,
-    /// Phases that take short steps in the steps of the rest.
+    /// Phases that take sub-steps in the steps of the rest.
     pub sub_cycled: Vec<PhaseId>,
     /// What it writes; none if it writes nothing.
     pub output: Option<OutputHandle>,

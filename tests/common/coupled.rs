@@ -1,4 +1,4 @@
-//! Fluid, solid and rigid bodies that act on each other in long and short steps.
+//! Fluid, solid and rigid bodies that act on each other in long and sub-steps.
 
 use meshless::scene::Source;
 

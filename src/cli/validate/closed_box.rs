@@ -44,7 +44,7 @@ fn closed_box(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(vec![
         Check::below("change of momentum", lost, 1e-10, "momentum is conserved"),
         Check::above("momentum that the box has passed on", passed, 0.5, "the water drags it along"),
-        Check::above("short steps in a step", per_step, 4.0, "the rubber is stiff"),
+        Check::above("sub-steps in a step", per_step, 4.0, "the rubber is stiff"),
         Check::below("energy balance error", balance, 1e-2, "energy is conserved"),
     ])
 }

@@ -158,7 +158,7 @@ impl<'s> SimBuilder<'s> {
         });
     }
 
-    /// Lets these phases take short steps, as many as their limits ask for, in the step of all others. What acts between the two
+    /// Lets these phases take sub-steps, as many as their limits ask for, in the step of all others. What acts between the two
     /// must be frozen in the long step.
     pub fn sub_cycle(&mut self, phases: impl IntoIterator<Item = PhaseId>) {
         self.sub_cycled.extend(phases);

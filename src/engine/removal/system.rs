@@ -90,7 +90,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         if removed[row] == Removed::YES {
             continue;
         }
-        // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take short steps are there.
+        // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take sub-steps are there.
         let late = if due { 0.5 * step.clock.dt } else { 0.0 };
         let v = velocity[row].0 + late * (force[row].0 * mobility[row].0);
         kinetic += 0.5 * mass[row].0 * v.length_squared();

@@ -12,7 +12,7 @@ pub struct Time {
     /// How the time step is chosen.
     #[serde(default)]
     pub step: Step,
-    /// Largest number of short steps that solids and rigid bodies beside a fluid take in one step of the fluid; they take as many
+    /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid; they take as many
     /// as their own stability limit asks for. 1: all share one step.
     #[serde(default = "default_sub_steps")]
     pub sub_steps: u32,

@@ -62,7 +62,7 @@ pub struct Schedule {
 
 impl Schedule {
     /// Orders the systems; those without stated order keep the order in which they were added. Those of sub-cycled phases run in
-    /// the short steps.
+    /// the sub-steps.
     pub fn new(systems: Vec<System>, sub_cycled: &[PhaseId]) -> Result<Self, ScheduleError> {
         let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
         let mut ordered = Vec::with_capacity(slots.len());
@@ -129,8 +129,8 @@ impl Schedule {
             for (system, pace) in members {
                 let when = match pace {
                     Pace::Long => "",
-                    Pace::Short => " (short steps)",
-                    Pace::Both => " (long and short steps)",
+                    Pace::Short => " (sub-steps)",
+                    Pace::Both => " (long and sub-steps)",
                 };
                 let _ = write!(text, "  {}{when}", system.label);
                 for (mode, verb) in

@@ -1,4 +1,4 @@
-//! Two clocks in one step: what is stiff takes several short steps while the rest takes one long one.
+//! Two clocks in one step: what is stiff takes several sub-steps while the rest takes one long one.
 
 use crate::world::{BodyId, BodySet, PhaseId, World};
 
@@ -7,13 +7,13 @@ use crate::world::{BodyId, BodySet, PhaseId, World};
 pub enum Pace {
     /// Once: it touches phases that are not sub-cycled, or says so by [`System::in_long_steps`](super::System::in_long_steps).
     Long,
-    /// In every short step: all phases that it touches are sub-cycled.
+    /// In every sub-step: all phases that it touches are sub-cycled.
     Short,
     /// In both, each time with the bodies that are due: see [`System::by_body`](super::System::by_body).
     Both,
 }
 
-/// Which part of a step runs now: the long step, or one of the short steps in it.
+/// Which part of a step runs now: the long step, or one of the sub-steps in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<'s> {
     short: bool,
@@ -28,18 +28,18 @@ impl<'s> Turn<'s> {
         Self { short: false, part: false, number, sub_cycled }
     }
 
-    /// The short step of this number since time 0; `part` where there are others in the long step.
+    /// The sub-step of this number since time 0; `part` where there are others in the long step.
     pub fn short(sub_cycled: &'s [PhaseId], part: bool, number: u64) -> Self {
         Self { short: true, part, number, sub_cycled }
     }
 
-    /// Number of steps done before this one by the clock of this part of the step: short steps by that of sub-cycled phases. What a system of
+    /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of sub-cycled phases. What a system of
     /// sub-cycled bodies does in every so many of its steps, it counts by this.
     pub fn number(self) -> u64 {
         self.number
     }
 
-    /// Whether this is one of several short steps in a long one.
+    /// Whether this is one of several sub-steps in a long one.
     pub fn is_part(self) -> bool {
         self.part
     }

@@ -1,4 +1,4 @@
-//! Short steps of what is stiff in the long step of the rest.
+//! Sub-steps of what is stiff in the long step of the rest.
 //!
 //! A long step of length dt takes k short ones. What acts between both sides is frozen in it; the systems that make it give the
 //! difference to the next value as an impulse at the end of the long step, equal and opposite on both sides.
@@ -10,13 +10,13 @@ use crate::scene;
 use crate::schedule::{Clock, Limit, Stage, TimeStepLimits};
 use crate::world::PhaseId;
 
-/// Short steps of some phases.
+/// Sub-steps of some phases.
 pub(super) struct SubSteps {
     /// Sub-cycled phases; none where all move by one clock.
     pub phases: Vec<PhaseId>,
-    /// Largest number of short steps in a long one.
+    /// Largest number of sub-steps in a long one.
     largest: u32,
-    /// Factor on the limits of short steps.
+    /// Factor on the limits of sub-steps.
     factor: f64,
     /// Whether the long step takes more than one.
     pub divided: bool,
@@ -29,9 +29,9 @@ pub(super) struct SubSteps {
 pub(super) struct SubStepState {
     pub limits: TimeStepLimits,
     next: Option<Limit>,
-    /// Short steps in the last long one.
+    /// Sub-steps in the last long one.
     last: u32,
-    /// Short steps since time 0.
+    /// Sub-steps since time 0.
     pub total: u64,
 }
 
@@ -56,7 +56,7 @@ impl SubSteps {
         Some((f64::from(self.largest) * next.dt, next))
     }
 
-    /// Number of short steps in what is left of the long step, s.
+    /// Number of sub-steps in what is left of the long step, s.
     fn count(&self, rest: f64) -> f64 {
         match &self.state.next {
             Some(limit) if self.largest > 1 => (rest / (self.factor * limit.dt) - 1e-9).ceil().max(1.0),
@@ -74,18 +74,18 @@ impl SubSteps {
 }
 
 impl Simulation {
-    /// How many short steps the last step has taken, and how many there have been since time 0; none where no body is sub-cycled.
+    /// How many sub-steps the last step has taken, and how many there have been since time 0; none where no body is sub-cycled.
     pub fn sub_steps(&self) -> Option<(u32, u64)> {
         let SubStepState { last, total, .. } = self.sub_steps.state;
         (!self.sub_steps.phases.is_empty()).then_some((last, total))
     }
 
-    /// What limits the short steps, where there are any.
+    /// What limits the sub-steps, where there are any.
     pub fn short_limit(&self) -> Option<&Limit> {
         self.sub_steps.state.next.as_ref()
     }
 
-    /// Runs the short steps of the long one, which is that of the clock.
+    /// Runs the sub-steps of the long one, which is that of the clock.
     pub(super) fn run_short_steps(&mut self) -> Result<(), RunError> {
         if self.sub_steps.phases.is_empty() {
             return Ok(());

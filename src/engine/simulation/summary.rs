@@ -39,7 +39,7 @@ pub struct Summary {
     pub end_time: f64,
     /// Steps since time 0.
     pub steps: u64,
-    /// Short steps of sub-cycled bodies since time 0; none where no body is sub-cycled.
+    /// Sub-steps of sub-cycled bodies since time 0; none where no body is sub-cycled.
     pub short_steps: Option<u64>,
     /// Length of the last step, s.
     pub last_dt: f64,

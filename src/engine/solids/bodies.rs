@@ -39,7 +39,7 @@ pub struct SolidBody {
     pub hessian: Option<HessianDifference>,
     /// Its control along pairs.
     pub control: Option<PairControl>,
-    /// Whether its short steps are damped.
+    /// Whether its sub-steps are damped.
     damped: bool,
     /// Factor of the stable step by the stretches of the body.
     stretch_factor: f64,

@@ -1,10 +1,10 @@
 //! Damping of what rings faster than a force that is frozen in a long step can follow.
 //!
-//! A body that takes short steps in the long one of a fluid feels a force that lags behind its motion by up to the long step. A mode of the body whose
+//! A body that takes sub-steps in the long one of a fluid feels a force that lags behind its motion by up to the long step. A mode of the body whose
 //! phase turns by theta = omega dt in it gains energy by the share `kappa / omega^2 (1 - cos theta - theta/2 sin theta)` a step, kappa being the
 //! stiffness of the fluid beside it over its mass, and for theta above one the fluid resolves no wave that would carry that away. Slow modes
 //! gain with theta^4. Stiffness-proportional damping takes with theta^2 and so bounds all of them: the stress is that of the strain a share c of the last
-//! short step ahead,
+//! sub-step ahead,
 //!
 //! `S_v = c (lambda tr(dE) I + 2 mu dE)`, `P = F (S + S_v)`, `dE = E_n - E_n-1`,
 //!
@@ -19,7 +19,7 @@ use crate::materials::ElasticConstants;
 const SHARE: f64 = 0.1;
 
 crate::column! {
-    /// Green-Lagrange strain at the end of the last short step.
+    /// Green-Lagrange strain at the end of the last sub-step.
     pub struct DampedStrain(crate::linalg::Sym3) = "damped_strain", "E_n", "1";
 }
 crate::column! {
@@ -30,7 +30,7 @@ crate::column! {
 /// Account of what the damping takes.
 pub(super) const ACCOUNT: &str = "coupling_damping";
 
-/// Handed to solids whose short steps are damped, by what sub-cycles them.
+/// Handed to solids whose sub-steps are damped, by what sub-cycles them.
 pub(crate) struct DampedInShortSteps;
 
 /// The columns of a body, empty where it is not damped.

@@ -5,7 +5,7 @@
 //! ```text
 //! set-up        the formulation puts its packed rows into the resources as a `SolidPhase`           (phase)
 //! Constitutive  the formulation fits F to the neighbours of a block of particles, then
-//!                 `Constitutive::stress`  F -> law -> P, damping of short steps                      (constitutive, refit, damping)
+//!                 `Constitutive::stress`  F -> law -> P, damping of sub-steps                      (constitutive, refit, damping)
 //!                 the formulation makes what neighbours read of it: A = P M^-1                       (corrected_stress)
 //!                 `Constitutive::fold`    terms of plugins add to A and k                            (folded)
 //!                 `SolidSum::close`       energies of the block

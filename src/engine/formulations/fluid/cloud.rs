@@ -80,7 +80,7 @@ pub struct Group {
     pub role: Role,
     /// Whether someone holds particles by their rows, so that these must not be sorted.
     pub held: bool,
-    /// Whether it takes short steps in those of the flow.
+    /// Whether it takes sub-steps in those of the flow.
     pub short: bool,
 }
 
@@ -122,7 +122,7 @@ pub struct FlowCloud {
     pub(super) viscosities: Viscosities,
     pub(super) plane: bool,
     pub(super) periods: Periods,
-    /// Positions of what bounds the flow at the start of the step, of bodies that take short steps alone.
+    /// Positions of what bounds the flow at the start of the step, of bodies that take sub-steps alone.
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,

@@ -1,9 +1,9 @@
-//! The force of a flow on bodies that take short steps.
+//! The force of a flow on bodies that take sub-steps.
 //!
-//! It is frozen in the long step: the short steps run with what the flow did at its start, f(n). At its end the change comes as an
+//! It is frozen in the long step: the sub-steps run with what the flow did at its start, f(n). At its end the change comes as an
 //! impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly the opposite of what the kicks of the
 //! fluid were. The fluid sees the mean velocity of the long step, on which the frozen force does its work. With one
-//! short step in the long one this is the leapfrog, and under a constant force nothing kicks at all.
+//! sub-step in the long one this is the leapfrog, and under a constant force nothing kicks at all.
 
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
 /// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick. Where
-/// friction `follows`, it changes in the short steps by the motion of the body.
+/// friction `follows`, it changes in the sub-steps by the motion of the body.
 pub(super) fn add(
     sim: &mut SimBuilder<'_>,
     groups: &[Group],
@@ -88,7 +88,7 @@ impl FlowCloud {
         Ok(())
     }
 
-    /// Gives bodies that take short steps their mean velocity over the long one, s.
+    /// Gives bodies that take sub-steps their mean velocity over the long one, s.
     pub(super) fn average_motion(&mut self, dt: f64) {
         if dt == 0.0 {
             return;
@@ -109,7 +109,7 @@ impl FlowCloud {
 
 struct Coupling {
     phase: PhaseId,
-    /// Whether friction follows the motion of the bodies in the short steps.
+    /// Whether friction follows the motion of the bodies in the sub-steps.
     follows: bool,
     /// Force on the particles of a body, and its parts, N.
     total: Vec<Force>,

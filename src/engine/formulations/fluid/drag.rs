@@ -1,7 +1,7 @@
-//! Friction of a flow on bodies that take short steps follows their motion within the long one.
+//! Friction of a flow on bodies that take sub-steps follows their motion within the long one.
 //!
 //! Friction that is frozen in the long step lags: a part of the body that swings there and back within some steps of the flow is pushed on by what should
-//! slow it down. So the short steps add what the friction changes by the motion of the body, with frozen weights:
+//! slow it down. So the sub-steps add what the friction changes by the motion of the body, with frozen weights:
 //!
 //! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was made with, and `c_w = 2 sum_f V_w V_f 4 mu w_wf`.
 //!
@@ -26,7 +26,7 @@ crate::column! {
     pub struct CouplingMotion(glam::DVec3) = "coupling_motion", "v_w(n)", "m/s";
 }
 crate::column! {
-    /// Change of the friction in this short step.
+    /// Change of the friction in this sub-step.
     pub struct CouplingDamping(glam::DVec3) = "coupling_damping_force", "f_d", "N";
 }
 crate::column! {
@@ -38,7 +38,7 @@ crate::column! {
     pub struct CouplingWork(f64) = "coupling_work", "w_d", "J";
 }
 
-/// Adds the change of friction in the short steps of a phase of bodies.
+/// Adds the change of friction in the sub-steps of a phase of bodies.
 pub(super) fn add(sim: &mut SimBuilder<'_>, bodies: &BodySet, phase: PhaseId, label: &str) {
     sim.add_column_to::<CouplingDrag>(bodies);
     sim.add_column_to::<CouplingMotion>(bodies);
@@ -119,7 +119,7 @@ impl Split for DragRows<'_> {
     }
 }
 
-/// Adds the change of friction in the short steps.
+/// Adds the change of friction in the sub-steps.
 pub(super) struct Drag {
     pub bodies: BodySet,
 }
@@ -128,7 +128,7 @@ type Rows<'a> = (&'a mut [Force], &'a [Velocity], DragRows<'a>);
 
 impl Run for Drag {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        // In one short step there is nothing to follow.
+        // In one sub-step there is nothing to follow.
         if !step.turn.is_part() {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! What passes between a flow and bodies that take short steps beside it.
+//! What passes between a flow and bodies that take sub-steps beside it.
 
 use super::pair_force::PARTS;
 use crate::parallel::BlockSum;

@@ -1,4 +1,4 @@
-//! A body beside a fluid, in short steps.
+//! A body beside a fluid, in sub-steps.
 
 use super::tests::simulation;
 
@@ -23,7 +23,7 @@ fn a_strip_under_water_does_not_ring() {
     );
     sim.run(|_| true).expect("a run");
     let (short, long) = (sim.sub_steps().map_or(0, |steps| steps.1), sim.clock().step);
-    assert!(short > 15 * long, "{short} short steps in {long}");
+    assert!(short > 15 * long, "{short} sub-steps in {long}");
     let ledger = sim.ledger();
     let (error, kinetic) = (ledger.relative_error().abs(), ledger.total_named("kinetic"));
     assert!(error < 1e-3, "energy is off by {error}");
@@ -51,12 +51,12 @@ fn the_stretches_of_a_body_in_short_steps_are_refreshed_by_its_own_clock() {
         sim.step().expect("a step");
         let stretch = 1.0 - 20.0 * sim.clock().time;
         let factor = sim.short_limit().expect("a limit").dt / unstretched;
-        // It was that of at most ten short steps before, which are no longer than the first.
+        // It was that of at most ten sub-steps before, which are no longer than the first.
         let late = factor - stretch;
         assert!((-1e-9..10.0 * 20.0 * unstretched).contains(&late), "{factor} at a stretch of {stretch}");
     }
     let (short, long) = (sim.sub_steps().map_or(0, |steps| steps.1), sim.clock().step);
-    assert!(short > 5 * long && sim.clock().time > 0.01, "{short} short steps in {long}");
+    assert!(short > 5 * long && sim.clock().time > 0.01, "{short} sub-steps in {long}");
 }
 
 /// The same under oil three thousand times as viscous. Friction that was frozen in the steps of the oil pushed on what swung there and back within three of
@@ -90,7 +90,7 @@ fn friction_with_a_strip_in_short_steps_takes_energy() {
     })
     .expect("a run");
     let (short, long) = (sim.sub_steps().map_or(0, |steps| steps.1), sim.clock().step);
-    assert!(short > 15 * long, "{short} short steps in {long}");
+    assert!(short > 15 * long, "{short} sub-steps in {long}");
     let ledger = sim.ledger();
     assert!(taken > 0.1 * start, "{taken} of {start} J");
     assert!(ledger.relative_error().abs() < 1e-2, "energy is off by {}", ledger.relative_error());

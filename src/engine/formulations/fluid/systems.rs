@@ -38,7 +38,7 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
     phases
 }
 
-/// The phases that take short steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
+/// The phases that take sub-steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
 pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
     let pairs = advice::contacts(sim);
     let touched = |group: &Group| {
