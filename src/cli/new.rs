@@ -52,6 +52,7 @@ const TEMPLATES: &[Template] = &templates![
     "projectile",
     "metal_cutting",
     "abrasive_flow",
+    "abrasive_flow_3d",
     "dam_break",
     "dam_break_3d",
     "dam_break_obstacle",

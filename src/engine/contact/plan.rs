@@ -102,17 +102,12 @@ fn own_contact_not_offered(contact: &Contact, k: usize, sim: &SimBuilder<'_>) ->
 /// The problem of a contact whose friction is to heat bodies that have no temperature.
 fn heat_without_temperature(contact: &Contact, k: usize, sim: &SimBuilder<'_>) -> Option<Problem> {
     let (a, b) = &contact.between;
-    let is_cold = [a, b].into_iter().all(|name| specific_heat_of(find(sim, name)).is_none());
+    let is_cold = [a, b].into_iter().all(|name| find(sim, name).specific_heat().is_none());
     (contact.friction_heat.is_some() && is_cold).then(|| {
         let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
         Problem::at_path(format!("contacts[{k}].friction_heat"), message)
             .help("give one of them a material with `specific_heat`, or leave `friction_heat` out")
     })
-}
-
-/// The specific heat of a body whose material has one, J/(kg K).
-pub(super) fn specific_heat_of(body: &BodyPlan) -> Option<f64> {
-    body.solid_law().ok()?.specific_heat()
 }
 
 fn named_before(others: &[(usize, Contact)], contact: &Contact, k: usize) -> Option<Problem> {

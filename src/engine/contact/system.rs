@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::pace::Pace;
-use super::plan::specific_heat_of;
 use super::start;
 use super::tally::{self, Tally};
 use super::touching::{Saved, Touching};
@@ -25,7 +24,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, numbers: Ve
     let phases = sim.phases_of(bodies);
     // Where no contact heats anything, temperatures are left alone.
     let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
-    let warm = |body: BodyId| Some((body, specific_heat_of(sim.body(body)).filter(|_| heats)?));
+    let warm = |body: BodyId| Some((body, sim.body(body).specific_heat().filter(|_| heats)?));
     let contacts = Contacts {
         specific_heats: bodies.iter().filter_map(warm).collect(),
         bodies: bodies.iter().map(|body| (body, Pace::NONE)).collect(),

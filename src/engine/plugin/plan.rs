@@ -64,6 +64,11 @@ impl BodyPlan {
         }
     }
 
+    /// The specific heat of a solid whose material has one, J/(kg K).
+    pub fn specific_heat(&self) -> Option<f64> {
+        self.solid_law().ok()?.specific_heat()
+    }
+
     /// The law of the fluid that the body is made of.
     ///
     /// # Errors
