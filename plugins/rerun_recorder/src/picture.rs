@@ -39,7 +39,7 @@ pub fn draw(frame: &RecordedFrame, look: Look) -> Result<Vec<u8>, png::EncodingE
         (true, true) => smooth::plane(&mut bodies, frame, &view),
         (false, smooth) => depth::draw(&mut bodies, frame, &view, smooth),
     }
-    canvas.put_halved(&bodies, area.left(), area.top());
+    canvas.put_halved(&bodies, area.top());
     annotate::draw(&mut canvas, &area, frame, &view);
     canvas.png()
 }

@@ -34,11 +34,6 @@ impl Area {
         self.height
     }
 
-    /// Its left edge.
-    pub fn left(&self) -> usize {
-        0
-    }
-
     /// Its upper edge.
     pub fn top(&self) -> usize {
         self.head

@@ -66,8 +66,8 @@ impl Canvas {
         }
     }
 
-    /// Puts a picture of twice the size at a place.
-    pub fn put_halved(&mut self, large: &Self, left: usize, top: usize) {
+    /// Puts a picture of twice the width below the upper edge `top`.
+    pub fn put_halved(&mut self, large: &Self, top: usize) {
         for y in 0..large.height() / 2 {
             for x in 0..large.width / 2 {
                 let mut sum = [0.0; 3];
@@ -75,7 +75,7 @@ impl Canvas {
                     let part = large.pixels[(2 * y + dy) * large.width + 2 * x + dx];
                     sum = std::array::from_fn(|k| sum[k] + 0.25 * part[k]);
                 }
-                *self.pixel(left + x, top + y) = sum;
+                *self.pixel(x, top + y) = sum;
             }
         }
     }

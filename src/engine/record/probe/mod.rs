@@ -1,6 +1,7 @@
 //! Probes: what the particles of a selection do, or a field at a point, as functions of time.
 
 mod body_points;
+mod direction;
 mod energies;
 mod flow;
 mod line;

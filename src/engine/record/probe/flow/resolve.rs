@@ -7,8 +7,9 @@ use super::level::LevelGauge;
 use super::reaction::ReactionGauge;
 use super::sensor::SensorGauge;
 use crate::plugin::{BodyKind, Selection, SimBuilder};
+use crate::record::probe::direction::direction;
 use crate::record::probe::measure::Measure;
-use crate::scene::{self, Dimension, Problem, Quantity, Vec3};
+use crate::scene::{self, Dimension, Problem, Quantity};
 
 /// The gauge behind a quantity of a flow; none for other quantities. `selected` is what the probe selects.
 pub fn resolve(
@@ -22,21 +23,11 @@ pub fn resolve(
         let path = format!("probes[{k}].quantity{field}");
         vec![Problem::at_path(path, message.to_owned()).help(help)]
     };
-    let unit = |vector: Vec3, field: &str| {
-        let plane = sim.dimension() == Dimension::Two;
-        let direction = vector.0.try_normalize().filter(|unit| !plane || unit.z == 0.0);
-        direction.ok_or_else(|| {
-            problem(
-                field,
-                "the direction must not be a zero vector",
-                "in two dimensions it has no z component",
-            )
-        })
-    };
+    let unit = |vector, field| direction(k, field, vector, sim);
     let gauge: Box<dyn Measure> = match &probe.quantity {
         Quantity::WaterLevel { along } => {
             let up = match along {
-                Some(along) => unit(*along, ".along")?,
+                Some(along) => unit(*along, "along")?,
                 None => (-sim.gravity()).try_normalize().ok_or_else(|| {
                     problem("", "without gravity there is no direction up", "give the direction as `along`")
                 })?,
@@ -44,7 +35,7 @@ pub fn resolve(
             Box::new(LevelGauge { at, up })
         }
         Quantity::PressureSensor { diameter, normal } => {
-            let normal = unit(*normal, ".normal")?;
+            let normal = unit(*normal, "normal")?;
             if !(*diameter >= 0.0 && diameter.is_finite()) {
                 return Err(problem(
                     ".diameter",
@@ -56,7 +47,7 @@ pub fn resolve(
             Box::new(SensorGauge::new(at, *diameter, normal, sim.gravity(), plane))
         }
         Quantity::Flux { normal, within } => {
-            let normal = unit(*normal, ".normal")?;
+            let normal = unit(*normal, "normal")?;
             let within = within.as_ref().map(|shape| {
                 let path = format!("probes[{k}].quantity.within");
                 shape.region(sim.dimension(), sim.folder(), &path)

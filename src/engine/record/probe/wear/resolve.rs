@@ -3,6 +3,7 @@
 use super::removed_volume::RemovedVolume;
 use super::roughness::Roughness;
 use crate::plugin::{Selection, SimBuilder};
+use crate::record::probe::direction::direction;
 use crate::record::probe::measure::Measure;
 use crate::scene::{self, Dimension, Problem, Quantity};
 
@@ -18,13 +19,7 @@ pub fn resolve(
             Box::new(RemovedVolume { selection: selected()?, plane: sim.dimension() == Dimension::Two })
         }
         Quantity::Roughness { normal } => {
-            let plane = sim.dimension() == Dimension::Two;
-            let normal =
-                normal.0.try_normalize().filter(|unit| !plane || unit.z == 0.0).ok_or_else(|| {
-                    let path = format!("probes[{k}].quantity.normal");
-                    let message = "the direction must not be a zero vector";
-                    vec![Problem::at_path(path, message).help("in two dimensions it has no z component")]
-                })?;
+            let normal = direction(k, "normal", *normal, sim)?;
             Box::new(Roughness::new(selected()?, normal, sim))
         }
         _ => return Ok(None),
