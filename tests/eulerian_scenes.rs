@@ -14,7 +14,6 @@ fn eulerian(source: &Source) -> Source {
     let text = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
     let text = text.replace("formulation: TotalLagrangian", "formulation: Eulerian()");
     let text = text.replace("form: Ganzenmueller2015", "form: Stiffness");
-    let text = text.replace("Contact(between: (\"b\", \"b\"), law: Penalty()),", "");
     Source::new(source.name.clone(), text)
 }
 
@@ -145,9 +144,6 @@ fn what_it_does_not_offer_is_an_error_at_its_place() {
         let text = fault(&block(2, formulation, at_rest, ""));
         assert!(text.contains(words), "{text}");
     }
-    let contact = r#"contacts: [Contact(between: ("block", "block"), law: Penalty())],"#;
-    let text = fault(&block(2, "Eulerian()", at_rest, contact));
-    assert!(text.contains("contact of a body with itself"), "{text}");
 }
 
 #[test]

@@ -72,7 +72,10 @@ macro_rules! for_each_case {
             K4E eulerian::PAIR_TERM;
             K6E eulerian::THROWN;
             M4E eulerian::SHEAR;
+            S1E patch::EULERIAN;
             S8E eulerian::PLATE;
+            S9E eulerian::FLAG;
+            S11E eulerian::COLUMN;
             S15E eulerian::ALUMINIUM;
             S21E eulerian::UPSETTING;
             C1 hertz::CASE;

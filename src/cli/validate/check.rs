@@ -63,6 +63,17 @@ impl Check {
         Self { converges: true, ..self }
     }
 
+    /// The same check with a relative tolerance that many times as wide: for a formulation that is compared with another.
+    #[must_use]
+    pub fn widened(self, factor: f64) -> Self {
+        let tolerance = match self.tolerance {
+            Tolerance::Relative(most) => Tolerance::Relative(factor * most),
+            Tolerance::Between(low, high) => Tolerance::Between(factor * low, factor * high),
+            other => other,
+        };
+        Self { tolerance, ..self }
+    }
+
     /// Relative error; the difference where the reference is zero.
     pub fn error(&self) -> f64 {
         let difference = self.measured - self.reference;

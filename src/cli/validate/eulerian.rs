@@ -11,7 +11,7 @@ use super::disorder::Disorder;
 use super::measure::body;
 use super::oscillating_plate::{PLATES, plate};
 use super::template::Template;
-use super::{invariants, jaumann_shear, taylor_bars, upsetting};
+use super::{bending_column, invariants, jaumann_shear, taylor_bars, turek_hron, upsetting};
 
 pub(super) const AFFINE: Case =
     Case { id: "K2E", run: |_, n| (invariants::AFFINE.run)(&eulerian(), n), ..invariants::AFFINE };
@@ -43,6 +43,19 @@ pub(super) const UPSETTING: Case = Case {
     title: "upsetting of an aluminium cylinder, Eulerian",
     run: |_, n| (upsetting::CASE.run)(&eulerian(), n),
     ..upsetting::CASE
+};
+pub(super) const FLAG: Case = Case {
+    id: "S9E",
+    title: "Turek-Hron CSM1, CSM2, CSM3, Eulerian",
+    ci_resolution: 7,
+    run: |_, n| (turek_hron::CASE.run)(&eulerian(), n),
+    ..turek_hron::CASE
+};
+pub(super) const COLUMN: Case = Case {
+    id: "S11E",
+    title: "bending column, Eulerian",
+    run: |_, n| (bending_column::CASE.run)(&eulerian(), n),
+    ..bending_column::CASE
 };
 pub(super) const TENSION: Case = Case {
     id: "S20",

@@ -3,7 +3,7 @@
 use anyhow::Result;
 
 use super::case::Case;
-use super::check::{Check, Tolerance};
+use super::check::Check;
 use super::{bending_column, cantilever, invariants, turek_hron, twisting_column};
 use meshless_engine::plugin::Registry;
 
@@ -34,14 +34,5 @@ fn run(case: &Case, resolution: usize, factor: f64) -> Result<Vec<Check>> {
     let checks = (case.run)(&registry, resolution)?;
     // Regression values of the discrete equations belong to the other formulation.
     let general = checks.into_iter().filter(|check| check.source != "direct sparse solution");
-    Ok(general.map(|check| widened(check, factor)).collect())
-}
-
-fn widened(check: Check, factor: f64) -> Check {
-    let tolerance = match check.tolerance {
-        Tolerance::Relative(most) => Tolerance::Relative(factor * most),
-        Tolerance::Between(low, high) => Tolerance::Between(factor * low, factor * high),
-        other => other,
-    };
-    Check { tolerance, ..check }
+    Ok(general.map(|check| check.widened(factor)).collect())
 }

@@ -75,6 +75,7 @@ pub(super) struct MemberColumns<'a> {
     removed: ArchetypeColumn<'a, Removed>,
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
     solid: Option<Ref<'a, dyn SolidPhase>>,
+    body: Option<Ref<'a, dyn SolidPhase>>,
 }
 
 impl<'a> MemberColumns<'a> {
@@ -94,6 +95,7 @@ impl<'a> MemberColumns<'a> {
             removed: view.read()?,
             gradient: if particles.deform { Some(view.read()?) } else { None },
             solid: if particles.deform { resources.solid(world.body(particles.body).phase) } else { None },
+            body: resources.solid(world.body(particles.body).phase),
         })
     }
 
@@ -108,6 +110,7 @@ impl<'a> MemberColumns<'a> {
             removed: &self.removed,
             gradient: self.gradient.as_deref(),
             solid: self.solid.as_deref(),
+            body: self.body.as_deref(),
         }
     }
 }
@@ -122,7 +125,9 @@ pub(super) struct Members<'a> {
     mobility: &'a [Mobility],
     removed: &'a [Removed],
     gradient: Option<&'a [DeformationGradient]>,
+    /// The body, where its particles deform with it.
     solid: Option<&'a dyn SolidPhase>,
+    body: Option<&'a dyn SolidPhase>,
 }
 
 impl Members<'_> {
@@ -149,6 +154,11 @@ impl Members<'_> {
     /// Radius of a particle in the reference configuration, m.
     pub fn radius(&self, i: usize) -> f64 {
         self.radius[i]
+    }
+
+    /// Whether kernels hold two particles of the body together.
+    pub fn holds_together(&self, i: usize, j: usize) -> bool {
+        self.body.is_some_and(|body| body.holds_together(self.first_row + i, self.first_row + j))
     }
 
     /// What has become of a particle.

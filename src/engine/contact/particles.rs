@@ -125,6 +125,7 @@ impl ParticleContact {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;
         let second = MemberColumns::new(&self.second, step.world, step.resources)?;
         let (first, second) = (first.members(), second.members());
+        let of_itself = self.first.body == self.second.body;
         let least = meetings.find(search.pairs(), |key, least: &mut Least| {
             let (i, j) = (key.0 as usize, key.1 as usize);
             let x_ij = periodic.minimal_image(mirror.place(second.position(j)) - first.position(i));
@@ -137,9 +138,9 @@ impl ParticleContact {
             let near = of_pair(x_ij, first.shape(i), (radius, f.map(|f| mirror.tensor(f))));
             least.add(&Least(reach / near.scale));
             // What is not a number does not touch.
-            (near.overlap > 0.0 && first.is_there(i) && second.is_there(j)).then_some(near)
+            let touches = near.overlap > 0.0 && first.is_there(i) && second.is_there(j);
+            (touches && !(of_itself && first.holds_together(i, j))).then_some(near)
         });
-        let of_itself = self.first.body == self.second.body;
         let other = usize::from(!of_itself);
         let moving = !interaction.is_elastic();
         touched[0].look(&first, meetings.numbers(), moving);

@@ -19,6 +19,12 @@ pub trait SolidPhase: Any + Send + Sync {
     /// Calls `f` with the packed row and the pair weight w_ij of every neighbour of a row that has not been removed.
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64));
 
+    /// Whether two particles that are near each other now are neighbours by kernels of the present configuration, so that contact of a body with itself must
+    /// leave them alone. By those of a reference configuration the distance there tells it.
+    fn holds_together(&self, _row: usize, _other: usize) -> bool {
+        false
+    }
+
     /// How the points of the material beside a particle move, with the velocities of all rows; where velocities beside the particle are
     /// not asked for (`moving`), they are not computed.
     fn local_motion(

@@ -21,6 +21,8 @@ pub(super) struct ListedBody {
     pub support: f64,
     /// What it repeats itself by.
     pub repeats: Vec<Repeat>,
+    /// Whether it touches itself: particles from elsewhere in the body are then no neighbours.
+    pub touches_itself: bool,
 }
 
 /// The lists of all bodies of the phase, which are in the order of their rows.
@@ -33,6 +35,8 @@ pub(super) struct Lists {
     pub offsets: Vec<usize>,
     /// Packed rows of the neighbours, ascending.
     pub neighbors: Vec<u32>,
+    /// Both before particles from elsewhere are left out, where a body touches itself.
+    pub uncut: (Vec<usize>, Vec<u32>),
     /// Places that the lists were built from, m.
     built_from: Vec<DVec3>,
     search: NeighborSearch,
@@ -89,6 +93,10 @@ impl Lists {
             }
         }
         self.built_from.extend_from_slice(position);
+        if self.bodies.iter().any(|body| body.touches_itself) {
+            self.uncut.0.clone_from(&self.offsets);
+            self.uncut.1.clone_from(&self.neighbors);
+        }
         Ok(())
     }
 
@@ -166,7 +174,13 @@ mod tests {
     }
 
     fn lists(repeats: Vec<Repeat>) -> Lists {
-        Lists::new(vec![ListedBody { id: BodyId(0), rows: 0..200, support: 2.6, repeats }])
+        Lists::new(vec![ListedBody {
+            id: BodyId(0),
+            rows: 0..200,
+            support: 2.6,
+            repeats,
+            touches_itself: false,
+        }])
     }
 
     /// Pairs closer than the support, by brute force.

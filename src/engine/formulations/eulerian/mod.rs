@@ -19,6 +19,7 @@
 mod artificial_stress;
 mod control;
 mod control_pairs;
+mod elsewhere;
 mod force;
 mod lists;
 mod near;

@@ -17,7 +17,7 @@ use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
-use crate::scene::Dimension;
+use crate::scene::{Contact, Dimension};
 use crate::schedule::{Mode, Stage, System};
 use crate::solids::{SolidBodies, require_support};
 use crate::symmetry::repeats_of;
@@ -76,8 +76,14 @@ impl Formulation for Eulerian {
     const REFERENCE: &'static str =
         "Eulerian-kernel SPH of solids: N. Mohseni-Mofidi, C. Bierwisch, Comput. Part. Mech. (2020)";
     const KIND: BodyKind = BodyKind::Solid;
-    const OFFERS: &'static [Offer] =
-        &[Offer::PairTerms, Offer::PairControl, Offer::MirrorImages, Offer::Contact, Offer::DeformedContact];
+    const OFFERS: &'static [Offer] = &[
+        Offer::PairTerms,
+        Offer::PairControl,
+        Offer::MirrorImages,
+        Offer::Contact,
+        Offer::DeformedContact,
+        Offer::SelfContact,
+    ];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
         Some(self.support * body.spacing)
@@ -103,7 +109,11 @@ impl Formulation for Eulerian {
                 artificial_stress.add(*id, &kernel, support, sim);
             }
             kernels.push(BodyKernel { kernel, divergence: parameters.divergence, control: None });
-            listed.push(ListedBody { id: *id, rows: sim.body(*id).rows.clone(), support, repeats });
+            let name = &sim.body(*id).name;
+            let own = |(_, contact): (usize, Contact)| contact.between == (name.clone(), name.clone());
+            let touches_itself = sim.scene().contact_pairs().any(own);
+            let rows = sim.body(*id).rows.clone();
+            listed.push(ListedBody { id: *id, rows, support, repeats, touches_itself });
         }
         let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         let phase = sim.body(ids[0]).phase;

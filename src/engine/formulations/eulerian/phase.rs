@@ -17,6 +17,11 @@ impl SolidPhase for EulerianRows {
         neighbors.iter().zip(weights).for_each(|(&j, &weight)| f(j as usize, weight));
     }
 
+    fn holds_together(&self, row: usize, other: usize) -> bool {
+        let (neighbors, _) = self.near.row(self.lists.offsets[row], row);
+        neighbors.iter().any(|&j| self.lists.ghosts.source(j as usize) == other)
+    }
+
     fn local_motion(
         &self,
         row: usize,

@@ -47,8 +47,10 @@ impl Run for Rates {
             let removed = view.read::<Removed>()?;
             let gone = (0..removed.len()).filter(|&row| removed[row] != Removed::NO);
             packed.pack(&columns, 0.5 * step.clock.dt, gone);
+            packed.lists.leave_out_elsewhere(places, &deformation);
             advance(&packed, &mut deformation, step.clock.dt);
         }
+        packed.lists.leave_out_elsewhere(places, &deformation);
         Ok(())
     }
 }
