@@ -22,6 +22,7 @@ mod elastic_bar;
 mod elliptic_drop;
 mod eulerian;
 mod floating_box;
+mod four_point;
 mod hertz;
 mod homogeneous;
 mod hydrostatic_tank;

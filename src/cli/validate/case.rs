@@ -84,6 +84,7 @@ macro_rules! for_each_case {
             C4 rebound::CASE;
             C5 metal_cutting::CASE;
             C6 touching_surfaces::CASE;
+            C6b four_point::CASE;
             F1 hydrostatic_tank::CASE;
             F2 laminar_flows::CASE;
             F3 elliptic_drop::CASE;

@@ -1,4 +1,4 @@
-//! C6: deformable blocks that slide flat on flat, and a beam on fixed rollers.
+//! C6: deformable blocks that slide flat on flat.
 
 use anyhow::Result;
 use meshless_engine::glam::DVec3;
@@ -8,25 +8,21 @@ use meshless_engine::world::{Force, ReferencePosition};
 
 use super::case::Case;
 use super::check::{Check, Tolerance};
-use super::measure::{MaterialPoint, body, relax, run};
-use super::rigid::state;
+use super::measure::{body, run};
 use super::template::Template;
 
 pub(super) const CASE: Case = Case {
     id: "C6",
-    title: "sliding blocks, beam on fixed rollers",
+    title: "sliding blocks",
     resolutions: &[8, 16, 32],
     ci_resolution: 8,
     run: touching_surfaces,
 };
 
-/// Height of the blocks and of the beam, m.
+/// Height of the blocks, m.
 const BLOCK: f64 = 0.4;
-const BEAM: f64 = 0.1;
-/// Deflection of the neutral axis between the supports, m: beam theory with shear, plane strain.
-const DEFLECTION: f64 = 2.2587e-4;
 
-/// `across` is the number of particles over the height of the blocks and of the beam.
+/// `across` is the number of particles over the height of the blocks.
 fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let slides = |friction: f64| -> Result<(Vec<f64>, f64)> {
         let spacing = BLOCK / across as f64;
@@ -52,13 +48,11 @@ fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let (with, _) = slides(0.3)?;
     let rms = (without.iter().map(|ratio| ratio * ratio).sum::<f64>() / without.len() as f64).sqrt();
     let mean = with.iter().sum::<f64>() / with.len() as f64;
-    let mut checks = vec![
+    Ok(vec![
         Check::below("blocks, friction 0: tangential over normal force, rms", rms, 0.01, "no friction"),
         Check::below("blocks, friction 0: energy balance error", energy, 1e-4, "energy is conserved"),
         Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb"),
-    ];
-    checks.extend(rollers(registry, across)?);
-    Ok(checks)
+    ])
 }
 
 /// From when on the blocks slide at a constant speed, s.
@@ -70,30 +64,4 @@ fn held(simulation: &Simulation, spacing: f64) -> Result<DVec3> {
     let (force, reference) = (view.read::<Force>()?, view.read::<ReferencePosition>()?);
     let held = rows.filter(|row| reference[*row].0.y > 2.0 * BLOCK - spacing);
     Ok(held.map(|row| force[row].0).sum())
-}
-
-fn rollers(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    let mut simulation = Template::new(
-        "tests/validation/four_point/scene.ron",
-        include_str!("../../../tests/validation/four_point/scene.ron"),
-    )
-    .set("bodies.beam.spacing", BEAM / across as f64)?
-    .build(registry)?;
-    let beam = body(&simulation, "beam")?;
-    let middle = MaterialPoint::new(&simulation, beam, DVec3::ZERO)?;
-    let support = MaterialPoint::new(&simulation, beam, DVec3::new(0.2, 0.0, 0.0))?;
-    relax(&mut simulation)?;
-    let deflection = support.displacement(&simulation)?.y - middle.displacement(&simulation)?.y;
-    let force = state(&simulation, "left")?.force;
-    let tolerance = Tolerance::Relative(if across < 16 { 0.03 } else { 0.015 });
-    let source = "beam theory with shear";
-    Ok(vec![
-        Check::new("rollers: deflection", deflection, DEFLECTION, tolerance, "m", source).converging(),
-        Check::below(
-            "rollers: horizontal over vertical force",
-            (force.x / force.y).abs(),
-            0.01,
-            "no friction",
-        ),
-    ])
 }
