@@ -309,7 +309,7 @@ impl Side<'_> {
         (0..3).map(|k| shares[k] * corners[k].velocity).sum()
     }
 
-    /// Velocity of a point relative to the material of the other body there, m/s, how that is reached from the foot in the reference configuration, m, and
+    /// Velocity of a point relative to the material of the other body, along the normal that at the foot and across it that at the point, m/s, how that is reached from the foot in the reference configuration, m, and
     /// how much a traction moves both, m2/kg.
     fn motion(&self, point: u32, meet: &Meet) -> (DVec3, DVec3, DVec3) {
         let (facet, shares) = self.corners(point);
@@ -317,7 +317,11 @@ impl Side<'_> {
         let below = meet.foot.shares;
         let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
         let arm = gradient.inverse() * (meet.x - self.place(&meet.foot));
-        let there: DVec3 = (0..3).map(|k| below[k] * (other[k].velocity + other[k].rate * arm)).sum();
+        // The normal force acts at the foot, and the stretch between foot and point does not move it.
+        let (at_foot, beyond) = (0..3).fold((DVec3::ZERO, DVec3::ZERO), |(foot, beyond), k| {
+            (foot + below[k] * other[k].velocity, beyond + below[k] * (other[k].rate * arm))
+        });
+        let there = at_foot + beyond.reject_from_normalized(meet.foot.normal);
         let mobility = (0..3).map(|k| shares[k] * own[k].mobility + below[k] * other[k].mobility).sum();
         (self.velocity(point) - there, arm, mobility)
     }

@@ -98,6 +98,30 @@ fn a_crash_of_two_skins_keeps_energy_momentum_and_angular_momentum() {
 }
 
 #[test]
+fn heat_of_dashpots_between_soft_sheets_is_what_they_take() {
+    // They are pressed together by a fifth within the touch: what is booked must not see the stretch of the overlap.
+    let error = |restitution: f64| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two,
+                materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "low", material: "soft", shape: Box(min: (0, 0), max: (0.2, 0.04)), spacing: 0.01, formulation: TotalLagrangian),
+                    (name: "high", material: "soft", shape: Box(min: (0, 0.041), max: (0.2, 0.081)), spacing: 0.01,
+                     formulation: TotalLagrangian, velocity: (3.0, -8.0)),
+                ],
+                contacts: [Contact(between: ("low", "high"), law: Penalty(), restitution: {restitution})],
+                time: (end: 0.006, step: Adaptive(factor: 0.25)))"#
+        ));
+        sim.run(|_| true).unwrap();
+        sim.ledger().relative_error().abs()
+    };
+    for restitution in [0.5, 0.1] {
+        let error = error(restitution);
+        assert!(error < 3e-4, "{restitution}: {error}");
+    }
+}
+
+#[test]
 fn a_skin_bounces_off_planes_corners_and_balls_without_loss() {
     for shape in [
         "Box(min: (-0.09, -0.05), max: (0.01, 0.05))",
