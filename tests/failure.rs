@@ -6,8 +6,8 @@ use meshless::record::StateHash;
 use meshless::scene::{Source, parse};
 use meshless::simulation::Simulation;
 use meshless::world::{
-    BodyId, Damage, DeformationGradient, HourglassModulus, Mass, PiolaStress, ReferencePosition, Removed,
-    Temperature, Velocity,
+    BodyId, Damage, DeformationGradient, HourglassModulus, Mass, PiolaStress, Position, ReferencePosition,
+    Removed, Temperature, Velocity,
 };
 use meshless::{assembly, standard_plugins};
 
@@ -220,4 +220,59 @@ fn what_johnson_and_cook_have_failed_has_no_deviator_and_no_control_for_good_in_
             sim.ledger().relative_error()
         );
     }
+}
+
+/// A rubber plate, part of which fails and is then shot through: rubble must not press by areas that it has no more.
+#[test]
+fn rubble_that_flies_apart_makes_no_energy() {
+    let text = r#"(dimension: Three, materials: {"m": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)},
+        bodies: [
+            (name: "plate", material: "m", shape: Box(min: (0, 0, 0), max: (0.01, 0.08, 0.08)), spacing: 0.005, formulation: TotalLagrangian,
+             plugins: [hourglass_control(), failure(criterion: MaximumPrincipalStrain(limit: 0.08))]),
+            (name: "bullet", material: "m", shape: Box(min: (-0.0205, 0.03, 0.033), max: (-0.0005, 0.05, 0.053)), spacing: 0.005,
+             formulation: TotalLagrangian, velocity: (40, 0.3, 0), plugins: [hourglass_control()]),
+        ],
+        contacts: [Contact(between: ("plate", "bullet"), law: Penalty())],
+        time: (end: 0.008))"#;
+    let (scene, source) =
+        parse(Source::new("plate.ron", text.to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let mut sim =
+        assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+    assert!(failed(&sim) > 20, "{}", failed(&sim));
+    let ledger = sim.ledger();
+    assert!(ledger.total_named("strain") > 0.0, "{} J", ledger.total_named("strain"));
+    assert!(ledger.relative_error().abs() < 1e-2, "{}", ledger.relative_error());
+}
+
+/// Two halves of a strip that have been drawn apart at a row of failed particles: each of them is only turned, and has no error.
+#[test]
+fn the_hourglass_error_does_not_see_the_sides_of_a_crack_part() {
+    let text = r#"(dimension: Two, materials: {"m": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)},
+        bodies: [(name: "strip", material: "m", shape: Box(min: (0, 0), max: (0.16, 0.05)), spacing: 0.01, formulation: TotalLagrangian,
+                  plugins: [hourglass_control(), failure(criterion: MaximumPrincipalStrain(limit: 0.05))])],
+        time: (end: 1),
+        probes: [Probe(name: "error", on: Select(body: "strip"), take: Maximum, quantity: Field("hourglass_error"))])"#;
+    let (scene, source) =
+        parse(Source::new("strip.ron", text.to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let mut sim =
+        assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+    sim.start().expect("a start");
+    {
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let mut place = view.write::<Position>().expect("positions");
+        let mut gradient = view.write::<DeformationGradient>().expect("gradients");
+        let mut damage = view.write::<Damage>().expect("damage");
+        let turn = DMat3::from_rotation_z(0.2);
+        for row in rows {
+            let x = place[row].0;
+            // Two columns of the lattice fail: no bond is longer than the gap.
+            damage[row].0 = f64::from(u8::from((x.x - 0.08).abs() < 0.01));
+            if x.x > 0.09 {
+                (place[row].0, gradient[row].0) = (turn * x + DVec3::new(0.03, 0.0, 0.0), turn);
+            }
+        }
+    }
+    let shown = sim.measure("error").expect("a probe");
+    assert!(shown[0].1 < 1e-12, "{shown:?}");
 }

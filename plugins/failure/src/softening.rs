@@ -8,7 +8,8 @@ use serde::Deserialize;
 /// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to be lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Then {
-    /// It resists compression of its volume alone, like rubble. On the way there damage takes from positive principal stresses.
+    /// It resists compression of its volume alone, like rubble, until it is so long and thin that its areas are three times as large: it then carries
+    /// nothing any more. On the way there damage takes from positive principal stresses.
     #[default]
     NoTension,
     /// It resists changes of its volume alone, like a liquid, tension included, until it loses its integrity: volume ratio above 2,
@@ -45,16 +46,21 @@ impl Then {
         matches!(self, Self::NoDeviator | Self::RemovedAtSurface)
     }
 
-    /// Whether a failed particle of that deformation, volume ratio and cofactor is no liquid any more: it would pull on what is far
+    /// Whether a failed particle of that deformation, volume ratio and cofactor holds together no more: it would act on what is far
     /// away, at shapes that no time step follows.
     pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
         let [x, y, z] = [cofactor.x_axis, cofactor.y_axis, cofactor.z_axis];
         let area = ((x.length_squared() + y.length_squared() + z.length_squared()) / 3.0).sqrt();
-        self.is_liquid() && !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
+        if self.is_liquid() {
+            !(volume > 0.0 && volume <= TORN[0] && area <= TORN[1])
+        } else {
+            // What is loose bears nothing, and may be pressed together again.
+            volume < 1.0 && area > TORN[1]
+        }
     }
 }
 
-/// Volume ratio, and mean ratio of areas, beyond which a liquid has lost its integrity.
+/// Volume ratio beyond which a liquid has lost its integrity, and mean ratio of areas beyond which liquids and rubble have.
 const TORN: [f64; 2] = [2.0, 3.0];
 
 /// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.
@@ -109,7 +115,18 @@ mod tests {
         assert!(torn(Then::NoDeviator, 1.0, 1.0, -1.0) && !torn(Then::NoDeviator, 0.5, 0.5, 0.5));
         // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of 1.6.
         assert!(torn(Then::NoDeviator, 0.25, 0.25, 16.0) && !torn(Then::NoDeviator, 0.5, 0.5, 4.0));
-        assert!(!torn(Then::NoTension, 1.0, 1.0, 9.0));
+    }
+
+    #[test]
+    fn rubble_is_torn_where_it_would_press_at_a_distance() {
+        let torn = |x, y, z| {
+            let f = DMat3::from_diagonal(DVec3::new(x, y, z));
+            Then::NoTension.is_torn(f.determinant(), &cofactor(&f))
+        };
+        // Loose, pressed from one side, inside out: it stays.
+        assert!(!torn(1.0, 1.0, 9.0) && !torn(0.2, 1.0, 1.0) && !torn(1.0, 1.0, -1.0));
+        // Ten times as long, a twentieth as thick.
+        assert!(torn(10.0, 0.05, 1.0) && torn(10.0, -0.05, 1.0));
     }
 
     #[test]

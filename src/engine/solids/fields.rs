@@ -1,8 +1,14 @@
 //! Fields of solids that need the neighbours: how far a neighbourhood is from deforming affinely, and how many neighbours there are.
 
+use glam::{DMat3, DVec3};
+
+use crate::correction::MomentMatrix;
 use crate::fields::{Field, FieldInput};
+use crate::linalg::Sym3;
 use crate::plugin::{BodyKind, SimBuilder};
-use crate::world::{Column, DeformationGradient, MissingColumn, Position, ReferencePosition};
+use crate::world::{
+    Column, Damage, DeformationGradient, MissingColumn, Position, ReferencePosition, ReferenceVolume,
+};
 
 /// Adds the fields.
 pub(crate) fn add_fields(sim: &mut SimBuilder<'_>) {
@@ -13,25 +19,61 @@ pub(crate) fn add_fields(sim: &mut SimBuilder<'_>) {
     sim.add_field(neighbors.only_for(BodyKind::Solid));
 }
 
-/// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours; zero for a particle without neighbours.
+/// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the neighbours that hold, with the F that fits these, as
+/// the control sees it; zero for a particle that has failed or has too few neighbours.
 fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
     let (view, _) = input.world.body_view(input.body);
     let Some(solid) = input.resources.solid(input.world.body(input.body).phase) else { return Ok(()) };
     let gradient = view.read::<DeformationGradient>()?;
-    let position = view.read::<Position>()?;
-    let reference = view.read::<ReferencePosition>()?;
+    let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
+    let volume = view.read::<ReferenceVolume>()?;
+    let damage = view.read::<Damage>().ok();
+    let ghosts = solid.ghosts();
+    let holds = |row: usize| damage.as_ref().is_none_or(|damage| damage[ghosts.source(row)].0 < 1.0);
     let (position, reference) = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
+    let mut bonds = Vec::new();
     out.extend(input.rows.clone().map(|i| {
-        let (mut sum, mut count) = (0.0, 0_u32);
-        solid.neighbors(i, &mut |j, _| {
-            let bond = solid.ghosts().pair(reference, i, j);
-            let misfit = gradient[i].0 * bond - solid.ghosts().pair(position, i, j);
-            sum += misfit.length_squared() / bond.length_squared();
-            count += 1;
+        if !holds(i) {
+            return 0.0;
+        }
+        bonds.clear();
+        let mut is_edge = false;
+        solid.neighbors(i, &mut |j, weight| {
+            if holds(j) {
+                let weight = weight * volume[ghosts.source(j)].0;
+                let (arm, change) = (ghosts.pair(reference, i, j), ghosts.pair(position, i, j));
+                bonds.push(Bond { weight, arm, change });
+            } else {
+                is_edge = true;
+            }
         });
-        (sum / f64::from(count.max(1))).sqrt()
+        let f = if is_edge { fit(&bonds) } else { Some(gradient[i].0) };
+        let square =
+            |f: DMat3, bond: &Bond| (f * bond.arm - bond.change).length_squared() / bond.arm.length_squared();
+        let sum = f.map_or(0.0, |f| bonds.iter().map(|bond| square(f, bond)).sum::<f64>());
+        (sum / bonds.len().max(1) as f64).sqrt()
     }));
     Ok(())
+}
+
+/// A bond of a particle: V_j w_ij, X_ij and x_ij, m.
+struct Bond {
+    weight: f64,
+    arm: DVec3,
+    change: DVec3,
+}
+
+/// The deformation gradient that fits some bonds; none where they are too few.
+fn fit(bonds: &[Bond]) -> Option<DMat3> {
+    let sum = bonds.iter().fold(Sym3::ZERO, |sum, bond| sum + Sym3::dyad(bond.arm) * bond.weight);
+    let axes = if sum.zz == 0.0 { 2 } else { 3 };
+    let inverse = MomentMatrix::of(sum, axes).inverse()?.to_matrix();
+    let columns = |bond: &Bond| {
+        let (u, x) = (bond.change - bond.arm, bond.weight * bond.arm);
+        DMat3::from_cols(u * x.x, u * x.y, u * x.z)
+    };
+    let moment = bonds.iter().fold(DMat3::ZERO, |sum, bond| sum + columns(bond));
+    Some(DMat3::IDENTITY + moment * inverse)
 }
 
 /// Number of neighbours that have not been removed.
