@@ -179,3 +179,33 @@ fn it_meets_fluids_and_lagrangian_bodies_and_the_books_close() {
         assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
     }
 }
+
+/// Energy that density diffusion takes out of a block whose density is rough, over that at the start, and the largest error of the balance.
+fn diffused(diffusion: &str) -> (f64, f64) {
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"m": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1.0, 0.6)), spacing: 0.05, lattice: Relaxed(seed: 7),
+                      formulation: Eulerian(), plugins: [hourglass_control(){diffusion}])],
+            conditions: [InitialDisplacement(on: Select(body: "b"), value: ("0.004*sin(40*x)*cos(31*y)", "0.02*y"))],
+            time: (end: 1.0))"#
+    );
+    let mut sim = simulation(&Source::new("rough.ron", text));
+    sim.start().expect("a start");
+    let (start, mut error) = (sim.ledger().stored(), 0.0f64);
+    sim.run(|sim| {
+        error = error.max(sim.ledger().relative_error().abs());
+        sim.clock().step < 400
+    })
+    .expect("a run");
+    (sim.ledger().total_named("density_diffusion") / start, error)
+}
+
+#[test]
+fn what_density_diffusion_takes_out_of_the_energy_is_booked() {
+    let (without, error_without) = diffused("");
+    let (taken, error) = diffused(", density_diffusion(delta: 0.1)");
+    assert_eq!(without, 0.0);
+    assert!(taken > 0.02, "{taken}");
+    assert!(error < error_without + 2e-3, "{error}, {error_without} without");
+}

@@ -4,11 +4,12 @@
 //! gradient of the density with `model: Antuono`, zero with `model: Molteni`.
 
 mod gradient;
+mod solid;
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Number, Vector};
-use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Density};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -20,14 +21,14 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<DensityDiffusion>();
 }
 
-/// Diffuses the density of fluids, so that the noise of their pressure decays.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+/// Diffuses the density of fluids, so that the noise of their pressure decays; in the list of an Eulerian solid, its density.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DensityDiffusion {
     /// What is diffused.
     pub model: Model,
-    /// Coefficient delta.
-    pub delta: f64,
+    /// Coefficient delta: 0.1 in fluids and 0.01 in Eulerian solids, if it is not given.
+    pub delta: Option<f64>,
 }
 
 /// What is diffused.
@@ -40,21 +41,28 @@ pub enum Model {
     Molteni,
 }
 
-impl Default for DensityDiffusion {
-    fn default() -> Self {
-        Self { model: Model::Antuono, delta: 0.1 }
-    }
-}
-
 impl Plugin for DensityDiffusion {
     const NAME: &'static str = "density_diffusion";
     const REFERENCE: &'static str = "density diffusion: M. Antuono, A. Colagrossi, S. Marrone, D. Molteni, Comput. Phys. Commun. 181 (2010) 532-549; \
          D. Molteni, A. Colagrossi, Comput. Phys. Commun. 180 (2009) 861-872";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        ParameterError::require_not_negative("delta", self.delta)?;
+        if let Some(delta) = self.delta {
+            ParameterError::require_not_negative("delta", delta)?;
+        }
+        if let Some(id) = sim.own_body()
+            && sim.body(id).offers(Offer::Dilatation)
+        {
+            let delta = self.delta.unwrap_or(OF_SOLIDS);
+            return if delta == 0.0 {
+                Ok(())
+            } else {
+                solid::add(&BodySet::new([id]), self.model, delta, sim)
+            };
+        }
         let fluids = sim.scope_of(BodyKind::Fluid)?;
-        if self.delta == 0.0 || fluids.is_empty() {
+        let delta = self.delta.unwrap_or(OF_FLUIDS);
+        if delta == 0.0 || fluids.is_empty() {
             return Ok(());
         }
         if self.model == Model::Antuono {
@@ -62,7 +70,7 @@ impl Plugin for DensityDiffusion {
         }
         for id in fluids.iter() {
             let Some(sound_speed) = sim.body(id).material.sound_speed() else { continue };
-            let strength = 2.0 * self.delta * sound_speed;
+            let strength = 2.0 * delta * sound_speed;
             match self.model {
                 Model::Antuono => sim.add_pair_term(BodySet::new([id]), Self::NAME, Antuono { strength }),
                 Model::Molteni => sim.add_pair_term(BodySet::new([id]), Self::NAME, Molteni { strength }),
@@ -71,6 +79,10 @@ impl Plugin for DensityDiffusion {
         Ok(())
     }
 }
+
+/// Coefficients that are usual (for solids: Mohseni-Mofidi and Bierwisch 2020).
+const OF_FLUIDS: f64 = 0.1;
+const OF_SOLIDS: f64 = 0.01;
 
 /// Share of the diffusion rate that limits the step: an explicit step is stable up to one over the rate.
 const LIMIT: f64 = 0.5;

@@ -109,6 +109,11 @@ impl<'s> SimBuilder<'s> {
         &self.scope
     }
 
+    /// The body in whose own list the plugin stands; none in that of the scene.
+    pub fn own_body(&self) -> Option<BodyId> {
+        self.own_body
+    }
+
     /// The phases of the bodies of the scope.
     pub fn phases_of(&self, bodies: &BodySet) -> Vec<PhaseId> {
         let mut phases: Vec<PhaseId> = bodies.iter().map(|id| self.body(id).phase).collect();

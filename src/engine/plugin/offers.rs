@@ -49,6 +49,9 @@ pub enum Offer {
     SelfContact,
     /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they stay spheres.
     DeformedContact,
+    /// A deformation gradient that is a state of the particle, whose volume plugins may change
+    /// ([`DilatationRate`](crate::formulations::eulerian::DilatationRate)).
+    Dilatation,
     /// Held particles that end where a condition says, and carry but a share of their stress.
     Supports,
 }
@@ -88,6 +91,7 @@ impl Offer {
             Self::Contact => "contact",
             Self::SelfContact => "contact of a body with itself",
             Self::DeformedContact => "contact with deformed particles",
+            Self::Dilatation => "changes of volume without a motion",
             Self::Supports => "supports that end between particles",
         }
     }

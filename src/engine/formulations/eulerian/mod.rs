@@ -19,6 +19,7 @@
 mod artificial_stress;
 mod control;
 mod control_pairs;
+mod dilatation;
 mod elsewhere;
 mod force;
 mod lists;
@@ -33,4 +34,5 @@ mod stress;
 
 pub use artificial_stress::{ArtificialStress, TensileStress};
 pub use control::HourglassEnergy;
+pub use dilatation::DilatationRate;
 pub use parameters::{Divergence, Eulerian};

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::artificial_stress::{ArtificialStress, TensileStress};
 use super::control::{BodyControl, ControlRows, HourglassEnergy};
+use super::dilatation::DilatationRate;
 use super::force::InternalForce;
 use super::lists::{ListedBody, Lists};
 use super::near::{Look, Near, NearRows, Surroundings};
@@ -83,6 +84,7 @@ impl Formulation for Eulerian {
         Offer::Contact,
         Offer::DeformedContact,
         Offer::SelfContact,
+        Offer::Dilatation,
     ];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
@@ -141,7 +143,8 @@ fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
         .reads::<Removed>()
         .reads::<Velocity>()
         .writes::<DeformationGradient>();
-    sim.add_system(rates);
+    let is_dilated = sim.columns(phase).get(DilatationRate::NAME).is_some();
+    sim.add_system(if is_dilated { rates.reads::<DilatationRate>() } else { rates });
     let state = solids.access();
     let stress = System::new(Stage::Constitutive, STRESS, Stress::new(phase, solids))
         .on_phases([phase])
@@ -153,6 +156,7 @@ fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
         .touches_all(state);
     let has_control = sim.columns(phase).get(HourglassEnergy::NAME).is_some();
     let stress = if has_control { stress.writes::<HourglassEnergy>() } else { stress };
+    let stress = if is_dilated { stress.reads::<DilatationRate>() } else { stress };
     let has_tensile_stress = sim.columns(phase).get(TensileStress::NAME).is_some();
     sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
     let force = InternalForce { phase, gravity: sim.gravity() };

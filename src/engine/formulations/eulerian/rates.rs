@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::dilatation::{DilatationRate, gradient};
 use super::near::LEAST_SPREAD;
 use super::rows::{EulerianRows, Point, PointColumns};
 use super::start;
@@ -48,7 +49,9 @@ impl Run for Rates {
             let gone = (0..removed.len()).filter(|&row| removed[row] != Removed::NO);
             packed.pack(&columns, 0.5 * step.clock.dt, gone);
             packed.lists.leave_out_elsewhere(places, &deformation);
-            advance(&packed, &mut deformation, step.clock.dt);
+            let dilatation =
+                if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
+            advance(&packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
         }
         packed.lists.leave_out_elsewhere(places, &deformation);
         Ok(())
@@ -68,7 +71,12 @@ fn update_lists(
 }
 
 /// Advances F of all bodies by a step of `dt`, s.
-fn advance(packed: &EulerianRows, deformation: &mut [DeformationGradient], dt: f64) {
+fn advance(
+    packed: &EulerianRows,
+    deformation: &mut [DeformationGradient],
+    dilatation: Option<&[DilatationRate]>,
+    dt: f64,
+) {
     let EulerianRows { lists, kernels, points, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let rows = body.rows.clone();
@@ -86,6 +94,7 @@ fn advance(packed: &EulerianRows, deformation: &mut [DeformationGradient], dt: f
                 points,
                 first,
                 plane,
+                dilatation,
                 dt,
                 deformation,
             });
@@ -102,6 +111,8 @@ struct Advance<'a> {
     points: &'a [Point],
     first: usize,
     plane: bool,
+    /// Of all rows of the phase, if plugins change volumes.
+    dilatation: Option<&'a [DilatationRate]>,
     dt: f64,
     deformation: &'a mut [DMat3],
 }
@@ -123,8 +134,10 @@ struct AdvanceLoop<'a, K: KernelProfile> {
 impl<K: KernelProfile> PlaneOrSolid for AdvanceLoop<'_, K> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { kernel, of: Advance { support, offsets, neighbors, points, first, dt, deformation, .. } } =
-            self;
+        let Self {
+            kernel,
+            of: Advance { support, offsets, neighbors, points, first, dilatation, dt, deformation, .. },
+        } = self;
         let limit = support * support;
         for (k, f) in deformation.iter_mut().enumerate() {
             let own = points[first + k];
@@ -149,7 +162,11 @@ impl<K: KernelProfile> PlaneOrSolid for AdvanceLoop<'_, K> {
                 continue;
             };
             let l = fit::<A, D>(a, &spread, &inverse);
-            let half = DMat3::from_cols(l[0].xyz(), l[1].xyz(), l[2].xyz()) * (0.5 * dt);
+            let mut rate = DMat3::from_cols(l[0].xyz(), l[1].xyz(), l[2].xyz());
+            if let Some(dilatation) = dilatation {
+                rate += gradient(dilatation[first + k].0, D == 2);
+            }
+            let half = rate * (0.5 * dt);
             *f = cayley(&half) * *f;
         }
     }

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::artificial_stress;
 use super::control::{self, Carried, HourglassEnergy};
+use super::dilatation::Dilatation;
 use super::force;
 use super::near::{Look, NearRows, Surroundings};
 use super::parameters::Divergence;
@@ -23,6 +24,7 @@ use crate::world::{
 pub(super) struct Stress {
     phase: PhaseId,
     solids: SolidBodies,
+    dilatation: Dilatation,
     /// Removed rows that the sums know of, ascending.
     removed: Vec<u32>,
 }
@@ -33,6 +35,8 @@ impl Run for Stress {
         self.pack(step.world, &mut packed)?;
         self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
         self.solids.book(step)?;
+        let bodies = self.solids.iter().map(|own| own.id);
+        self.dilatation.book(self.phase, &packed, bodies, step)?;
         self.take_up_removed(step, &mut packed)?;
         artificial_stress::write(step.world, self.phase, &packed)?;
         self.find_stable_steps(&mut packed);
@@ -58,7 +62,7 @@ impl Run for Stress {
 
 impl Stress {
     pub fn new(phase: PhaseId, solids: SolidBodies) -> Self {
-        Self { phase, solids, removed: Vec::new() }
+        Self { phase, solids, dilatation: Dilatation::default(), removed: Vec::new() }
     }
 
     fn pack(&self, world: &World, packed: &mut EulerianRows) -> Result<(), MissingColumn> {

@@ -1,0 +1,91 @@
+//! Change of volume that plugins ask for beside that of the motion: smoothing of the density.
+//!
+//! F goes along with the velocity gradient, and is a state of the particle, so that its volume can be changed without a motion. What the stress, that of the hourglass control
+//! included, does in it is no work of a force: it is booked by the name of what asks for it.
+
+use glam::DMat3;
+
+use super::rows::EulerianRows;
+use crate::column;
+use crate::schedule::{AccountKind, Step, StepError};
+use crate::world::{BodyId, PhaseId};
+
+column! {
+    /// Rate of the logarithm of the volume that plugins add to the trace of the velocity gradient of the next step. Plugins that work on bodies which take
+    /// [`Offer::Dilatation`](crate::plugin::Offer::Dilatation) write it.
+    pub struct DilatationRate(f64) = "dilatation_rate", "d", "1/s";
+}
+
+/// Account of what leaves the stored energy by it.
+const ACCOUNT: &str = "density_diffusion";
+
+/// What every particle holds against a change of its volume: tr(tau) V_0 over the axes of the body, J.
+#[derive(Default)]
+pub(super) struct Dilatation {
+    before: Vec<f64>,
+}
+
+impl Dilatation {
+    /// Books what the change of volume of the last step has taken out of the stored energies of the bodies, by the mean of the stresses before and after it. Without a
+    /// step it takes up the stresses alone.
+    pub fn book(
+        &mut self,
+        phase: PhaseId,
+        packed: &EulerianRows,
+        bodies: impl Iterator<Item = BodyId>,
+        step: &mut Step<'_>,
+    ) -> Result<(), StepError> {
+        let view = step.world.phase(phase);
+        if !view.has::<DilatationRate>() {
+            return Ok(());
+        }
+        let rate = view.read::<DilatationRate>()?;
+        self.before.resize(rate.len(), 0.0);
+        let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+        for (body, listed) in bodies.zip(&packed.lists.bodies) {
+            let mut energy = 0.0;
+            for row in listed.rows.clone() {
+                let now = packed.held(row);
+                energy += 0.5 * (self.before[row] + now) * rate[row].0;
+                self.before[row] = now;
+            }
+            if step.clock.dt > 0.0 {
+                step.ledger.add(account, body, -energy * step.clock.dt);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl EulerianRows {
+    /// tr(tau) V_0 over the axes, with the stress that the force is made of, J.
+    fn held(&self, row: usize) -> f64 {
+        let inverse = self.near.around[row].inverse_moment;
+        let corrected = self.stresses[row].columns.map(|column| column.xyz());
+        let volume = self.points[row].place.0[3];
+        if volume <= 0.0 || inverse.trace() <= 0.0 {
+            return 0.0;
+        }
+        let moment =
+            if self.plane { plane_inverse(&inverse.to_matrix()) } else { inverse.inverse().to_matrix() };
+        let stress = DMat3::from_cols(corrected[0], corrected[1], corrected[2]) * moment;
+        if self.plane {
+            0.5 * (stress.x_axis.x + stress.y_axis.y) * volume
+        } else {
+            (stress.x_axis.x + stress.y_axis.y + stress.z_axis.z) / 3.0 * volume
+        }
+    }
+}
+
+/// The inverse in the plane, zero across it.
+fn plane_inverse(m: &DMat3) -> DMat3 {
+    let inverse = glam::DMat2::from_cols(m.x_axis.truncate(), m.y_axis.truncate()).inverse();
+    DMat3::from_cols(inverse.x_axis.extend(0.0), inverse.y_axis.extend(0.0), glam::DVec3::ZERO)
+}
+
+/// The part of the velocity gradient that a rate is, along the axes of the body.
+#[inline(always)]
+pub(super) fn gradient(rate: f64, plane: bool) -> DMat3 {
+    let (along, across) = if plane { (0.5 * rate, 0.0) } else { (rate / 3.0, rate / 3.0) };
+    DMat3::from_diagonal(glam::DVec3::new(along, along, across))
+}
