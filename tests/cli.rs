@@ -353,6 +353,40 @@ fn a_recording_is_shown_in_a_browser_with_nothing_else_installed() {
     );
 }
 
+/// A beam with a frame for every millisecond of its recording.
+const RECORDED: &str = r#"(
+    dimension: Two,
+    gravity: (0.0, -9.81),
+    materials: {"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)},
+    bodies: [
+        Body(name: "beam", material: "rubber", shape: Box(min: (0.0, 0.0), max: (0.1, 0.03)), spacing: 0.01,
+             formulation: TotalLagrangian),
+    ],
+    conditions: [Fix(on: Select(face: MinX))],
+    plugins: [rerun_recorder()],
+    time: (end: 1.0),
+    record: (every: 0.001),
+)"#;
+
+#[cfg(unix)]
+#[test]
+fn a_recording_that_cannot_be_written_ends_the_run_and_leaves_the_state() {
+    let folder = folder();
+    std::fs::write(folder.path().join("beam.ron"), RECORDED).expect("a scene");
+    // A disk that is full after so many bytes; a program that waits for ever is ended.
+    let limited = "trap '' XFSZ; ulimit -f 128; exec timeout -k 1 60 \"$0\" run --out o beam.ron";
+    let output = Command::new("bash")
+        .args(["-c", limited, env!("CARGO_BIN_EXE_meshless")])
+        .current_dir(folder.path())
+        .output()
+        .expect("bash starts");
+    assert_eq!(output.status.code(), Some(1), "{}{}", out(&output), err(&output));
+    assert!(err(&output).contains("cannot write `o/beam.rrd`"), "{}", err(&output));
+    assert!(folder.path().join("o/failed.mlc").is_file() && folder.path().join("o/summary.json").is_file());
+    // What the recording has can be looked at.
+    assert_success(&meshless(&folder, &["picture", "o"]));
+}
+
 #[test]
 fn an_output_folder_that_cannot_be_written_is_told_before_any_work() {
     let folder = folder();

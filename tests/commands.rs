@@ -123,8 +123,14 @@ fn a_run_under_nohup_outlives_its_terminal() {
 #[test]
 fn output_that_cannot_be_written_is_an_error() {
     let folder = folder();
-    for arguments in [&["plugins"][..], &["schema"], &["check", "beam.ron"], &["check", "--json", "beam.ron"]]
-    {
+    for arguments in [
+        &["plugins"][..],
+        &["schema"],
+        &["check", "beam.ron"],
+        &["check", "--json", "beam.ron"],
+        &["--help"],
+        &["--version"],
+    ] {
         let full = std::fs::File::options().write(true).open("/dev/full").expect("a device that is full");
         let output = command(folder.path(), arguments).stdout(full).output().expect("the program starts");
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", err(&output));
@@ -165,6 +171,8 @@ fn slips_of_units_are_warned_of() {
     for (set, expected) in [
         ("materials.rubber.density=0.001", "outside 1 to 30000 kg/m3"),
         ("materials.rubber.density=1.0e6", "outside 1 to 30000 kg/m3"),
+        ("materials.rubber.young=1.0e14", "check the units of its stiffness and density"),
+        ("materials.rubber.young=1.0e-300", "check the units of its stiffness and density"),
         ("bodies.beam.velocity=(200.0, 0.0)", "times the speed of sound"),
     ] {
         let output = meshless(folder.path(), &["check", "beam.ron", "--set", set, "--set", "conditions=[]"]);
@@ -173,4 +181,84 @@ fn slips_of_units_are_warned_of() {
     }
     let plain = meshless(folder.path(), &["check", "beam.ron"]);
     assert!(!err(&plain).contains("warning"), "{}", err(&plain));
+}
+
+#[test]
+fn a_far_end_is_allowed_and_the_number_of_steps_is_told() {
+    let folder = folder();
+    let far = ["--set", "time.end=1e9"];
+    let check = meshless(folder.path(), &[&["check", "beam.ron"], &far[..]].concat());
+    let text = String::from_utf8_lossy(&check.stdout).into_owned();
+    assert!(text.contains("about 1.4e12 steps"), "{text}");
+    let run = meshless(folder.path(), &[&["run", "beam.ron", "--steps", "2"], &far[..]].concat());
+    assert!(run.status.success(), "{}", err(&run));
+    let never = meshless(folder.path(), &["check", "beam.ron", "--set", "time.end=1e90"]);
+    assert!(err(&never).contains("must take fewer than 1e15 steps, found 1.4"), "{}", err(&never));
+}
+
+#[test]
+fn a_time_to_resume_to_lies_after_the_checkpoint() {
+    let folder = folder();
+    let run = meshless(folder.path(), &["run", "beam.ron", "--out", "o", "--steps", "2"]);
+    assert!(run.status.success(), "{}", err(&run));
+    for (until, expected) in [
+        ("1e-6", "`--until` must be later than the"),
+        ("-1", "found -1 s"),
+        ("nan", "expected a time in seconds"),
+        ("soon", "expected a time in seconds"),
+    ] {
+        let output = meshless(folder.path(), &["resume", "o", "--until", until]);
+        assert!(output.status.code() == Some(2) && err(&output).contains(expected), "{}", err(&output));
+    }
+}
+
+#[test]
+fn files_that_are_no_recording_are_not_shown() {
+    let folder = folder();
+    for command in ["view", "picture"] {
+        let output = meshless(folder.path(), &[command, "beam.ron"]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(err(&output).contains("`beam.ron` is not a recording"), "{}", err(&output));
+    }
+}
+
+#[test]
+fn files_of_earlier_runs_are_told_apart() {
+    let folder = folder();
+    for name in ["beam", "other"] {
+        let scene = format!("{name}.ron");
+        std::fs::write(folder.path().join(&scene), SCENE.replace("\"tip\"", &format!("\"{name}\"")))
+            .expect("a scene");
+        let arguments = ["run", scene.as_str(), "--force", "--out", "o", "--steps", "1"];
+        let output = meshless(folder.path(), &arguments);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(text.contains(&format!("{name}.csv")), "{text}");
+        let earlier = text.contains("and 1 file of earlier runs") && !text.contains("beam.csv");
+        assert_eq!(earlier, name == "other", "{text}");
+        std::thread::sleep(Duration::from_millis(60));
+    }
+}
+
+#[test]
+fn messages_stay_short() {
+    let folder = folder();
+    let long = SCENE.replace("material: \"rubber\"", &format!("material: {:?}", "x".repeat(100_000)));
+    std::fs::write(folder.path().join("long.ron"), long).expect("a scene");
+    let output = meshless(folder.path(), &["check", "long.ron"]);
+    assert!(
+        err(&output).contains("unknown material `xxx") && output.stderr.len() < 2000,
+        "{}",
+        output.stderr.len()
+    );
+    let output = meshless(folder.path(), &["plugins", "Wendland"]);
+    assert!(
+        err(&output).contains("did you mean `wendland_c2`?") && output.stderr.len() < 300,
+        "{}",
+        err(&output)
+    );
+    std::fs::write(folder.path().join("empty.ron"), "").expect("a scene");
+    let output = meshless(folder.path(), &["check", "empty.ron"]);
+    assert!(err(&output).contains("expected a value, found an empty text"), "{}", err(&output));
+    let wide = meshless(folder.path(), &["check", "beam.ron", "--set", "bodies.beam.shape.max.x=0.2"]);
+    assert!(String::from_utf8_lossy(&wide.stdout).contains(" 60 "), "{}", err(&wide));
 }

@@ -103,7 +103,7 @@ fn a_clamp_that_the_kernel_sees_through_is_said() {
         let sim = simulation(&Source::new("clamped.ron", text));
         sim.warnings()
             .iter()
-            .any(|text| text.contains("body `block` is held by a part that its kernel sees through"))
+            .any(|text| text.contains("body `block` is clamped over less than its kernel support"))
     };
     assert!(warned(1) && warned(2) && !warned(3));
 }
@@ -126,7 +126,7 @@ fn what_it_does_not_offer_is_an_error_at_its_place() {
             "no hourglass control of the form `Ganzenmueller2015`",
         ),
         ("hourglass_control(alpha: 5)", "`alpha` is the coefficient of Lagrangian bodies"),
-        ("hourglass_control(form: Combined, chi: 1.5)", "`chi` is 1.5, outside of 0 to 1"),
+        ("hourglass_control(form: Combined, chi: 1.5)", "`chi` must be from 0 to 1, found 1.5"),
     ] {
         let text = fault(&block(2, "Eulerian()", at_rest, &format!("plugins: [{plugin}],")));
         assert!(text.contains(words), "{text}");

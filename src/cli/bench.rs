@@ -23,19 +23,19 @@ use work::{WORKS, Work};
 /// Measure the speed on benchmark cases: particle-steps/s, pairs/s, memory, share of each system
 #[derive(Args)]
 pub struct Arguments {
-    /// Works to run; all if none is given
+    /// Benchmarks to run; all if none is given
     #[arg(value_name = "CASE")]
     works: Vec<String>,
-    /// Numbers of particles, about; with k or M for thousands and millions
+    /// Approximate numbers of particles; k and M stand for thousands and millions
     #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = count, value_name = "N")]
     particles: Vec<usize>,
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Vec<u16>,
-    /// Least wall time of a measurement, s
+    /// Minimum wall time of a measurement [s]
     #[arg(long, default_value_t = 3.0, value_parser = seconds, value_name = "S")]
     seconds: f64,
-    /// List the works, run nothing
+    /// List the benchmarks without running them
     #[arg(long)]
     list: bool,
     /// Print the share of every system too

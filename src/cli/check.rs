@@ -23,7 +23,7 @@ mod trial;
 use body::BodyReport;
 use trial::Trial;
 
-/// Check a scene: particles, neighbours, memory, time step, estimated time, and what a colleague would note; nothing is written
+/// Check a scene without writing anything: particles, neighbours, memory, time step, estimated run time, and notes on its set-up
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]

@@ -1,5 +1,6 @@
 //! The commands of the program. A command is a file and a line in [`Command`] and in [`Command::execute`].
 
+use std::io::{self, ErrorKind};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -68,14 +69,23 @@ pub fn run(registry: Registry) -> ExitCode {
         Ok(line) => line.command,
         Err(error) => {
             // Help and version are also reported this way; a closed output stream is no failure.
-            let _ = error.print();
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            return match error.print() {
+                Err(lost) if !error.use_stderr() && lost.kind() != ErrorKind::BrokenPipe => {
+                    ended(Err(unwritten(&lost)))
+                }
+                _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
+            };
         }
     };
-    let done = command.execute(&registry).and_then(|()| match unsaid() {
-        Some(error) => Err(Failure::Run(format!("cannot write to the standard output: {error}"))),
-        None => Ok(()),
-    });
+    ended(command.execute(&registry).and_then(|()| unsaid().map_or(Ok(()), |error| Err(unwritten(&error)))))
+}
+
+fn unwritten(error: &io::Error) -> Failure {
+    Failure::Run(format!("cannot write to the standard output: {error}"))
+}
+
+/// Reports a failure; the exit code.
+fn ended(done: Result<(), Failure>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

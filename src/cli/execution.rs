@@ -1,9 +1,11 @@
 //! The loop over the steps of a run, and how it ends.
 
 use std::path::PathBuf;
+use std::time::{Duration, SystemTime};
 
 use clap::Args;
 use meshless_engine::assembly::{self, BuildOptions};
+use meshless_engine::notation::count;
 use meshless_engine::plugin::Registry;
 use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{Scene, Source};
@@ -17,6 +19,9 @@ use super::profile;
 use super::progress::Progress;
 use super::summary;
 use super::text::{complain, program, quoted, say};
+
+/// By how much clocks of files may be behind.
+const CLOCK: Duration = Duration::from_millis(20);
 
 /// How a run is carried out; what it computes does not depend on any of this.
 #[derive(Args)]
@@ -50,6 +55,7 @@ pub struct Execution {
     pub sim: Simulation,
     folder: PathBuf,
     source: Source,
+    begun: SystemTime,
     _lock: Lock,
 }
 
@@ -61,9 +67,10 @@ impl Execution {
         registry: &Registry,
         output: OutputOptions,
     ) -> Result<Self, Failure> {
+        let begun = SystemTime::now() - CLOCK;
         let folder = output.folder.clone();
         let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
-        Ok(Self { sim, _lock: Lock::of(&folder)?, folder, source: source.clone() })
+        Ok(Self { sim, _lock: Lock::of(&folder)?, folder, source: source.clone(), begun })
     }
 
     /// Does the steps, shows how far they are, and reports at the end.
@@ -132,15 +139,23 @@ impl Execution {
 
     /// What lies in the output folder, and what to do with it.
     fn files(&self) -> Result<String, Failure> {
-        let (mut names, mut frames) = (Vec::new(), 0);
+        let (mut names, mut frames, mut earlier) = (Vec::new(), 0, 0);
         for file in folder::files(&self.folder)? {
+            let written = file.metadata().and_then(|data| data.modified());
+            if written.is_ok_and(|written| written < self.begun) {
+                earlier += 1;
+                continue;
+            }
             match file.extension().and_then(|extension| extension.to_str()) {
                 Some("vtu") => frames += 1,
                 _ => names.extend(file.file_name().map(|name| name.display().to_string())),
             }
         }
         if frames > 0 {
-            names.push(format!("{frames} ParaView frames"));
+            names.push(count(frames, "ParaView frame"));
+        }
+        if earlier > 0 {
+            names.push(format!("and {} of earlier runs", count(earlier, "file")));
         }
         let folder = self.folder.display().to_string();
         let (program, quoted) = (program(), quoted(&folder));

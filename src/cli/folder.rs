@@ -1,5 +1,7 @@
 //! The output folder of a run: its default, and what is in it.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
@@ -8,6 +10,9 @@ use super::failure::Failure;
 pub const CHECKPOINT: &str = "checkpoint.mlc";
 /// Name of the state in which a run has failed.
 pub const FAILED: &str = "failed.mlc";
+
+/// What a recording begins with.
+const SIGNATURE: &[u8; 4] = b"RRF2";
 
 /// The folder of a scene's output where none is given: `out/<scene file without extension>`.
 pub fn default_folder(scene: &Path) -> PathBuf {
@@ -31,7 +36,10 @@ pub fn checkpoint(path: &Path) -> Result<PathBuf, Failure> {
 /// The recording itself, or the one of the folder that was written last.
 pub fn recording(path: &Path) -> Result<PathBuf, Failure> {
     if path.is_file() {
-        return Ok(path.to_path_buf());
+        return match is_recording(path) {
+            true => Ok(path.to_path_buf()),
+            false => Err(Failure::Usage(format!("`{}` is not a recording (`*.rrd`)", path.display()))),
+        };
     }
     let mut found: Vec<_> = files(path)?
         .into_iter()
@@ -42,10 +50,16 @@ pub fn recording(path: &Path) -> Result<PathBuf, Failure> {
     let newest = found.pop().map(|(_, file)| file);
     newest.ok_or_else(|| {
         Failure::Usage(format!(
-            "the folder `{}` holds no recording (`*.rrd`); the plugin `rerun_recorder` makes one",
+            "the folder `{}` contains no recording (`*.rrd`); the plugin `rerun_recorder` writes one",
             path.display()
         ))
     })
+}
+
+/// Whether the file begins as recordings do.
+fn is_recording(file: &Path) -> bool {
+    let mut begin = [0; SIGNATURE.len()];
+    File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == *SIGNATURE
 }
 
 /// The files of a folder, in the order of their names.

@@ -85,7 +85,7 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
     write_atomically(&file, Existing::Refuse, |to| to.write_all(template.text.as_bytes()))
         .map_err(|error| Failure::Run(error.to_string()))?;
     say(&format!(
-        "{} is written; run it with: {} run {}",
+        "wrote {}; run it with: {} run {}",
         file.display(),
         program(),
         quoted(&file.display().to_string())

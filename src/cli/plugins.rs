@@ -7,12 +7,12 @@ use meshless_engine::plugin::{Entry, Kind, Registry};
 use meshless_engine::scene::{Scene, TypeDoc, expression_names, type_docs, unknown};
 
 use super::failure::Failure;
-use super::text::{Table, say};
+use super::text::{Table, program, say};
 
 /// List everything that a scene can name, or describe one of these
 #[derive(Args)]
 pub struct Arguments {
-    /// Name of what is to be described
+    /// Name to describe
     #[arg(value_name = "NAME")]
     name: Option<String>,
 }
@@ -160,7 +160,13 @@ fn describe(registry: &Registry, name: &str) -> Result<String, Failure> {
         let mut known: Vec<&str> = all.iter().map(|(_, entry)| entry.name).collect();
         known.extend(sections.iter().flat_map(|(_, entries)| entries.iter().map(|(name, _)| name.as_str())));
         let (message, helps) = unknown("name", name, &known);
-        return Err(Failure::Usage(format!("{message}\n{}", helps.join("\n"))));
+        // Of the help only the nearest name: all together fill a screen.
+        let near = helps.iter().filter(|help| help.starts_with("did")).map(|help| format!("; {help}"));
+        return Err(Failure::Usage(format!(
+            "{message}{}\n`{} plugins` lists all that scenes can name",
+            near.collect::<String>(),
+            program()
+        )));
     }
     Ok(found.into_iter().map(|(kind, entry)| description(*kind, entry)).collect::<Vec<_>>().join("\n"))
 }

@@ -23,9 +23,9 @@ pub struct Arguments {
     #[arg(value_name = "CHECKPOINT")]
     path: PathBuf,
     /// Run to this time [s] instead of the end time of the scene
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Where the scene file is now: the files that it names are found relative to it. Its text stays that of the checkpoint
+    /// Present path of the scene file, relative to which the files that it names are found; the scene itself is the one in the checkpoint
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Replace a value of the scene from here on, as in `record.every=0.001`; may be given several times
@@ -50,14 +50,20 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
         source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
     }
     let (mut scene, mut source) = scene::parse(source)?;
+    let reached = checkpoint.clock().time;
     if let Some(end) = until {
+        if end <= reached {
+            let (reached, end) = (quantity(reached, "s"), quantity(end, "s"));
+            return Err(Failure::Usage(format!(
+                "`--until` must be later than the {reached} of the checkpoint, found {end}"
+            )));
+        }
         (scene, source) = prolonged(&scene, &source, end)?;
     }
-    let reached = checkpoint.clock().time;
     if reached >= scene.time.end {
         let (reached, end) = (quantity(reached, "s"), quantity(scene.time.end, "s"));
         return Err(Failure::Usage(format!(
-            "the checkpoint is at {reached}, the run ends at {end}; extend it with `--until TIME`"
+            "the run is complete: the checkpoint is at {reached}, the scene ends at {end}; extend it with `--until TIME`"
         )));
     }
     if let Some(warning) = checkpoint.path_warning() {
@@ -68,6 +74,13 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let mut execution = Execution::new(&scene, &source, registry, output)?;
     execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
     execution.carry_out(&how)
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("expected a time in seconds, as in `0.5`".into()),
+    }
 }
 
 /// The name of a scene file that the user gives, which must be there.

@@ -71,7 +71,23 @@ fn energies(ledger: &Ledger) -> String {
         String::new(),
         format!("{:.1e}", ledger.relative_error()),
     ]);
-    table.render()
+    table.render() + &negative(ledger)
+}
+
+/// Energies beside the largest one of which the summary speaks.
+const NOTABLE: f64 = 1e-3;
+
+/// Explains accounts of dissipation below zero.
+fn negative(ledger: &Ledger) -> String {
+    let accounts = ledger.accounts().iter();
+    let peak = accounts.clone().map(|account| account.total().abs()).fold(0.0, f64::max);
+    let below = accounts
+        .filter(|account| account.kind == AccountKind::Dissipated && account.total() < -NOTABLE * peak);
+    let names: Vec<String> = below.map(|account| format!("`{}`", account.name)).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("  negative dissipation is energy supplied on balance: {}\n", names.join(", ")),
+    }
 }
 
 fn extremes(text: &mut String, summary: &Summary) {

@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Body whose surface is meant
     #[arg(long, value_name = "NAME")]
     body: String,
-    /// File to write; its extension tells the format, .obj or .vtp
+    /// File to write; its extension, .obj or .vtp, selects the format
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Take the last frame up to this time [s] [default: the last frame]

@@ -70,12 +70,13 @@ pub fn bytes(count: usize) -> String {
 
 /// A duration in the two largest units that say something: `2 h 5 min`, `12 s`, `0.35 s`.
 pub fn duration(seconds: f64) -> String {
-    // Beyond a million hours the number says all there is to say.
+    // Beyond that the number says nothing more.
     if seconds.is_nan() || seconds >= 3.6e9 {
-        return "very long".into();
+        return "more than a hundred years".into();
     }
     let whole = Duration::from_secs_f64(seconds.max(0.0)).as_secs();
     match (whole / 86400, whole / 3600 % 24, whole / 60 % 60, whole % 60) {
+        (0, 0, 0, _) if seconds < 0.01 => "less than 0.01 s".into(),
         (0, 0, 0, s) if s < 10 => format!("{seconds:.2} s"),
         (0, 0, 0, s) => format!("{s} s"),
         (0, 0, m, s) => format!("{m} min {s} s"),
@@ -129,8 +130,9 @@ mod tests {
         assert_eq!(bytes(3 << 19), "1.5 MiB");
         assert_eq!(duration(0.354), "0.35 s");
         assert_eq!(duration(7505.0), "2 h 5 min");
-        assert_eq!(duration(f64::INFINITY), "very long");
-        assert_eq!(duration(f64::NAN), "very long");
+        assert_eq!(duration(0.001), "less than 0.01 s");
+        assert_eq!(duration(f64::INFINITY), "more than a hundred years");
+        assert_eq!(duration(f64::NAN), "more than a hundred years");
     }
 
     #[test]

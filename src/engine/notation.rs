@@ -62,23 +62,34 @@ pub fn quantity_to(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
+/// A place with at most six digits each, `(0.1, 0.03)`: without its third coordinate where that is zero, as in the plane.
+pub fn place(coordinates: impl Into<[f64; 3]>) -> String {
+    let [x, y, z] = coordinates.into();
+    let shown = if z == 0.0 { vec![x, y] } else { vec![x, y, z] };
+    format!("({})", shown.into_iter().map(number).collect::<Vec<_>>().join(", "))
+}
+
 /// A whole number and what it counts, given in the singular: `1 step`, `21 670 steps`.
 pub fn count(number: u64, noun: &str) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        // Four digits stand together.
-        if k > 0 && (digits.len() - k).is_multiple_of(3) && digits.len() > 4 {
-            grouped.push(' ');
-        }
-        grouped.push(digit);
-    }
     let plural = match noun {
         _ if number == 1 => noun.to_owned(),
         _ if noun.ends_with('y') => format!("{}ies", &noun[..noun.len() - 1]),
         _ => format!("{noun}s"),
     };
-    format!("{grouped} {plural}")
+    format!("{} {plural}", digits(number))
+}
+
+/// A whole number in groups of three digits: `21 670`; four digits stand together.
+pub fn digits(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) && digits.len() > 4 {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
 }
 
 /// Digits without the zeros at the end of their fraction.
@@ -125,6 +136,12 @@ mod tests {
         }
         assert_eq!(quantity_to(4800.0, "J", 3), "4.80 kJ");
         assert_eq!(quantity_to(999.6, "J", 3), "1.00 kJ");
+    }
+
+    #[test]
+    fn places_have_the_coordinates_that_matter() {
+        assert_eq!(place([0.1 + 1e-17, 0.03, 0.0]), "(0.1, 0.03)");
+        assert_eq!(place([4.999999999996327e-7, -0.0, 2.0]), "(5e-7, 0, 2)");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use crate::notation::{number, quantity};
 use crate::record::probe::Probe;
 use crate::record::{OutputHandle, StateHash};
 use crate::scene::{self, Scene, Source};
@@ -35,6 +36,8 @@ pub struct Simulation {
     ledger: Ledger,
     limits: TimeStepLimits,
     next_limit: Option<Limit>,
+    /// The first limit of this program, s.
+    first_dt: f64,
     sub_steps: SubSteps,
     stop: Option<String>,
     warnings: Vec<String>,
@@ -87,17 +90,34 @@ pub enum RunError {
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
     /// The step has become too small to go on.
-    #[error("the time step has fallen to {dt:.3e} s, limited by {by}: the run would never finish")]
+    #[error("the time step has fallen to {}, limited by {by}: the run would never finish", quantity(*.dt, "s"))]
     StepTooSmall {
         /// Proposed step, s.
         dt: f64,
         /// What limits it.
         by: String,
     },
+    /// No program does as many steps.
+    #[error(
+        "the run must take fewer than {} steps, found {} of {}, limited by {by}",
+        number(MOST_STEPS), number(end / dt), quantity(*.dt, "s")
+    )]
+    TooManySteps {
+        /// Proposed step, s.
+        dt: f64,
+        /// What limits it.
+        by: String,
+        /// End of the run, s.
+        end: f64,
+    },
 }
 
-/// Least step, as a share of the whole duration.
+/// Least step, as a share of the whole duration, of a run whose step shrinks.
 const LEAST_STEP: f64 = 1e-12;
+/// The step of such a run over the first one, at most.
+const SHRUNK: f64 = 1e-3;
+/// Steps that no run takes.
+const MOST_STEPS: f64 = 1e15;
 
 impl Simulation {
     pub(crate) fn new(parts: SimulationParts, scene: &Scene) -> Self {
@@ -123,6 +143,7 @@ impl Simulation {
             step_rule: scene.time.step.clone(),
             limits: TimeStepLimits::default(),
             next_limit: None,
+            first_dt: 0.0,
             sub_steps: SubSteps::new(sub_cycled, &scene.time),
             stop: None,
             warnings,
@@ -309,6 +330,9 @@ impl Simulation {
             (Some(limit), Some(next)) => next.clone_from(limit),
             (limit, next) => *next = limit.cloned(),
         }
+        if self.first_dt == 0.0 {
+            self.first_dt = self.next_limit.as_ref().map_or(0.0, |limit| limit.dt);
+        }
     }
 
     fn ends_here(&self) -> bool {
@@ -320,10 +344,15 @@ impl Simulation {
             scene::Step::Fixed(dt) => *dt,
             scene::Step::Adaptive { factor } => {
                 let limit = self.next_limit.as_ref().ok_or(RunError::NoLimit)?;
-                if limit.dt.is_nan() || limit.dt <= LEAST_STEP * self.end {
-                    return Err(RunError::StepTooSmall { dt: limit.dt, by: limit.by.clone() });
+                let (dt, by) = (limit.dt, || limit.by.clone());
+                let fell = dt <= LEAST_STEP * self.end && dt < SHRUNK * self.first_dt;
+                if dt.is_nan() || fell {
+                    return Err(RunError::StepTooSmall { dt, by: by() });
                 }
-                factor * limit.dt
+                if dt * MOST_STEPS <= self.end {
+                    return Err(RunError::TooManySteps { dt, by: by(), end: self.end });
+                }
+                factor * dt
             }
         };
         let rest = self.end - self.clock.time;
@@ -336,8 +365,10 @@ impl Simulation {
             && *dt > limit.dt
         {
             self.warnings.push(format!(
-                "the fixed step of {dt:.3e} s is larger than the stable one, {:.3e} s, which {} limits",
-                limit.dt, limit.by
+                "the fixed time step of {} exceeds the stable one of {}, limited by {}",
+                quantity(*dt, "s"),
+                quantity(limit.dt, "s"),
+                limit.by
             ));
         }
     }

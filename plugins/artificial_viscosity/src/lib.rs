@@ -79,7 +79,7 @@ impl ArtificialViscosity {
         let reynolds = 0.1 * length * share / (self.alpha * h * body.spacing);
         if reynolds < LEAST_REYNOLDS {
             let text = format!(
-                "`artificial_viscosity(alpha: {})` drowns the flow of `{}`: beside it a flow with a tenth of the speed of sound has a \
+                "`artificial_viscosity(alpha: {})` dominates the flow of `{}`: beside it a flow with a tenth of the speed of sound has a \
                  Reynolds number of {reynolds:.0} over the {length:.3} m of the body; `alpha: 0.02, beta: 0.0` is usual for fluids",
                 self.alpha, body.name
             );

@@ -156,7 +156,7 @@ fn a_viscosity_that_drowns_a_flow_is_warned_of() {
         let sim = build(&scene, &source, &registry).unwrap_or_else(|error| panic!("{error}"));
         sim.warnings()
             .iter()
-            .filter(|text| text.contains("drowns the flow of `water`"))
+            .filter(|text| text.contains("dominates the flow of `water`"))
             .cloned()
             .collect::<Vec<_>>()
     };

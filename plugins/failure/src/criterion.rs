@@ -73,7 +73,7 @@ impl Watch {
             return Err(SetupError::parameter(
                 "criterion",
                 format!(
-                    "the failure strain of Johnson and Cook is a plastic one, and the material of body `{body}` does not flow"
+                    "the Johnson-Cook failure strain is a plastic strain: the material of body `{body}` must be plastic"
                 ),
                 "give the body a material with plastic flow, such as `J2` or `JohnsonCook`, or a criterion of strain or stress",
             ));

@@ -1,6 +1,7 @@
 //! Temperatures at the start.
 
 use meshless_engine::glam::DVec3;
+use meshless_engine::notation::place;
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::scene::Expression;
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
@@ -48,7 +49,11 @@ impl Run for Start {
                     None => {}
                 }
                 if !now[row].0.is_finite() {
-                    let message = format!("the temperature at {} is {}", reference[row].0, now[row].0);
+                    let message = format!(
+                        "the temperature at {} is not finite: {}",
+                        place(reference[row].0),
+                        now[row].0
+                    );
                     return Err(StepError::System { system: "heat_conduction".to_owned(), message });
                 }
                 last[row].0 = now[row].0;

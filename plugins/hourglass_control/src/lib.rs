@@ -132,7 +132,7 @@ impl HourglassControl {
         ParameterError::require_not_negative("xi", self.xi.unwrap_or_default())?;
         ParameterError::require_not_negative("zeta", self.zeta)?;
         if !(0.0..=1.0).contains(&self.chi) {
-            let message = format!("`chi` is {}, outside of 0 to 1", self.chi);
+            let message = format!("`chi` must be from 0 to 1, found {}", self.chi);
             return Err(SetupError::parameter("chi", message, "it is the share of the viscous part"));
         }
         Ok(())

@@ -105,8 +105,8 @@ impl LocalDamping {
         }
         Err(SetupError::parameter(
             if self.until.is_some() { "until" } else { "from" },
-            format!("the damping acts from {} s until {} s, which is never", window.from, window.until),
-            "`until` must be later than `from`",
+            format!("`until` must be later than `from`, found {} s and {} s", window.until, window.from),
+            "give a later time, or leave `until` out",
         ))
     }
 
@@ -115,12 +115,12 @@ impl LocalDamping {
             Some(rate) if rate >= 0.0 && rate.is_finite() => Ok(rate),
             Some(rate) => Err(SetupError::parameter(
                 "rate",
-                format!("the rate is {rate} 1/s"),
-                "give a number not below zero",
+                format!("`rate` must not be negative, found {rate} 1/s"),
+                "damping takes energy out; 0 is none",
             )),
             None => Err(SetupError::parameter(
                 "rate",
-                "the damping has no rate",
+                "`rate` is missing",
                 "give a rate in 1/s, such as `rate: 100.0`, or `mode: Relaxation()`",
             )),
         }
@@ -129,15 +129,23 @@ impl LocalDamping {
     fn check_relaxation(&self, tolerance: f64, after: f64) -> Result<(), SetupError> {
         if self.rate.is_some() {
             let help = "leave `rate` out, or use `mode: Constant`";
-            return Err(SetupError::parameter("rate", "a relaxation finds its rate itself", help));
+            return Err(SetupError::parameter(
+                "rate",
+                "`Relaxation` has no `rate`: it finds its rate itself",
+                help,
+            ));
         }
         if !(1e-12..=0.1).contains(&tolerance) {
-            let message = format!("the tolerance is {tolerance}");
-            return Err(SetupError::parameter("mode.tolerance", message, "give a number from 1e-12 to 0.1"));
+            let message = format!("`tolerance` must be from 1e-12 to 0.1, found {tolerance}");
+            return Err(SetupError::parameter(
+                "mode.tolerance",
+                message,
+                "the smaller it is, the longer the run takes",
+            ));
         }
         if !(after >= 0.0 && after.is_finite()) {
-            let message = format!("`after` is {after} s");
-            return Err(SetupError::parameter("mode.after", message, "give a time not before the start"));
+            let message = format!("`after` must not be negative, found {after} s");
+            return Err(SetupError::parameter("mode.after", message, "a run starts at 0 s"));
         }
         Ok(())
     }

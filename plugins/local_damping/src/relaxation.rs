@@ -70,7 +70,7 @@ impl Run for Relaxation {
             damp(step, body, factor)?;
         }
         if self.stop && step.clock.end() >= self.after && self.at_rest(&motion, step) {
-            *step.stop = Some(format!("at rest to {:.0e} at t = {:.6e} s", self.tolerance, step.clock.end()));
+            *step.stop = Some(format!("in static equilibrium to {:.0e}", self.tolerance));
         }
         Ok(())
     }

@@ -143,12 +143,15 @@ fn a_restart_amid_a_relaxation_continues_bit_for_bit() {
 #[test]
 fn wrong_parameters_are_refused_at_their_place() {
     for (damping, wanted) in [
-        ("local_damping(rate: -1.0)", "the rate is -1 1/s"),
-        ("local_damping()", "the damping has no rate"),
-        ("local_damping(rate: 1.0, mode: Relaxation())", "a relaxation finds its rate itself"),
-        ("local_damping(rate: 1.0, from: 2.0, until: 1.0)", "which is never"),
-        ("local_damping(mode: Relaxation(tolerance: 0.0))", "the tolerance is 0"),
-        ("local_damping(mode: Relaxation(after: -1.0))", "`after` is -1 s"),
+        ("local_damping(rate: -1.0)", "`rate` must not be negative, found -1 1/s"),
+        ("local_damping()", "`rate` is missing"),
+        ("local_damping(rate: 1.0, mode: Relaxation())", "it finds its rate itself"),
+        (
+            "local_damping(rate: 1.0, from: 2.0, until: 1.0)",
+            "`until` must be later than `from`, found 1 s and 2 s",
+        ),
+        ("local_damping(mode: Relaxation(tolerance: 0.0))", "`tolerance` must be from 1e-12 to 0.1, found 0"),
+        ("local_damping(mode: Relaxation(after: -1.0))", "`after` must not be negative, found -1 s"),
     ] {
         match build_text(&cantilever("1.0", damping, 1.0)) {
             Ok(_) => panic!("{damping} is accepted"),

@@ -67,7 +67,7 @@ pub enum ReadError {
         source: std::io::Error,
     },
     /// The file is no recording, or damaged.
-    #[error("`{}` is no recording that rerun {} can read: {message}", path.display(), rerun::build_info().version)]
+    #[error("`{}` is not a recording that rerun {} can read: {message}", path.display(), rerun::build_info().version)]
     Damaged {
         /// The file.
         path: PathBuf,

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use rerun_recorder::{SurfaceError, SurfaceMesh, surface_of};
+use meshless_engine::record::{BodyFrame, BodyInfo, Existing, Frame, Recorder, RunInfo};
+use meshless_engine::scene::Dimension;
+use rerun_recorder::{RerunFile, RerunRecorder, SurfaceError, SurfaceMesh, surface_of};
 
 /// A ball of radius 0.5 about (1, 2, 3) on a lattice, red growing from left to right.
 fn ball(spacing: f32) -> SurfaceMesh {
@@ -98,4 +100,35 @@ fn what_has_no_surface_is_told() {
     assert!(surface_of(&[], 0.5, &[]).expect("nothing").triangles.is_empty());
     let scattered = [[0.0, 0.0, 1.0], [f32::NAN, 0.0, 0.0], [9.0, 0.0, 2.0]];
     assert!(surface_of(&scattered, 0.5, &[[9; 3]]).is_ok());
+}
+
+#[test]
+fn what_is_left_of_a_body_may_lie_in_a_plane() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let settings = RerunRecorder { surfaces: vec!["drop".to_owned()], ..RerunRecorder::default() };
+    let mut recorder = RerunFile::new(settings, Vec::new(), Vec::new(), [0.0, 0.0, 1.0]);
+    let run = RunInfo {
+        title: "",
+        scene_name: "drop",
+        scene_text: "",
+        dimension: Dimension::Three,
+        bodies: &[BodyInfo { name: "drop", radius: 0.5, particles: 2 }],
+        fields: &[],
+        series: &[],
+        references: &[],
+        output: folder.path(),
+        existing: Existing::Refuse,
+        resumed: false,
+        start_time: 0.0,
+        end_time: 1.0,
+    };
+    recorder.start(&run).expect("a file");
+    for (step, positions) in
+        [&[[0.0, 0.0, 0.5], [1.0, 0.0, 0.5]][..], &[[1.0, 0.0, 0.0]], &[]].iter().enumerate()
+    {
+        let body = BodyFrame { name: "drop", positions, radius: 0.5, fields: &[] };
+        let frame = Frame { step: step as u64, time: step as f64, bodies: &[body] };
+        recorder.frame(&frame).expect("a frame, with a surface or without");
+    }
+    recorder.finish(&[]).expect("a recording");
 }

@@ -6,10 +6,14 @@ use std::time::Duration;
 
 use rerun_recorder::{WebViewer, WebViewerError};
 
-/// Head and body of an answer to a request of version 1.0, which is sent in one piece.
 fn get(address: &str, path: &str) -> (String, Vec<u8>) {
+    get_as(address, path, address)
+}
+
+/// Head and body of an answer to a request of version 1.0, which is sent in one piece.
+fn get_as(address: &str, path: &str, host: &str) -> (String, Vec<u8>) {
     let mut stream = TcpStream::connect(address).expect("somebody listens");
-    write!(stream, "GET {path} HTTP/1.0\r\nHost: {address}\r\n\r\n").expect("a request");
+    write!(stream, "GET {path} HTTP/1.0\r\nHost: {host}\r\n\r\n").expect("a request");
     stream.shutdown(Shutdown::Write).expect("the end of the request");
     let mut answer = Vec::new();
     stream.read_to_end(&mut answer).expect("an answer");
@@ -31,7 +35,14 @@ fn page_viewer_and_recording_come_over_http_until_the_end() {
 
     let (head, page) = get(address, url.strip_prefix(origin).expect("a path"));
     assert!(head.starts_with("HTTP/1.0 200") && head.contains("Content-Type: text/html"), "{head}");
-    assert!(String::from_utf8_lossy(&page).contains("re_viewer.js"));
+    let page = String::from_utf8_lossy(&page);
+    assert!(page.contains("re_viewer.js") && page.contains("<style>"), "{page}");
+    // Nothing is loaded from elsewhere, and nothing is served to pages from elsewhere.
+    assert!(head.contains("Content-Security-Policy: default-src 'self'"), "{head}");
+    assert!(!page.contains("googleapis") && !page.contains("gstatic"), "{page}");
+    let asked = |host: &str| get_as(address, "/", host).0;
+    assert!(asked("elsewhere.example").starts_with("HTTP/1.0 403"));
+    assert!(asked("localhost:8080").starts_with("HTTP/1.0 200"));
     let (head, script) = get(address, "/re_viewer.js");
     assert!(head.contains("Content-Type: text/javascript") && script.len() > 10_000, "{head}");
     let (head, wasm) = get(address, "/re_viewer_bg.wasm");

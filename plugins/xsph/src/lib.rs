@@ -40,7 +40,7 @@ impl Plugin for Xsph {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         if !(0.0..=1.0).contains(&self.epsilon) {
-            let message = format!("`epsilon` is {}, not from 0 to 1", self.epsilon);
+            let message = format!("`epsilon` must be from 0 to 1, found {}", self.epsilon);
             return Err(ParameterError::new("epsilon", message, "0.5 is usual").into());
         }
         let bodies = sim.scope_of(BodyKind::Fluid)?;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use meshless_engine::notation::{count, quantity};
+use meshless_engine::notation::{count, quantity, quantity_to};
 use meshless_engine::simulation::Simulation;
 
 use crate::cli::failure::Failure;
@@ -21,6 +21,11 @@ pub struct Trial {
     pub dt: f64,
     /// What limits it.
     pub limit: String,
+}
+
+/// A number of steps, in full where it is one that a run can take.
+fn steps(number: f64) -> String {
+    if number < 1e9 { count(number as u64, "step") } else { format!("{} steps", quantity_to(number, "1", 2)) }
 }
 
 impl Trial {
@@ -51,15 +56,16 @@ impl Trial {
     /// The lines of the report.
     pub fn describe(&self, sim: &Simulation) -> String {
         let per_step = self.wall / self.steps.max(1) as f64;
+        let time = duration(self.expected_seconds(sim));
+        let about = if time.starts_with(|sign: char| sign.is_ascii_digit()) { "about " } else { "" };
         format!(
             "time step  {}, limited by {}\n\
              length     about {} to {}\n\
-             run time   about {} on {}, without output ({} in {})\n",
+             run time   {about}{time} on {}, without output ({} in {})\n",
             quantity(self.dt, "s"),
             self.limit,
-            count(self.expected_steps(sim) as u64, "step"),
+            steps(self.expected_steps(sim)),
             quantity(sim.end(), "s"),
-            duration(self.expected_seconds(sim)),
             count(rayon::current_num_threads() as u64, "thread"),
             counted(sim.world().len() as f64 / per_step, "particle-steps/s"),
             count(self.steps, "trial step"),

@@ -41,7 +41,7 @@ fn of_body(body: &BodyPlan, held: &[bool]) -> Option<String> {
     let is_thin = (0..inside.len()).all(|row| !list.row(row).is_empty());
     is_thin.then(|| {
         format!(
-            "body `{}` is held by a part that its kernel sees through: it is soft there; hold at least {} of it",
+            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it",
             body.name,
             quantity((reach / body.spacing).ceil() * body.spacing, "m")
         )

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
+use crate::notation::place;
 use crate::plugin::BodyPlan;
 use crate::scene::Problem;
 
@@ -26,7 +27,7 @@ pub(super) fn problems(bodies: &[BodyPlan]) -> Vec<Problem> {
             if pair.0 < pair.1 && !reported.contains(&pair) {
                 reported.push(pair);
                 let (first, second) = (&bodies[pair.0].name, &bodies[pair.1].name);
-                let message = format!("body `{second}` overlaps body `{first}` at {}", positions[i]);
+                let message = format!("body `{second}` overlaps body `{first}` at {}", place(positions[i]));
                 problems.push(
                     Problem::at_path(format!("bodies[{}].shape", pair.1), message)
                         .help("leave a gap of about the mean spacing between particles of different bodies"),

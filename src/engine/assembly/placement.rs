@@ -1,7 +1,7 @@
 //! Bodies against the domain and its periods, before anything looks for neighbours: particles that lie outside, or twice at one place, make that
 //! search slow and its result wrong.
 
-use crate::notation::{count, number};
+use crate::notation::{count, digits, number};
 use crate::plugin::BodyPlan;
 use crate::scene::{Axis, Domain, Problem, Scene};
 
@@ -25,18 +25,19 @@ fn problem(body: &BodyPlan, axis: Axis, domain: &Domain) -> Option<Problem> {
         // Particles fill their cells: a body that just fits is a spacing longer than its outermost places are apart.
         let (extent, period) = (highest - lowest + body.spacing, max - min);
         let message = format!(
-            "body `{name}` is {} m long, more than the period of {} m along {axis:?}",
-            number(extent),
-            number(period)
+            "body `{name}` must not be longer than the period of {} m along {axis:?}, found {} m",
+            number(period),
+            number(extent)
         );
         let help = "make the domain as long as the body, or the body as long as the domain";
         return (extent > period + 0.9 * body.spacing).then(|| Problem::at_path(at, message).help(help));
     }
     let outside = places.filter(|x| !(min..=max).contains(x)).count();
-    let of = count(body.sites.len() as u64, "particle");
     let message = format!(
-        "{outside} of {of} of body `{name}` start outside the domain: they reach from {} m to {} m along {axis:?}, the domain from \
+        "body `{name}` must start inside the domain, found {} of {} outside: it extends from {} m to {} m along {axis:?}, the domain from \
          {} m to {} m",
+        digits(outside as u64),
+        count(body.sites.len() as u64, "particle"),
         number(lowest),
         number(highest),
         number(min),

@@ -49,7 +49,7 @@ impl Plugin for Displacement {
             }) {
                 return Err(SetupError::parameter(
                     "value",
-                    format!("the displacement at t = 0 is {jump} m, not zero, on body `{}`", body.name),
+                    format!("the displacement of body `{}` must be zero at t = 0, found {jump} m", body.name),
                     "let it grow from zero, such as `\"2e-3*smoothstep(t/0.01)\"`",
                 ));
             }

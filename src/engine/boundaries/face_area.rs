@@ -47,7 +47,7 @@ pub(super) fn normal_of(select: &Select) -> Result<DVec3, SetupError> {
     let Some(face) = select.face else {
         return Err(SetupError::parameter(
             "on",
-            "a pressure acts on a face, and the selection names none",
+            "the selection must name a face: a pressure acts on a surface",
             "add a face, such as `Select(body: \"plate\", face: MaxY)`",
         ));
     };
@@ -99,8 +99,8 @@ pub(super) fn check_area(area: Option<f64>) -> Result<(), SetupError> {
     match area {
         Some(area) if !(area > 0.0 && area.is_finite()) => Err(SetupError::parameter(
             "area",
-            format!("the loaded area is {area}"),
-            "it must be positive, in m2 (m in two dimensions)",
+            format!("`area` must be positive, found {area}"),
+            "it is the loaded area, in m2; in two dimensions its length, in m",
         )),
         _ => Ok(()),
     }

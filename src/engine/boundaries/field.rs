@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::part::Part;
+use crate::notation::place;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
@@ -74,7 +75,7 @@ impl Field {
             None => Ok(()),
             Some((point, value)) => Err(SetupError::parameter(
                 "value",
-                format!("the {what} at {point} is {value}"),
+                format!("the {what} must be finite, found {value} at {}", place(point)),
                 "give an expression that is finite on all selected particles",
             )),
         }
@@ -99,7 +100,9 @@ impl Field {
             return Ok(());
         }
         let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
-        let message = format!("the value at the reference position {point} and time {t:.6e} s is {value}");
+        let message = format!(
+            "the value must be finite, found {value} at the reference position {point} and {t:.6e} s"
+        );
         Err(StepError::System { system: by.to_owned(), message })
     }
 }

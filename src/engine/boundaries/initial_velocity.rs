@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::field::Field;
 use super::part::{Part, parts_of};
+use crate::notation::place;
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::{BodyId, Mobility, Velocity};
@@ -34,7 +35,7 @@ impl Plugin for InitialVelocity {
         let parts: Vec<Part> =
             all.into_iter().filter(|part| sim.body(part.body).kind != BodyKind::Boundary).collect();
         if parts.is_empty() {
-            let message = "walls move by their `velocity` and by `Velocity` and `Displacement` alone, for as long as these say";
+            let message = "a wall has no initial velocity: its motion is prescribed by its `velocity`, by `Velocity` or by `Displacement`";
             return Err(SetupError::parameter(
                 "on",
                 message,
@@ -80,7 +81,7 @@ fn only_once(parts: &[Part], axes: [bool; 3], sim: &mut SimBuilder<'_>) -> Resul
                     let message = format!(
                         "particle {number} of body `{}` at {} has two initial velocities along {}",
                         body.name,
-                        body.sites[number].position,
+                        place(body.sites[number].position),
                         ["x", "y", "z"][axis]
                     );
                     let help = "the selections must not overlap, or leave the axis to one of them";

@@ -26,7 +26,7 @@ use crate::world::{BodyId, BodySet, Mass, Removed, Velocity};
 pub struct MeanVelocity {
     /// Fluids and rigid bodies, whose mean is taken together; `"grain*"` stands for all bodies whose names begin with `grain`.
     pub bodies: Vec<String>,
-    /// Velocity along each axis \[m/s\]; `None` leaves an axis alone.
+    /// Velocity along each axis \[m/s\]; `None` leaves an axis unconstrained.
     pub value: PerAxis<f64>,
 }
 

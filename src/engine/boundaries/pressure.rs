@@ -91,7 +91,7 @@ impl LoadLaw for Follower {
             let pressure = self.value.eval(point, t);
             if !pressure.is_finite() {
                 let message = format!(
-                    "the pressure at the reference position {point} and time {t:.6e} s is {pressure}"
+                    "the pressure must be finite, found {pressure} at the reference position {point} and {t:.6e} s"
                 );
                 return Err(StepError::System { system: Pressure::NAME.to_owned(), message });
             }

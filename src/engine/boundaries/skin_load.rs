@@ -200,8 +200,9 @@ impl SkinLoad {
                     }
                 };
             if !force.is_finite() {
-                let message =
-                    format!("the load at the reference position {middle} and time {t:.6e} s is {force} N");
+                let message = format!(
+                    "the load must be finite, found {force} N at the reference position {middle} and {t:.6e} s"
+                );
                 return Err(StepError::System { system: (*label).to_owned(), message });
             }
             (0..axes).for_each(|k| patch.push_corner(facet, k, force / axes as f64));

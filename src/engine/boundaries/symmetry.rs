@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::notation::number;
 use crate::plugin::{BodyKind, BodyPlan, Offer, Plugin, SetupError, SimBuilder};
 use crate::rigid::HalvedBody;
 use crate::scene::{Axis, Dimension};
@@ -66,7 +67,12 @@ impl Plugin for Symmetry {
         }
         if cut.is_empty() {
             let extent = |body: &BodyPlan| {
-                format!("`{}` extends from {} to {}", body.name, body.bounds.min[axis], body.bounds.max[axis])
+                format!(
+                    "`{}` extends from {} to {}",
+                    body.name,
+                    number(body.bounds.min[axis]),
+                    number(body.bounds.max[axis])
+                )
             };
             let extents: Vec<String> = sim.bodies().iter().map(extent).collect();
             return Err(SetupError::parameter(
@@ -121,7 +127,11 @@ impl Symmetry {
                 "at",
                 format!(
                     "the symmetry plane {:?} = {} crosses body `{}`, which extends from {} to {}",
-                    self.plane, self.at, body.name, body.bounds.min[axis], body.bounds.max[axis]
+                    self.plane,
+                    number(self.at),
+                    body.name,
+                    number(body.bounds.min[axis]),
+                    number(body.bounds.max[axis])
                 ),
                 "let the shape of the body end at the plane",
             ));

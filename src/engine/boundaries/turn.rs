@@ -66,7 +66,7 @@ impl Drive for Rate {
         if rate.is_finite() {
             return Ok(DVec3::new(rate, 0.0, 0.0));
         }
-        let message = format!("the rate at time {t:.6e} s is {rate}");
+        let message = format!("the rate must be finite, found {rate} at {t:.6e} s");
         Err(StepError::System { system: Turn::NAME.to_owned(), message })
     }
 }

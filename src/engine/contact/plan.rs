@@ -258,7 +258,7 @@ fn refuse_short_periods(
         let length = periodic.lengths()[axis];
         if periodic.axes()[axis] && length < least {
             let message = format!(
-                "the period of {length} m along {name} is too short for this contact, which needs {least} m"
+                "the period along {name} must be at least {least} m for this contact, found {length} m"
             );
             let problem = Problem::at_path(format!("contacts[{number}].between"), message);
             return Err(vec![problem.help("use a longer domain, or smaller particles")]);

@@ -2,6 +2,7 @@
 
 use super::sides::{Nodes, Sides};
 use super::touching::Touching;
+use crate::notation;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::rigid::RigidBodies;
 
@@ -32,7 +33,7 @@ fn check(sides: &Sides, number: usize, setup: &mut Setup<'_>) -> Result<(), Setu
     let what = if matches!(sides.nodes, Nodes::Rigid) { "a point" } else { "a particle" };
     Err(SetupError::parameter(
         format!("contacts[{number}].between"),
-        format!("{what} of `{first}` starts inside rigid body `{second}`, at {place}"),
+        format!("{what} of `{first}` starts inside rigid body `{second}`, at {}", notation::place(place)),
         "move the bodies apart; they may touch",
     ))
 }

@@ -46,8 +46,8 @@ impl ElasticConstants {
                 if !(poisson > -1.0 && poisson < 0.5) {
                     return Err(ParameterError::new(
                         "poisson",
-                        format!("`poisson` is {poisson}, outside of -1 < poisson < 0.5"),
-                        "at 0.5 the material is incompressible and the wave speed infinite; 0.49 is near enough",
+                        format!("`poisson` must be between -1 and 0.5, found {poisson}"),
+                        "at 0.5 the material is incompressible and its wave speed infinite; use 0.49 at most",
                     ));
                 }
                 Ok(Self::from_young_poisson(young, poisson))

@@ -51,7 +51,7 @@ impl MaterialModel for Fluid {
         if let EquationOfState::Tait { gamma } = self.eos
             && !(gamma > 1.0 && gamma <= 20.0)
         {
-            let message = format!("`gamma` is {gamma}, not above 1 and at most 20");
+            let message = format!("`gamma` must be above 1 and at most 20, found {gamma}");
             return Err(ParameterError::new("eos.gamma", message, "7 is usual for water; or use `Linear`"));
         }
         let law = FluidLaw { sound_speed: self.sound_speed, viscosity: self.viscosity, eos: self.eos };

@@ -44,7 +44,7 @@ impl Heating {
         }
         Err(ParameterError::new(
             taylor_quinney,
-            format!("`{taylor_quinney}` is {}, outside of 0 to 1", self.taylor_quinney),
+            format!("`{taylor_quinney}` must be from 0 to 1, found {}", self.taylor_quinney),
             "it is the share of plastic work that becomes heat, 0.9 for most metals",
         ))
     }

@@ -107,7 +107,7 @@ impl JohnsonCookFlow {
         Err(ParameterError::new(
             melt,
             format!(
-                "a melt temperature of {} K is not above the reference temperature of {} K",
+                "the melt temperature must be above the reference temperature, found {} K and {} K",
                 self.melt_temperature, self.reference_temperature
             ),
             "temperatures are in kelvin: add 273.15 to degrees Celsius",

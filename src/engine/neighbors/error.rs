@@ -16,7 +16,7 @@ pub enum NeighborError {
         position: DVec3,
     },
     /// A support radius is not a positive finite number.
-    #[error("support radius of {set} particle {index} is {value} m; it must be positive and finite")]
+    #[error("the support radius of {set} particle {index} must be positive and finite, found {value} m")]
     SupportRadius {
         /// "target" or "source".
         set: &'static str,
@@ -36,7 +36,7 @@ pub enum NeighborError {
         supports: usize,
     },
     /// The skin is negative or not finite.
-    #[error("skin is {0} m; it must be zero or positive, and finite")]
+    #[error("the skin must be finite and not negative, found {0} m")]
     Skin(f64),
     /// A particle would see two images of another.
     #[error(

@@ -14,6 +14,7 @@ use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
 use crate::materials::{Law, SolidLaw};
 use crate::neighbors::Periodic;
+use crate::notation::place;
 use crate::scene::{Dimension, Scene, Select};
 use crate::schedule::{Stage, Step, System};
 use crate::shapes::{Shape, Surface};
@@ -228,7 +229,8 @@ impl<'s> SimBuilder<'s> {
                             format!(
                                 "two conditions prescribe the {name} motion of one particle: `{other}` and `{by}` \
                                  both hold particle {number} of body `{}` at {}",
-                                body.name, body.sites[number].position
+                                body.name,
+                                place(body.sites[number].position)
                             ),
                             "let the selections not overlap, or leave the axis to one of them",
                         ));

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::error::SetupError;
 use super::plan::BodyPlan;
+use crate::notation::place;
 use crate::scene::{Dimension, Face, Select, unknown};
 use crate::world::BodyId;
 
@@ -79,7 +80,14 @@ pub(super) fn resolve(
     if parts.is_empty() {
         let extents = bodies.iter().filter(|body| select.means(&body.name));
         let extents: Vec<String> = extents
-            .map(|body| format!("`{}` extends from {} to {}", body.name, body.bounds.min, body.bounds.max))
+            .map(|body| {
+                format!(
+                    "`{}` extends from {} to {}",
+                    body.name,
+                    place(body.bounds.min),
+                    place(body.bounds.max)
+                )
+            })
             .collect();
         return Err(SetupError::parameter(field, "the selection is empty", extents.join("; ")));
     }

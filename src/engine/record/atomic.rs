@@ -21,7 +21,7 @@ pub enum Existing {
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The file exists and may not be replaced.
-    #[error("`{}` already exists; remove it, choose another place, or allow overwriting", path.display())]
+    #[error("`{}` already exists; remove it, or choose another place", path.display())]
     Exists {
         /// The file.
         path: PathBuf,

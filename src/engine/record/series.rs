@@ -31,7 +31,7 @@ pub enum SeriesError {
         source: io::Error,
     },
     /// The file is no table.
-    #[error("`{}` is no series: {what}", path.display())]
+    #[error("`{}` is not a series: {what}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,

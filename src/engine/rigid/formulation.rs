@@ -150,7 +150,7 @@ impl Rigid {
         let has_mass = mass > 0.0 && mass.is_finite();
         let place = format!("bodies[{}].formulation{}", id.0, if self.mass.is_some() { ".mass" } else { "" });
         if mass < 0.0 || mass.is_nan() {
-            let message = format!("the mass of rigid body `{}` is {mass} kg", plan.name);
+            let message = format!("`mass` must be positive, found {mass} kg");
             return Err(SetupError::parameter(
                 place,
                 message,
@@ -160,13 +160,17 @@ impl Rigid {
         if !has_mass && !constraint.is_complete() {
             return Err(SetupError::parameter(
                 place,
-                format!("rigid body `{}` moves freely and has a mass of {mass} kg", plan.name),
+                format!(
+                    "a rigid body that moves freely must have a positive mass, found {mass} kg for `{}`",
+                    plan.name
+                ),
                 "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`",
             ));
         }
         let is_held = constraint.free_axes() == DVec3::ZERO && constraint.is_held_from_turning();
         if !plan.bounds.is_bounded() && !is_held {
-            let message = format!("rigid body `{}` has no end, and its motion is not prescribed", plan.name);
+            let message =
+                format!("rigid body `{}` is unbounded, and its motion must be prescribed", plan.name);
             return Err(SetupError::parameter(
                 format!("bodies[{}].shape", id.0),
                 message,
@@ -212,7 +216,7 @@ pub(crate) fn checked_axis(axis: DVec3, dimension: Dimension, field: &str) -> Re
     if !(length > 0.0 && length.is_finite()) {
         return Err(SetupError::parameter(
             field,
-            format!("the axis {axis} has no direction"),
+            format!("the axis must not be a zero vector, found {axis}"),
             "such as `(0, 0, 1)`",
         ));
     }

@@ -218,7 +218,7 @@ pub(super) fn positive_time(every: Option<f64>, at: &str, problems: &mut Vec<Pro
 const IN_PLANE: &str = "write (x, y); a two-dimensional scene is plane strain in x-y";
 
 fn out_of_plane(z: f64) -> String {
-    format!("a vector of a two-dimensional scene has z = {}", number(z))
+    format!("z must be 0 or left out in two dimensions, found {}", number(z))
 }
 
 pub(super) fn in_plane(scene: &Scene, vector: DVec3, at: &str, problems: &mut Vec<Problem>) {

@@ -134,7 +134,8 @@ impl Reader<'_> {
                 Ok(Some(c))
             }
             _ => {
-                Err(self.problem(start..self.at, format!("`{}` is no character", &self.text[start..self.at])))
+                Err(self
+                    .problem(start..self.at, format!("`{}` is not a character", &self.text[start..self.at])))
             }
         }
     }

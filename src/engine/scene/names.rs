@@ -1,5 +1,8 @@
 //! The nearest known name to a misspelt one.
 
+/// Signs of a name that errors show.
+const LONGEST_NAME: usize = 80;
+
 /// Message and help lines for a name that is not known: what was found, the nearest known name, all known names.
 /// `kind` says what is named, in the singular: `plugin`, `material`.
 pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, Vec<String>) {
@@ -13,11 +16,22 @@ pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, V
         let names: Vec<_> = known.iter().map(|known| format!("`{}`", known.as_ref())).collect();
         help.push(format!("known here: {}", names.join(", ")));
     }
-    (format!("unknown {kind} `{name}`"), help)
+    (format!("unknown {kind} `{}`", shortened(name)), help)
+}
+
+/// The name as errors show it: of a very long one the beginning.
+fn shortened(name: &str) -> String {
+    match name.char_indices().nth(LONGEST_NAME) {
+        Some((end, _)) => format!("{}...", &name[..end]),
+        None => name.to_owned(),
+    }
 }
 
 /// The known name that `name` was most likely meant to be, if any is near enough.
 pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str> {
+    if name.len() > 4 * LONGEST_NAME {
+        return None;
+    }
     let wanted = name.to_lowercase();
     let mut best: Option<(f64, &str)> = None;
     for candidate in known.iter().map(AsRef::as_ref) {

@@ -62,6 +62,10 @@ pub(super) fn child<'a>(node: &'a Node, step: &Step) -> Option<Found<'a>> {
         (Kind::List(entries), Step::Name(name)) => {
             entries.iter().find(|entry| label(entry) == Some(name)).map(Found::Entry)
         }
+        (Kind::Tuple(entries), Step::Name(name)) if (2..=3).contains(&entries.len()) => {
+            let axis = ["x", "y", "z"].iter().position(|axis| axis == name)?;
+            entries.get(axis).map(Found::Entry)
+        }
         // `Some(value)` and a variant around one struct are what they hold.
         (Kind::Tuple(entries), Step::Name(_)) if entries.len() == 1 => child(&entries[0], step),
         _ => None,

@@ -54,7 +54,8 @@ impl<'a> Reader<'a> {
     fn unexpected(&self, expected: &str) -> Problem {
         let Some(found) = self.peek() else {
             let end = self.text.trim_end().len();
-            return self.problem(end..end, format!("expected {expected}, found the end of the text"));
+            let found = if end == 0 { "an empty text" } else { "the end of the text" };
+            return self.problem(end..end, format!("expected {expected}, found {found}"));
         };
         let length = self.run(is_word).max(found.len_utf8());
         let found = &self.rest()[..length];

@@ -4,7 +4,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::mesh::MeshFault;
-use crate::notation::number;
+use crate::notation::{digits, number};
 
 /// Why a shape cannot be filled with particles or used as a selection.
 #[derive(Debug, Error)]
@@ -34,7 +34,7 @@ pub enum FillErrorKind {
     #[error("must be greater than 0, found {}", number(*.0))]
     NotPositive(f64),
     /// Two ends in the wrong order, or equal.
-    #[error("the {axis} range is empty: the lower end {min} is not below the upper end {max}")]
+    #[error("the lower end of the {axis} range must be below the upper end, found {min} and {max}")]
     EmptyRange {
         /// Name of the axis.
         axis: char,
@@ -124,7 +124,7 @@ pub enum FillErrorKind {
         spacing: f64,
     },
     /// More particles than the caller has memory for.
-    #[error("the body needs {}, more than the {limit} that fit into memory", particles(*.estimate))]
+    #[error("the body needs {}, more than the {} that fit into memory", particles(*.estimate), digits(*.limit as u64))]
     TooMany {
         /// Estimated number of particles.
         estimate: f64,

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::error::{FillError, FillErrorKind};
 use super::fill::Site;
 use crate::files;
-use crate::notation::number;
+use crate::notation::{number, place};
 use crate::space::Dimension;
 
 /// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may follow a name (`x[m]`); empty
@@ -49,8 +49,9 @@ pub(super) fn read(
     let names: Vec<&str> = values(header).map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
     let column = |name: &str| names.iter().position(|&title| title == name);
     let required = |name: &str| {
-        column(name)
-            .ok_or_else(|| wrong(header_line, format!("the header `{header}` has no column `{name}`")))
+        column(name).ok_or_else(|| {
+            wrong(header_line, format!("the header must have a column `{name}`, found {}", columns(&names)))
+        })
     };
     let (x, y, volume) = (required("x")?, required("y")?, required("volume")?);
     let z = if dimension == Dimension::Three { Some(required("z")?) } else { column("z") };
@@ -131,12 +132,21 @@ pub(super) fn check(
                 "two particles must not be at one place, found particles {} and {} at {}",
                 other + 1,
                 k + 1,
-                site.position
+                place(site.position)
             )));
         }
         cells.insert([x, y, z], k);
     }
     Ok(())
+}
+
+/// The columns of a header; of what is no header nothing is shown, it may be secret.
+fn columns(names: &[&str]) -> String {
+    let is_sign = |sign: char| sign.is_alphanumeric() || " _-.".contains(sign);
+    match names.iter().all(|name| name.len() < 40 && name.chars().all(is_sign)) {
+        true => format!("`{}`", names.join(",")),
+        false => "a line that is no header".to_owned(),
+    }
 }
 
 /// The values of a line, without spaces and quotes about them.

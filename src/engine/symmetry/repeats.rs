@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::map::Map;
+use crate::notation::number;
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 
 /// What a body repeats itself by.
@@ -82,8 +83,10 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
             return Err(SetupError::parameter(
                 "",
                 format!(
-                    "body `{}` is {extent} m long, more than the period of {length} m along {axis:?}",
-                    body.name
+                    "body `{}` must not be longer than the period of {} m along {axis:?}, found {} m",
+                    body.name,
+                    number(length),
+                    number(extent)
                 ),
                 "make the domain as long as the body, or the body as long as the domain",
             ));

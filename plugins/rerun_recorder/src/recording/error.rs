@@ -33,7 +33,7 @@ pub enum RerunError {
     #[error("the recording cannot be written: {0}")]
     Stream(#[from] RecordingStreamError),
     /// Data did not reach the file.
-    #[error("the recording cannot be written, is the disk full? {0}")]
+    #[error("the recording cannot be written: {0}")]
     Flush(#[from] SinkFlushError),
     /// A surface could not be made.
     #[cfg(feature = "surfaces")]

@@ -81,7 +81,7 @@ impl Legend {
     /// Shows the least and the greatest value of a frame.
     pub fn show_extremes(&self, output: &Output, ends: [Extreme; 2], axes: usize) -> Result<(), RerunError> {
         let text = |name: &str, end: Extreme| {
-            let place: Vec<String> = end.place[..axes].iter().map(|x| short(f64::from(*x))).collect();
+            let place: Vec<String> = even(&end.place[..axes]).into_iter().map(short).collect();
             format!("{name} {} at ({}) m", with_unit(end.value, &self.unit), place.join(", "))
         };
         let labels = [text("minimum", ends[0]), text("maximum", ends[1])];
@@ -93,6 +93,12 @@ impl Legend {
             .with_radii([0.01f32]);
         output.log(&legend_part("extremes"), &points)
     }
+}
+
+/// Coordinates without what is rounding beside the largest of them.
+pub fn even(place: &[f32]) -> Vec<f64> {
+    let largest = place.iter().fold(0f32, |largest, x| largest.max(x.abs()));
+    place.iter().map(|&x| if x.abs() < 1e-4 * largest { 0.0 } else { f64::from(x) }).collect()
 }
 
 /// The name of a field as people write it: `von_mises` is the von Mises stress.
@@ -154,6 +160,12 @@ mod tests {
     fn fields_have_the_names_that_people_write() {
         let names = ["von_mises", "stress.xy", "max_principal_stress", "velocity"].map(title);
         assert_eq!(names, ["von Mises stress", "stress xy", "max principal stress", "velocity"]);
+    }
+
+    #[test]
+    fn places_have_no_rounding() {
+        assert_eq!(even(&[-2.5e-7, 0.5, 0.0]), [0.0, 0.5, 0.0]);
+        assert_eq!(even(&[-2.5e-7, 0.0]), [f64::from(-2.5e-7f32), 0.0]);
     }
 
     #[test]

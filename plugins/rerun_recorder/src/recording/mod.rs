@@ -4,6 +4,7 @@ mod add;
 mod blueprint;
 mod color_scale;
 mod error;
+mod file;
 mod layout;
 mod legend;
 mod notes;

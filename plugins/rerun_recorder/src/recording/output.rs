@@ -1,19 +1,19 @@
 //! Where a recording goes: a file, and a viewer if one is to watch the run.
 
-use std::fs::File;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use meshless_engine::record::{Existing, WriteError};
+use meshless_engine::record::Existing;
 use re_sdk_types::archetypes::Scalars;
 use rerun::external::{re_log_types, re_uri};
 use rerun::log::TimeColumn;
-use rerun::sink::{FileSink, GrpcSink, GrpcSinkConnectionState};
+use rerun::sink::{GrpcSink, GrpcSinkConnectionState, LogSink};
 use rerun::{
     AsComponents, EntityPath, RecordingStream, RecordingStreamBuilder, RecordingStreamError, TimeCell,
 };
 
 use super::error::RerunError;
+use super::file::RecordingFile;
 
 /// Name under which the viewer groups recordings.
 pub const APPLICATION: &str = "meshless";
@@ -29,6 +29,7 @@ const WRITING: Duration = Duration::from_secs(60);
 /// viewer: the user may close it at any time.
 pub struct Output {
     file: RecordingStream,
+    written: RecordingFile,
     viewer: Option<RecordingStream>,
 }
 
@@ -52,15 +53,10 @@ impl Output {
         connect: Option<&str>,
     ) -> Result<Self, RerunError> {
         let reached = connect.map(reach).transpose()?;
-        // rerun says no more of a file that cannot be made than the text of the error.
-        let made = match existing {
-            Existing::Refuse => File::create_new(path),
-            Existing::Replace => File::create(path),
-        };
-        made.map_err(|error| WriteError::new(path, error))?;
-        let sink = FileSink::new(path).map_err(RecordingStreamError::from)?;
+        let written = RecordingFile::create(path, existing)?;
+        let sinks: Vec<Box<dyn LogSink>> = vec![Box::new(written.clone())];
         let file =
-            RecordingStreamBuilder::new(APPLICATION).enabled(true).recording_name(name).set_sinks((sink,))?;
+            RecordingStreamBuilder::new(APPLICATION).enabled(true).recording_name(name).set_sinks(sinks)?;
         let viewer = match (reached, file.store_info()) {
             (Some(sink), Some(info)) => {
                 let builder = RecordingStreamBuilder::from_store_id(&info.store_id);
@@ -68,7 +64,7 @@ impl Output {
             }
             _ => None,
         };
-        let output = Self { file, viewer };
+        let output = Self { file, written, viewer };
         for stream in output.streams() {
             // When the program was at it is of no use to anyone, and would be offered as timelines.
             stream.set_log_time_enabled(false);
@@ -138,8 +134,14 @@ impl Output {
             // A viewer that was closed is no reason to stop.
             let _ = viewer.flush_async();
         }
-        // A writer that has ended, as on a full disk, would be waited for without end.
-        Ok(self.file.flush_with_timeout(WRITING)?)
+        self.file.flush_with_timeout(WRITING)?;
+        self.written.check()
+    }
+
+    /// Writes what is left, and the index of the file.
+    pub fn complete(&self) -> Result<(), RerunError> {
+        self.flush()?;
+        self.written.complete()
     }
 }
 

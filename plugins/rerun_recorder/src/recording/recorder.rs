@@ -313,6 +313,6 @@ impl Recorder for RerunFile {
         // viewer that is watching keeps its own.
         open.series.finish();
         open.send_layout(true)?;
-        Ok(open.output.flush()?)
+        Ok(open.output.complete()?)
     }
 }

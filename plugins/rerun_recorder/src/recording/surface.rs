@@ -5,6 +5,8 @@ use re_sdk_types::components::Color;
 
 use super::error::RerunError;
 use super::output::Output;
+#[cfg(feature = "surfaces")]
+use crate::surface::{SurfaceError, SurfaceMesh, surface_of};
 
 /// Logs the surface of a body.
 #[cfg(feature = "surfaces")]
@@ -16,7 +18,11 @@ pub fn show_surface(output: &Output, body: &BodyFrame<'_>, colors: &[Color]) -> 
         [r, g, b]
     };
     let colors: Vec<[u8; 3]> = colors.iter().map(rgb).collect();
-    let mesh = crate::surface::surface_of(body.positions, body.radius, &colors)?;
+    let mesh = match surface_of(body.positions, body.radius, &colors) {
+        // The rest of a body of which particles have been removed may lie in a plane, which has no surface.
+        Err(SurfaceError::Plane) => SurfaceMesh::default(),
+        made => made?,
+    };
     let colors = mesh.colors.iter().map(|[r, g, b]| Color::from_rgb(*r, *g, *b));
     let shown = Mesh3D::new(mesh.positions)
         .with_vertex_normals(mesh.normals)

@@ -15,6 +15,9 @@ const THREADS: usize = 4;
 /// Path of the recording.
 const RECORDING: &str = "/recording.rrd";
 
+/// Tells the browser to load nothing from elsewhere.
+const FROM_HERE: &str = "default-src 'self' data: blob: 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval'";
+
 /// Path, type and content of the files of the viewer.
 static FILES: [(&str, &str, &[u8]); 6] = [
     ("/", "text/html", include_bytes!(concat!(env!("OUT_DIR"), "/index.html"))),
@@ -112,7 +115,18 @@ impl Drop for WebViewer {
     }
 }
 
+/// Whether the request was sent to this machine by its name: a page from elsewhere that has made its own name point here was not.
+fn is_local(request: &Request) -> bool {
+    let host = request.headers().iter().find(|header| header.field.equiv("Host"));
+    let host = host.map_or("", |header| header.value.as_str());
+    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
+    ["127.0.0.1", "localhost", ""].contains(&name)
+}
+
 fn answer(request: Request, recording: &Path) -> io::Result<()> {
+    if !is_local(&request) {
+        return request.respond(Response::empty(403));
+    }
     let path = request.url().split('?').next().unwrap_or_default();
     if path == RECORDING {
         return match File::open(recording) {
@@ -125,7 +139,11 @@ fn answer(request: Request, recording: &Path) -> io::Result<()> {
             let length = content.len().to_string();
             let mut response = Response::from_data(*content);
             // The page shows how much of the viewer has arrived by a length that chunks do not hide.
-            for (name, value) in [("Content-Type", *kind), ("rerun-final-length", length.as_str())] {
+            for (name, value) in [
+                ("Content-Type", *kind),
+                ("rerun-final-length", length.as_str()),
+                ("Content-Security-Policy", FROM_HERE),
+            ] {
                 if let Ok(header) = Header::from_bytes(name, value) {
                     response.add_header(header);
                 }

@@ -52,5 +52,5 @@ fn a_half_space_that_nothing_holds_is_an_error() {
     let tool = "shape: HalfSpace(point: (0, 0), normal: (0, 1)), spacing: 0.01, formulation: Rigid()";
     let (scene, source) = parse(Source::new("tool.ron", thrown(tool, ""))).unwrap();
     let Err(error) = build(&scene, &source, &Registry::standard()) else { panic!("it has no mass") };
-    assert!(error.to_string().contains("`tool` has no end"), "{error}");
+    assert!(error.to_string().contains("rigid body `tool` is unbounded"), "{error}");
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::cloud::{FlowCloud, Group};
 use crate::linalg::{Eigen, Sym3};
 use crate::neighbors::{Cloud, NeighborList, Periodic};
+use crate::notation::{number, place, quantity};
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::Problem;
 
@@ -45,11 +46,14 @@ pub(super) fn periods_are_long(periodic: &Periodic, support: f64) -> Result<(), 
         let length = periodic.lengths()[axis];
         if periodic.axes()[axis] && length < least * (1.0 + 1e-6) {
             let message = format!(
-                "the period of {length} m along {name} is too short for a fluid of support {support} m"
+                "the period along {name} must be longer than twice the support of the fluid, {}, found {}",
+                quantity(least, "m"),
+                quantity(length, "m")
             );
             let problem = Problem::at_path("domain.periodic", message);
             let help = format!(
-                "it has to be longer than twice the support, {least} m: a longer domain, or a smaller spacing"
+                "make the domain longer, or the spacing smaller: the support of the fluid is {}",
+                quantity(support, "m")
             );
             return Err(SetupError::Problems(vec![problem.help(help)]));
         }
@@ -71,9 +75,11 @@ pub(super) fn sound_is_fast(
         return Ok(());
     }
     let message = format!(
-        "the pressure of {p:.4} Pa at {at} changes the density of `{name}` by {:.0} %: its speed of sound of {} m/s is too low",
+        "the pressure of {} at {} changes the density of `{name}` by {:.0} %: its speed of sound of {} m/s is too low",
+        quantity(p, "Pa"),
+        place(at),
         100.0 * change,
-        state.sound_speed
+        number(state.sound_speed)
     );
     let fast = 10.0 * (2.0 * p.abs() / state.density).sqrt();
     let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
@@ -87,7 +93,7 @@ pub(super) fn is_fine(body: &BodyPlan, spacing: f64) -> Result<(), SetupError> {
         return Ok(());
     }
     let message = format!(
-        "the particles of `{}` are {} m apart, farther than those of the fluid, {spacing} m",
+        "the spacing of `{}` must not exceed that of the fluid, found {} m and {spacing} m",
         body.name, body.spacing
     );
     Err(fault(body, "spacing", message, "give the body the spacing of the fluid, or a smaller one"))
@@ -126,11 +132,13 @@ pub(super) fn wall_is_thick(
     let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
-        "`{}` is {:.0} layers of particles thick at {at}, thinner than the kernel support of the fluid, {support} m",
+        "`{}` is {:.0} layers of particles thick at {}, thinner than the kernel support of the fluid, {}",
         body.name,
-        least / body.spacing
+        least / body.spacing,
+        place(at),
+        quantity(support, "m")
     );
-    let help = format!("make it at least {layers} layers thick, {} m", layers * body.spacing);
+    let help = format!("make it at least {layers} layers thick, {}", quantity(layers * body.spacing, "m"));
     Err(fault(body, "shape", message, &help))
 }
 
@@ -144,7 +152,7 @@ pub(super) fn flow_is_slow(cloud: &FlowCloud, world: &crate::world::World) -> Re
         if fastest >= state.sound_speed {
             let body = world.body(group.body);
             let message = format!(
-                "the fluid `{}` starts with {fastest} m/s, and its speed of sound is {} m/s",
+                "the fluid `{}` must start slower than its speed of sound, found {fastest} m/s and {} m/s",
                 body.name, state.sound_speed
             );
             let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);

@@ -32,7 +32,7 @@ impl Mach {
         }
         if mach >= 1.0 {
             let message = format!(
-                "the flow of `{name}` has reached {speed:.4} m/s at {:.6e} s, faster than its sound of {sound:.4} m/s: it is no liquid any more; \
+                "the flow of `{name}` has reached {speed:.4} m/s at {:.6e} s, faster than its sound of {sound:.4} m/s: it no longer behaves as a liquid; \
                  give ten times the largest speed of the flow as `sound_speed` of its material",
                 step.clock.time
             );

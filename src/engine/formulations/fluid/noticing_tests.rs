@@ -162,5 +162,5 @@ fn walls_have_no_initial_velocity() {
         |body| super::tests::column::<crate::world::Velocity>(&sim, body).iter().any(|v| v.0.x != 0.0);
     assert!(moves(0) && !moves(1));
     let fault = fault(&tank("", "", &more.replace("Select()", "Select(body: \"tank\")")));
-    assert!(fault.contains("walls move by their `velocity`"), "{fault}");
+    assert!(fault.contains("a wall has no initial velocity"), "{fault}");
 }

@@ -10,6 +10,7 @@ use super::resolve::{Gauge, at_probe};
 use super::stencil::Stencil;
 use super::taken::Extremal;
 use crate::fields::ChosenField;
+use crate::notation;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder, facets_of};
 use crate::scene::{self, Line, Problem, Quantity, RelativeTo, Select, Take};
 use crate::world::BodySet;
@@ -213,7 +214,13 @@ fn surface(
 
 /// Where bodies are at the start.
 fn extents(bodies: &[&BodyPlan]) -> String {
-    let of =
-        |body: &&BodyPlan| format!("`{}` extends from {} to {}", body.name, body.bounds.min, body.bounds.max);
+    let of = |body: &&BodyPlan| {
+        format!(
+            "`{}` extends from {} to {}",
+            body.name,
+            notation::place(body.bounds.min),
+            notation::place(body.bounds.max)
+        )
+    };
     bodies.iter().map(of).collect::<Vec<_>>().join("; ")
 }

@@ -180,7 +180,7 @@ fn what_can_only_take_energy_and_gives_it_is_warned_of_with_the_largest_share() 
         sim.run(|_| true).unwrap();
         sim.warnings()
             .iter()
-            .filter(|text| text.contains("`made_up` has given energy"))
+            .filter(|text| text.contains("`made_up` has produced energy"))
             .cloned()
             .collect::<Vec<_>>()
     };

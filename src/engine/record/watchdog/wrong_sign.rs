@@ -52,9 +52,9 @@ impl WrongSign {
                 continue;
             }
             given.told = share;
-            let begin = format!("`{}` has given energy ", account.name);
+            let begin = format!("`{}` has produced energy ", account.name);
             let text = format!(
-                "{begin}where it can only take it: {:.3e} J, {:.0} % of the largest energy, by {:.6e} s; {}",
+                "{begin}though it can only dissipate: {:.3e} J, {:.0} % of the peak energy, by {:.6e} s; {}",
                 -account.total(),
                 100.0 * share,
                 step.clock.end(),

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::notation::place;
+
 /// Why a file is no mesh, or its mesh no solid. Places are in the coordinates of the scene \[m\].
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -33,7 +35,7 @@ pub enum MeshFault {
     #[error("the file has no triangle")]
     NoTriangle,
     /// Edges with a triangle on one side only.
-    #[error("the mesh is open: {edges} edges have a triangle on one side only, the first at {at} m")]
+    #[error("the mesh is open: {edges} edges have a triangle on one side only, the first at {} m", place(*at))]
     Open {
         /// Number of such edges.
         edges: usize,
@@ -41,7 +43,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Edges with more than two triangles.
-    #[error("at {edges} edges of the mesh more than two triangles meet, the first at {at} m")]
+    #[error("at {edges} edges of the mesh more than two triangles meet, the first at {} m", place(*at))]
     Crowded {
         /// Number of such edges.
         edges: usize,
@@ -49,7 +51,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Neighbouring triangles of which one faces outward and the other inward.
-    #[error("the triangles on both sides of {edges} edges face opposite ways, the first at {at} m")]
+    #[error("the triangles on both sides of {edges} edges face opposite ways, the first at {} m", place(*at))]
     Orientation {
         /// Number of such edges.
         edges: usize,
@@ -57,7 +59,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Triangles that go through each other.
-    #[error("the mesh intersects itself: {pairs} pairs of triangles cross, the first at {at} m")]
+    #[error("the mesh intersects itself: {pairs} pairs of triangles cross, the first at {} m", place(*at))]
     Crossing {
         /// Number of pairs of triangles that cross.
         pairs: usize,

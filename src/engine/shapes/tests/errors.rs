@@ -13,19 +13,19 @@ fn numbers_that_cannot_be() {
             "Box(min: (0, 0), max: (1, 0))",
             Two,
             "shape.max",
-            "the y range is empty: the lower end 0 is not below the upper end 0",
+            "the lower end of the y range must be below the upper end, found 0 and 0",
         ),
         (
             "Box(min: (0, 2, 0), max: (1, 1, 1))",
             Three,
             "shape.max",
-            "the y range is empty: the lower end 2 is not below the upper end 1",
+            "the lower end of the y range must be below the upper end, found 2 and 1",
         ),
         (
             "Box(min: (0, 0), max: (1, 1))",
             Three,
             "shape.max",
-            "the z range is empty: the lower end 0 is not below the upper end 0",
+            "the lower end of the z range must be below the upper end, found 0 and 0",
         ),
         ("Box(min: (NaN, 0), max: (1, 1))", Two, "shape.min", "expected a finite number, found NaN"),
         ("Box(min: (0, 0), max: (1, inf))", Two, "shape.max", "expected a finite number, found inf"),
@@ -102,7 +102,7 @@ fn numbers_that_cannot_be() {
             "Extrusion(polygon: [(0, 0), (1, 0), (0, 1)], from: 1, to: 0)",
             Three,
             "shape.to",
-            "the z range is empty: the lower end 1 is not below the upper end 0",
+            "the lower end of the z range must be below the upper end, found 1 and 0",
         ),
         (
             "Polygon(points: [(0, 0), (1, 0)])",
@@ -192,11 +192,11 @@ fn spacing() {
         (f64::INFINITY, "expected a finite number, found inf"),
         (
             1e-6,
-            "the body needs about 1e12 particles, more than the 1000000 that fit into memory; use a larger spacing",
+            "the body needs about 1e12 particles, more than the 1 000 000 that fit into memory; use a larger spacing",
         ),
         (
             1e-200,
-            "the body needs too many particles to count, more than the 1000000 that fit into memory; use a larger spacing",
+            "the body needs too many particles to count, more than the 1 000 000 that fit into memory; use a larger spacing",
         ),
         (
             0.8,

@@ -31,8 +31,13 @@ fn columns_by_name() {
 #[test]
 fn mistakes_are_shown_with_their_line() {
     for (content, dimension, message) in [
-        ("x,y\n1,2\n", Two, "line 1: the header `x,y` has no column `volume`"),
-        ("x,y,volume\n1,2,3\n", Three, "line 1: the header `x,y,volume` has no column `z`"),
+        ("x,y\n1,2\n", Two, "line 1: the header must have a column `volume`, found `x,y`"),
+        ("x,y,volume\n1,2,3\n", Three, "line 1: the header must have a column `z`, found `x,y,volume`"),
+        (
+            "root:$6$salt:99\n1\n",
+            Two,
+            "line 1: the header must have a column `x`, found a line that is no header",
+        ),
         ("\n# nothing\n", Two, "line 1: the file is empty, expected a header `x,y,volume`"),
         ("x,y,volume\n", Two, "line 1: the file has no particle"),
         ("x,y,volume\n1,2,3\n1,two,3\n", Two, "line 3: expected a number for `y`, found `two`"),
