@@ -54,7 +54,9 @@ pub(super) const FLAG: Case = Case {
 pub(super) const COLUMN: Case = Case {
     id: "S11E",
     title: "bending column, Eulerian",
-    run: |_, n| (bending_column::CASE.run)(&eulerian(), n),
+    resolutions: &[10, 12, 16],
+    ci_resolution: 10,
+    run: bent,
     ..bending_column::CASE
 };
 pub(super) const TENSION: Case = Case {
@@ -67,6 +69,12 @@ pub(super) const TENSION: Case = Case {
 
 fn eulerian() -> Registry {
     crate::standard_plugins().with_stand_in("TotalLagrangian", "Eulerian")
+}
+
+/// Within twice the tolerances of total-Lagrangian bodies, as the oscillating plate.
+fn bent(_: &Registry, across: usize) -> Result<Vec<Check>> {
+    let checks = (bending_column::CASE.run)(&eulerian(), across)?;
+    Ok(checks.into_iter().map(|check| check.widened(2.0)).collect())
 }
 
 fn thrown(_: &Registry, across: usize) -> Result<Vec<Check>> {

@@ -60,6 +60,42 @@ split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
 split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6);
 split_tuple!(A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7);
 
+impl<S: Split> Split for Option<S> {
+    fn rows(&self) -> usize {
+        self.as_ref().map_or(0, Split::rows)
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        self.map(|rows| rows.split(at)).unzip()
+    }
+}
+
+/// Makes a struct of slices over the same rows a [`Split`]: `split_by_rows!(Rows { a, b } and { c })` cuts the fields a and b, each of which may also be empty, and
+/// hands c to both halves.
+macro_rules! split_by_rows {
+    ($name:ident { $($field:ident),+ } $(and { $($same:ident),+ })?) => {
+        impl $crate::parallel::Split for $name<'_> {
+            fn rows(&self) -> usize {
+                let rows = [$($crate::parallel::Split::rows(&self.$field)),+];
+                rows.into_iter().max().unwrap_or_default()
+            }
+
+            fn split(self, at: usize) -> (Self, Self) {
+                $(
+                    let rows = $crate::parallel::Split::rows(&self.$field);
+                    debug_assert!(rows == 0 || at <= rows, "a field has other rows");
+                    let $field = $crate::parallel::Split::split(self.$field, at.min(rows));
+                )+
+                (
+                    Self { $($field: $field.0,)+ $($($same: self.$same,)+)? },
+                    Self { $($field: $field.1,)+ $($($same: self.$same,)+)? },
+                )
+            }
+        }
+    };
+}
+pub(crate) use split_by_rows;
+
 /// What a block contributes to a reduction over all rows.
 pub trait BlockSum: Copy + Default + Send {
     /// Adds the contribution of the next block.

@@ -12,6 +12,7 @@ mod plane;
 mod vector;
 
 pub use arithmetic::Arithmetic;
+pub(crate) use blocks::split_by_rows;
 pub use blocks::{
     BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
     sum_over_blocks,

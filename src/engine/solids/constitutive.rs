@@ -9,7 +9,7 @@ use super::damping::{DampedStrain, Damping, DampingRows, DampingStress};
 use super::folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm};
 use super::refit::{self, Refits};
 use crate::materials::{SolidLaw, StateRows, StressRows};
-use crate::parallel::{BLOCK, BlockSum, Split};
+use crate::parallel::{BLOCK, BlockSum, split_by_rows};
 use crate::world::{
     DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus, MissingColumn, PhaseView,
     PiolaStress,
@@ -149,29 +149,7 @@ pub struct SolidRows<'a> {
     damping: DampingRows<'a>,
 }
 
-impl Split for SolidRows<'_> {
-    fn rows(&self) -> usize {
-        self.deformation.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
-        let (stress, stress_rest) = self.stress.split_at_mut(at);
-        let (state, state_rest) = self.state.split(at);
-        let (memory, memory_rest) = self.memory.split(at);
-        let (damping, damping_rest) = self.damping.split(at);
-        (
-            Self { deformation, stress, state, memory, damping },
-            Self {
-                deformation: deformation_rest,
-                stress: stress_rest,
-                state: state_rest,
-                memory: memory_rest,
-                damping: damping_rest,
-            },
-        )
-    }
-}
+split_by_rows!(SolidRows { deformation, stress, state, memory, damping });
 
 /// What is known of a block of particles on its way through the pass. The formulation fills gradient, misfit and volume.
 pub struct SolidBlock {

@@ -14,6 +14,7 @@ use glam::DMat3;
 
 use crate::linalg::Sym3;
 use crate::materials::ElasticConstants;
+use crate::parallel::split_by_rows;
 
 /// c. A strip of rubber, four particles of the water beside it thick, rings with 0.02 and is quiet with 0.05.
 const SHARE: f64 = 0.1;
@@ -40,14 +41,7 @@ pub(super) struct DampingRows<'a> {
     pub stress: &'a mut [Sym3],
 }
 
-impl DampingRows<'_> {
-    /// The rows before and from `at`.
-    pub fn split(self, at: usize) -> (Self, Self) {
-        let (strain, strain_rest) = self.strain.split_at_mut(at.min(self.strain.len()));
-        let (stress, stress_rest) = self.stress.split_at_mut(at.min(self.stress.len()));
-        (Self { strain, stress }, Self { strain: strain_rest, stress: stress_rest })
-    }
-}
+split_by_rows!(DampingRows { strain, stress });
 
 /// A block of particles after its law.
 pub(super) struct Damping<'a> {

@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::DMat3;
 
 use super::corrected_stress::CorrectedStressRows;
+use crate::parallel::split_by_rows;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
@@ -69,18 +70,9 @@ impl FoldedMemory<'_> {
             gradient: gradient.get_mut(rows).unwrap_or_default(),
         }
     }
-
-    /// The rows before and from `at`.
-    pub(super) fn split(self, at: usize) -> (Self, Self) {
-        let (modulus, modulus_rest) = self.modulus.split_at_mut(at.min(self.modulus.len()));
-        let (misfit, misfit_rest) = self.misfit.split_at_mut(at.min(self.misfit.len()));
-        let (gradient, gradient_rest) = self.gradient.split_at_mut(at.min(self.gradient.len()));
-        (
-            Self { modulus, misfit, gradient },
-            Self { modulus: modulus_rest, misfit: misfit_rest, gradient: gradient_rest },
-        )
-    }
 }
+
+split_by_rows!(FoldedMemory { modulus, misfit, gradient });
 
 /// What a folded term tells of the energy of a block, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

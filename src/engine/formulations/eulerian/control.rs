@@ -19,7 +19,7 @@ use super::parameters::Divergence;
 use super::rows::EulerianRows;
 use super::stress::corrected;
 use crate::column;
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, Split, for_each_block, run_hot_on};
+use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot_on, split_by_rows};
 use crate::solids::{CorrectedStress, CorrectedStressRows, FoldedEnergy};
 use crate::symmetry::Map;
 
@@ -141,27 +141,7 @@ struct ControlBlock<'a> {
     energy: &'a mut [HourglassEnergy],
 }
 
-impl Split for ControlBlock<'_> {
-    fn rows(&self) -> usize {
-        self.force.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (force, force_rest) = self.force.split_at_mut(at);
-        let (stiffness, stiffness_rest) = self.stiffness.split_at_mut(at);
-        let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
-        let (energy, energy_rest) = self.energy.split_at_mut(at);
-        (
-            Self { force, stiffness, stresses, energy },
-            Self {
-                force: force_rest,
-                stiffness: stiffness_rest,
-                stresses: stresses_rest,
-                energy: energy_rest,
-            },
-        )
-    }
-}
+split_by_rows!(ControlBlock { force, stiffness, stresses, energy });
 
 struct ControlLoop<'a, 's> {
     pass: ControlPass<'a>,

@@ -10,7 +10,7 @@ use super::near::{Look, NearRows, Surroundings};
 use super::parameters::Divergence;
 use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
 use crate::linalg::Sym3;
-use crate::parallel::{Lanes4, Largest, Split, sum_over_blocks};
+use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
@@ -228,27 +228,7 @@ struct OwnRows<'a> {
     stresses: &'a mut [CorrectedStress],
 }
 
-impl Split for OwnRows<'_> {
-    fn rows(&self) -> usize {
-        self.stresses.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (near, near_rest) = self.near.split(at);
-        let (deformation, deformation_rest) = self.deformation.split_at_mut(at);
-        let (carried, carried_rest) = self.carried.split_at_mut(at);
-        let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
-        (
-            Self { near, deformation, carried, stresses },
-            Self {
-                near: near_rest,
-                deformation: deformation_rest,
-                carried: carried_rest,
-                stresses: stresses_rest,
-            },
-        )
-    }
-}
+split_by_rows!(OwnRows { near, deformation, carried, stresses });
 
 /// The pass over one body.
 struct StressPass<'a> {

@@ -12,7 +12,7 @@ use std::ops::Range;
 use glam::DVec3;
 use hecs::ArchetypeColumnMut;
 
-use crate::parallel::{Split, for_each_block};
+use crate::parallel::{for_each_block, split_by_rows};
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{BodySet, Force, MissingColumn, PhaseId, PhaseView, Velocity};
@@ -95,29 +95,7 @@ pub(super) struct DragRows<'a> {
     pub work: &'a mut [CouplingWork],
 }
 
-impl Split for DragRows<'_> {
-    fn rows(&self) -> usize {
-        self.drag.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (drag, drag_rest) = self.drag.split_at_mut(at);
-        let (motion, motion_rest) = self.motion.split_at_mut(at);
-        let (damping, damping_rest) = self.damping.split_at_mut(at);
-        let (impulse, impulse_rest) = self.impulse.split_at_mut(at);
-        let (work, work_rest) = self.work.split_at_mut(at);
-        (
-            Self { drag, motion, damping, impulse, work },
-            Self {
-                drag: drag_rest,
-                motion: motion_rest,
-                damping: damping_rest,
-                impulse: impulse_rest,
-                work: work_rest,
-            },
-        )
-    }
-}
+split_by_rows!(DragRows { drag, motion, damping, impulse, work });
 
 /// Adds the change of friction in the sub-steps.
 pub(super) struct Drag {

@@ -7,7 +7,7 @@ use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchang
 use super::pair_force::PARTS;
 use super::record::Record;
 use crate::integrate::constrained;
-use crate::parallel::{Split, for_each_block};
+use crate::parallel::{Split, for_each_block, split_by_rows};
 use crate::rigid::RigidBody;
 use crate::world::{Force, Mass, Mobility, Removed, Velocity};
 
@@ -40,31 +40,7 @@ pub(super) struct Particles<'a> {
     pub parts: &'a [DVec3],
 }
 
-impl Split for ParticleRows<'_> {
-    fn rows(&self) -> usize {
-        self.velocity.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (velocity, velocity_rest) = self.velocity.split_at_mut(at);
-        let (force, force_rest) = self.force.split_at_mut(at);
-        let (frozen, frozen_rest) = self.frozen.split_at_mut(at);
-        let (friction, friction_rest) = self.friction.split_at_mut(at);
-        let (pressure, pressure_rest) = self.pressure.split_at_mut(at);
-        let (drag, drag_rest) = self.drag.map(|drag| drag.split(at)).unzip();
-        (
-            Self { velocity, force, frozen, friction, pressure, drag },
-            Self {
-                velocity: velocity_rest,
-                force: force_rest,
-                frozen: frozen_rest,
-                friction: friction_rest,
-                pressure: pressure_rest,
-                drag: drag_rest,
-            },
-        )
-    }
-}
+split_by_rows!(ParticleRows { velocity, force, frozen, friction, pressure, drag });
 
 impl Particles<'_> {
     /// The force of the flow on particle `i` now, N; none on a removed one.

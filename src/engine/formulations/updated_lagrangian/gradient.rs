@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::control::ControlFit;
 use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, HessianBlock, Site};
 use crate::linalg::Sym3;
-use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
+use crate::parallel::{BLOCK, run_hot, run_hot_in, split_by_rows};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
 
 /// What the pass writes of packed rows, cut by rows of one body.
@@ -16,27 +16,7 @@ pub(super) struct GradientRows<'a> {
     pub hessian: HessianBlock<'a>,
 }
 
-impl Split for GradientRows<'_> {
-    fn rows(&self) -> usize {
-        self.stresses.len()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (stresses, stresses_rest) = self.stresses.split_at_mut(at);
-        let (control, control_rest) = self.control.split_at_mut(at.min(self.control.len()));
-        let (self_force, self_force_rest) = self.self_force.split_at_mut(at);
-        let (hessian, hessian_rest) = self.hessian.split(at);
-        (
-            Self { stresses, control, self_force, hessian },
-            Self {
-                stresses: stresses_rest,
-                control: control_rest,
-                self_force: self_force_rest,
-                hessian: hessian_rest,
-            },
-        )
-    }
-}
+split_by_rows!(GradientRows { stresses, control, self_force, hessian });
 
 /// The pass over one body.
 pub(super) struct GradientPass<'a> {

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use super::super::bonds::Bonds;
 use super::super::rows::Site;
 use super::vidal_2007::VidalRows;
-use crate::parallel::Split;
+use crate::parallel::split_by_rows;
 use crate::solids::{FoldedRows, HessianDifference, HessianForm};
 use crate::symmetry::Ghosts;
 
@@ -115,29 +115,7 @@ pub(in crate::formulations) struct HessianBlock<'a> {
     vidal: Option<&'a VidalRows>,
 }
 
-impl Split for HessianBlock<'_> {
-    fn rows(&self) -> usize {
-        self.gradient.len().max(self.stress.len())
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let Self { eta, gradient, stiffness, stress, fitted, vidal } = self;
-        let (gradient, gradient_rest) = gradient.split_at_mut(at.min(gradient.len()));
-        let (stiffness, stiffness_rest) = stiffness.split_at_mut(at.min(stiffness.len()));
-        let (stress, stress_rest) = stress.split_at_mut(at.min(stress.len()));
-        (
-            Self { eta, gradient, stiffness, stress, fitted, vidal },
-            Self {
-                eta,
-                gradient: gradient_rest,
-                stiffness: stiffness_rest,
-                stress: stress_rest,
-                fitted,
-                vidal,
-            },
-        )
-    }
-}
+split_by_rows!(HessianBlock { gradient, stiffness, stress } and { eta, fitted, vidal });
 
 impl HessianBlock<'_> {
     /// Takes the gradients of the displacements since the reference, Q - I, of the block that begins at row `first`; the form of the paper adds its difference to them.
