@@ -12,7 +12,7 @@ use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::split_rigid;
 use crate::parallel::{Picked, sum_over_blocks};
-use crate::plugin::{Selection, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody};
 use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Mass, Position, Removed, Velocity};
@@ -56,6 +56,7 @@ pub(super) fn prescribe(
     sim.prescribe(&selection, field.axes(), name)?;
     let motion = Motion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
     let motion = Arc::new(motion);
+    start_walls(&motion, sim);
     let phases = phases_of(&selection, sim);
     let label = name.to_lowercase();
     let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
@@ -81,6 +82,31 @@ pub(super) fn prescribe(
     Ok(())
 }
 
+/// Gives walls their velocity before the first force is made: friction with a wall that seems to be at rest would kick a fluid that moves with it.
+fn start_walls(motion: &Arc<Motion>, sim: &mut SimBuilder<'_>) {
+    let is_wall = |part: &&Part| sim.body(part.body).kind == BodyKind::Boundary;
+    let walls: Vec<Part> = motion.parts.iter().filter(is_wall).cloned().collect();
+    if walls.is_empty() {
+        return;
+    }
+    let motion = Arc::clone(motion);
+    sim.add_setup(move |setup| {
+        let axes = motion.field.axes();
+        for part in &walls {
+            let (view, _) = setup.world.body_view(part.body);
+            let mut velocity = view.write::<Velocity>().map_err(|error| SetupError::internal(&error))?;
+            for (&row, &point) in part.rows.iter().zip(&part.points) {
+                let value = motion.velocity_at_start(point);
+                // What is no number is an error in the first step.
+                for axis in (0..3).filter(|&axis| axes[axis] && value.is_finite()) {
+                    velocity[row as usize].0[axis] = value[axis];
+                }
+            }
+        }
+        Ok(())
+    });
+}
+
 impl Drive for Motion {
     fn velocity(
         &self,
@@ -104,6 +130,17 @@ impl Drive for Motion {
 }
 
 impl Motion {
+    /// Velocity of a particle at the start, m/s.
+    fn velocity_at_start(&self, point: DVec3) -> DVec3 {
+        match self.kind {
+            Kind::Velocity => self.field.at(point, 0.0),
+            Kind::Displacement => {
+                let after = self.least_difference;
+                (self.field.at(point, after) - self.field.at(point, 0.0)) / after
+            }
+        }
+    }
+
     /// Two times, s, whose difference gives the velocity at the end of the step.
     fn around_end(&self, clock: &Clock) -> (f64, f64) {
         let half = if clock.dt > 0.0 { 0.5 * clock.dt } else { self.least_difference };

@@ -113,7 +113,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
-        checks::flow_is_slow(&cloud, setup.world)?;
+        checks::flow_is_slow(&mut cloud, setup.world)?;
         advice::sinking(&cloud, &walls, &contacts, gravity, setup);
         setup.resources.insert(cloud);
         Ok(())

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group};
+use super::mach::relative_speed;
 use crate::linalg::{Eigen, Sym3};
 use crate::neighbors::{Cloud, NeighborList, Periodic};
 use crate::notation::{number, place, quantity};
@@ -142,13 +143,13 @@ pub(super) fn wall_is_thick(
     Err(fault(body, "shape", message, &help))
 }
 
-/// An error where a fluid starts faster than its sound.
-pub(super) fn flow_is_slow(cloud: &FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
+/// An error where a fluid starts faster than its sound, against what bounds it.
+pub(super) fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
+    cloud.pack(world).map_err(|error| SetupError::internal(&error))?;
     for group in &cloud.groups {
         let Some(state) = group.fluid() else { break };
-        let view = world.phase(group.phase);
-        let velocity = view.read::<crate::world::Velocity>().map_err(|error| SetupError::internal(&error))?;
-        let fastest = velocity[group.rows.clone()].iter().map(|v| v.0.length()).fold(0.0, f64::max);
+        let speeds = cloud.records[group.cloud.clone()].iter().map(|record| record.velocity().length());
+        let fastest = relative_speed(speeds.fold(0.0, f64::max), group, &cloud.groups, &cloud.records);
         if fastest >= state.sound_speed {
             let body = world.body(group.body);
             let message = format!(

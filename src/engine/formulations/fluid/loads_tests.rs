@@ -6,7 +6,7 @@ use super::FlowCloud;
 use super::tests::{column, simulation};
 use crate::kernels::{Kernel, KernelName};
 use crate::simulation::Simulation;
-use crate::world::{Density, Mass, Position, Pressure};
+use crate::world::{Density, Force, Mass, Position, Pressure};
 
 /// A tank with water that is 0.2 m high, with what acts on it.
 fn tank(gravity: &str, wall: &str, conditions: &str) -> Simulation {
@@ -85,5 +85,28 @@ fn walls_feel_a_load_that_varies_in_place() {
         }
         let wanted = if total > 1e-10 { sum / total } else { 0.0 };
         assert!((found.0 - wanted).abs() < 1e-9 * 2000.0, "{} {wanted}", found.0);
+    }
+}
+
+#[test]
+fn a_wall_has_its_velocity_before_the_first_force() {
+    let motions = [
+        r#"Velocity(on: Select(body: "tank"), value: ("1.0 - 2*t", 0.0))"#,
+        r#"Displacement(on: Select(body: "tank"), value: ("t - t^2", 0.0))"#,
+    ];
+    for motion in motions {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: 0.5, viscosity: 10.0)}},
+                bodies: [
+                    (name: "oil", material: "oil", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid(pressure: 0.0)),
+                    (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: No),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.26)), Box(min: (0, 0), max: (0.4, 0.2)))),
+                ],
+                conditions: [InitialVelocity(on: Select(body: "oil"), value: (1.0, 0.0)), {motion}], time: (end: 1.0))"#
+        ));
+        // Faster than its sound, but not against the tank; the friction of a wall at rest would be mu v = 10 N on each particle.
+        sim.start().expect("a start");
+        let viscous = column::<Force>(&sim, 0).iter().map(|force| force.0.length()).fold(0.0, f64::max);
+        assert!(viscous < 1e-4 * 10.0, "{motion}: {viscous}");
     }
 }

@@ -27,6 +27,7 @@ mod fields;
 mod filling;
 mod force;
 mod formulation;
+mod friction;
 mod intrusion;
 mod kernel;
 mod late_impulse;

@@ -67,6 +67,45 @@ fn the_warning_of_a_fast_flow_names_its_largest_mach_number_and_sound_is_the_end
 }
 
 #[test]
+fn the_mach_number_of_a_tank_that_moves_as_a_whole_is_that_of_the_flow_in_it() {
+    let scene = |walls: f64, sound: &str| {
+        let moves = format!(
+            r#"conditions: [InitialVelocity(on: Select(body: "water"), value: (15.0, 0.0))], time: (end: 0.02)"#
+        );
+        tank("", "", &moves)
+            .replace("formulation: Wall()", &format!("velocity: ({walls:?}, 0.0), formulation: Wall()"))
+            .replace(", sound_speed: 20.0", sound)
+    };
+    let mut together = simulation(&scene(15.0, ", sound_speed: 20.0"));
+    together.run(|_| true).expect("a run");
+    assert!(warning(&together, "Mach").is_none(), "{:?}", together.warnings());
+    simulation(&scene(15.0, ", sound_speed: 12.0")).run(|_| true).expect("slower than its sound in the tank");
+    let mut apart = simulation(&scene(0.0, ", sound_speed: 20.0"));
+    apart.run(|sim| sim.clock().step < 3).expect("a run");
+    assert!(warning(&apart, "Mach number of 0.7").is_some(), "{:?}", apart.warnings());
+}
+
+#[test]
+fn a_speed_of_sound_is_estimated_against_what_bounds_the_flow() {
+    let sound = |water: f64, walls: f64| {
+        let scene = tank("", "", "time: (end: 1.0)").replace(", sound_speed: 20.0", "");
+        let scene = scene
+            .replace("formulation: Fluid()", &format!("velocity: ({water:?}, 0.0), formulation: Fluid()"));
+        let sim = simulation(
+            &scene
+                .replace("formulation: Wall()", &format!("velocity: ({walls:?}, 0.0), formulation: Wall()")),
+        );
+        let cloud = sim.resources().get::<super::FlowCloud>();
+        cloud.groups[0].fluid().map(|state| state.sound_speed).expect("a fluid")
+    };
+    // A fall through the height between the lowest and the highest row, 0.18 m, ends with 1.88 m/s.
+    let fall = 10.0 * (2.0_f64 * 9.81 * 0.18).sqrt();
+    assert!((sound(15.0, 15.0) - fall).abs() < 1e-9 * fall);
+    assert!((sound(15.0, 12.0) - 30.0).abs() < 1e-9);
+    assert!((sound(15.0, 0.0) - 150.0).abs() < 1e-9);
+}
+
+#[test]
 fn a_particle_inside_of_a_wall_is_named_with_place_and_time() {
     let more = r#"conditions: [Velocity(on: Select(body: "water", nearest: (0.31, 0.01)), value: (0.0, "-0.4"))], time: (end: 0.1)"#;
     let mut sim = simulation(&tank("", "", more));
@@ -151,6 +190,38 @@ fn rows_of_a_viscous_flow_that_break_up_are_warned_of() {
     let text = channel(relaxed, 0.02).expect("a warning");
     assert!(text.contains("particle_shifting()"), "{text}");
     assert_eq!(channel("Square", 0.1), None);
+}
+
+/// A disc, four particles in radius, that sinks in oil, with what the run says of the oil until 5 s.
+fn disc(pressure: &str, end: f64) -> Vec<String> {
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, gravity: (0.0, -0.1),
+            materials: {{"oil": Fluid(density: 1000.0, sound_speed: 6.0, viscosity: 10.0), "steel": NeoHookean(density: 4500.0, young: 1e7, poisson: 0.3)}},
+            bodies: [
+                (name: "oil", material: "oil", shape: Difference(Box(min: (0, 0), max: (0.4, 0.6)), Sphere(center: (0.2, 0.4), radius: 0.08)),
+                 spacing: 0.02, formulation: Fluid({pressure})),
+                (name: "disc", material: "steel", shape: Sphere(center: (0.2, 0.4), radius: 0.08), spacing: 0.02, formulation: Rigid()),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: No, suction: true),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.66)), Box(min: (0, 0), max: (0.4, 0.6)))),
+            ],
+            time: (end: {end}))"#
+    ));
+    sim.run(|_| true).expect("a run");
+    sim.warnings().iter().filter(|warning| warning.contains("particles of `oil`")).cloned().collect()
+}
+
+#[test]
+fn particles_that_become_uneven_beside_a_small_body_are_warned_of() {
+    // The root mean square over all of them never exceeds half of what is worth a warning.
+    let warnings = disc("", 5.0);
+    assert!(warnings.iter().any(|warning| warning.contains("have become uneven")), "{warnings:?}");
+}
+
+#[test]
+fn a_pressure_that_makes_a_solid_of_particles_in_order_is_warned_of() {
+    // 1000 Pa more than at rest slow the disc down from 12 to 2 mm/s; the particles are as even as can be.
+    let warnings = disc("pressure: \"1000.0 + 100.0*(0.6 - y)\"", 1.5);
+    assert!(warnings.len() == 1 && warnings[0].contains("resist as a solid does"), "{warnings:?}");
 }
 
 #[test]

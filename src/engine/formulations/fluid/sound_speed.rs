@@ -3,14 +3,14 @@
 use glam::DVec3;
 
 use crate::materials::Law;
-use crate::plugin::BodyPlan;
+use crate::plugin::{BodyKind, BodyPlan};
 use crate::scene::{Problem, Scene};
 
 /// Speed of sound over the largest speed that the flow is expected to reach: density then changes by about 1 %.
 const RATIO: f64 = 10.0;
 
-/// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start and of a fall
-/// through the height of all fluid bodies.
+/// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start, against rest or against the one that
+/// bounds the flow and beside which the fastest is slowest, and of a fall through the height of all fluid bodies.
 ///
 /// # Errors
 /// Nothing moves, so that there is nothing to estimate from.
@@ -20,8 +20,12 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
     let heights = heights.flat_map(|body| body.sites.iter()).map(|site| -site.position.dot(gravity));
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
     let fall = if high > low { (2.0 * (high - low)).sqrt() } else { 0.0 };
-    let speed = |body: &BodyPlan| body.velocity.map_or(DVec3::ZERO, |v| v.0).length();
-    let fastest = bodies.iter().map(speed).fold(fall, f64::max);
+    let velocity = |body: &BodyPlan| body.velocity.map_or(DVec3::ZERO, |v| v.0);
+    let fastest = |frame: DVec3| bodies.iter().map(|body| velocity(body).distance(frame)).fold(0.0, f64::max);
+    let bounds = bodies.iter().filter(|body| body.kind != BodyKind::Fluid);
+    let at_rest = fastest(DVec3::ZERO);
+    let slowest = bounds.map(|body| fastest(velocity(body))).fold(at_rest, f64::min);
+    let fastest = if fall.max(slowest) > 0.0 { fall.max(slowest) } else { at_rest };
     let mut problems = Vec::new();
     for body in bodies {
         let Law::Fluid(law) = &mut body.material.law else { continue };

@@ -1,7 +1,7 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
 use super::cloud::{FlowCloud, FluidState, Group};
-use super::mach::Mach;
+use super::mach::{Mach, relative_speed};
 use super::record::Record;
 use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -69,7 +69,8 @@ impl Run for EquationOfState {
             let sum =
                 for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| run_hot(Apply { state, rows }));
             step.ledger.set(account, group.body, sum.energy);
-            let (speed, sound) = (sum.speed_squared.sqrt(), state.sound_speed);
+            let speed = relative_speed(sum.speed_squared.sqrt(), group, groups, records);
+            let sound = state.sound_speed;
             let name = &step.world.body(group.body).name;
             mach.look(speed, state, name, step)?;
             step.limits.propose(COURANT * h / (sound + speed), format_args!("sound speed of `{name}`"));

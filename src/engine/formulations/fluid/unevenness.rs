@@ -1,88 +1,102 @@
-//! Rows and lattices that have broken up: friction between uneven particles is too large.
+//! Rows and lattices that have broken up, and lattices that do not: friction between uneven particles is too large, and particles in order yield like a solid.
 //!
-//! `h |sum_j V_j w_ij x_ij|` over all neighbours is zero where particles are even. In channels, cavities and vortices at Reynolds numbers of 50 to 1000 its root mean square is 0.042
-//! to 0.054 once their rows have broken up, and then a channel has lost a tenth of its flux; with `particle_shifting` it is 0.013 to 0.015, and in flows that stay in rows below 0.005.
+//! `m_i = sum_j V_j w_ij x_ij` over all neighbours is zero where particles are even. Two means of it are looked at, and in flows in which friction has taken more than what moves, also with the power
+//! of friction as weights, so that what goes on beside a small body is not lost in a large tank:
+//!
+//! - The root mean square of h |m_i|. In channels, cavities and vortices at Reynolds numbers of 50 to 1000 it is 0.042 to 0.054 once their rows have broken up, and then a channel has lost a tenth of
+//!   its flux; with `particle_shifting` it is 0.013 to 0.015, and in flows that stay in rows below 0.005.
+//! - The mean of h |p_i m_i| over the stress of friction `sqrt(mu P_i)`, with P_i the power per volume. Particles in a lattice under pressure bear shear as a solid does: what has left its place in the
+//!   lattice is pushed back. A disc that sinks between walls, five particles in radius, is too slow by about a third of this mean.
 
 use super::cloud::FlowCloud;
 use super::density::DensityShift;
-use super::near::RowPass;
-use super::surroundings::smallest_eigenvalue;
-use crate::correction::FourMoments;
-use crate::parallel::{Arithmetic, Vector};
+use super::friction::{Friction, FrictionOf};
 use crate::schedule::Step;
 
-/// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
-const INSIDE: f64 = 0.75;
 /// Share of the particles that have to be inside: a flow with a free surface is left alone.
 const CONFINED: f64 = 0.95;
 /// Root mean square of the first moment times h that is worth a warning.
 const UNEVEN: f64 = 0.03;
+/// Stress of order over that of friction that is worth a warning.
+const STIFF: f64 = 0.5;
 
 /// Watches the particles of viscous flows without a free surface.
 #[derive(Debug, Default)]
 pub(super) struct Unevenness {
-    /// Groups that the user has been warned of.
-    pub told: Vec<bool>,
+    /// Whether the user has been warned of the unevenness and of the order of each group.
+    pub told: Vec<[bool; 2]>,
 }
 
 impl Unevenness {
-    /// Looks at all fluids that nothing shifts.
-    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
-        self.told.resize(cloud.groups.len(), false);
+    /// Looks at all fluids that friction slows down.
+    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<Friction>>, step: &mut Step<'_>) {
+        self.told.resize(cloud.groups.len(), [false; 2]);
         // Friction without spin is that of fluids whose viscosity hardly matters.
         if !cloud.viscosities.spin {
             return;
         }
+        let is_slow = step.ledger.total_named("viscosity") > step.ledger.total_named("kinetic");
         for (group, told) in cloud.groups.iter().zip(&mut self.told) {
-            let is_shifted = || step.world.phase(group.phase).has::<DensityShift>();
-            if group.fluid().is_none() || *told || is_shifted() {
+            // What shifts evens out.
+            told[0] |= step.world.phase(group.phase).has::<DensityShift>();
+            if group.fluid().is_none() || *told == [true; 2] {
                 continue;
             }
             scratch.clear();
             scratch.resize(group.cloud.len(), None);
-            cloud.for_each_row(group.cloud.start, scratch, &FirstMoments(cloud));
-            let Some(mean) = root_mean_square(scratch).map(|mean| mean * cloud.kernel.smoothing_length())
-            else {
-                continue;
-            };
-            if mean <= UNEVEN {
-                continue;
+            cloud.for_each_row(group.cloud.start, scratch, &FrictionOf { cloud, group });
+            let Some(Means { plain, weighted, order }) = means(scratch) else { continue };
+            let uneven = if is_slow { plain.max(weighted) } else { plain };
+            let name = &step.world.body(group.body).name;
+            let time = step.clock.time;
+            if uneven > UNEVEN && !told[0] {
+                told[0] = true;
+                step.warnings.push(uneven_text(name, time, uneven));
             }
-            *told = true;
-            step.warnings.push(format!(
-                "the particles of `{}` have become uneven by {:.6e} s (first moment times h {mean:.3}): friction between them is too large, a channel loses a tenth of its \
-                 flux; give it `plugins: [density_diffusion(), particle_shifting()]`, or start it with a pressure of some rho v^2",
-                step.world.body(group.body).name,
-                step.clock.time
-            ));
+            if order > STIFF && is_slow && !told[1] {
+                told[1] = true;
+                step.warnings.push(stiff_text(name, time, order));
+            }
         }
     }
 }
 
-/// Root mean square of the first moments, 1/m; none for a flow with a free surface.
-fn root_mean_square(squares: &[Option<f64>]) -> Option<f64> {
-    let inside = squares.iter().flatten().count() as f64;
-    let mean = squares.iter().flatten().sum::<f64>() / inside;
-    (inside > CONFINED * squares.len() as f64).then(|| mean.sqrt())
+fn uneven_text(name: &str, time: f64, mean: f64) -> String {
+    format!(
+        "the particles of `{name}` have become uneven by {time:.6e} s (first moment times h {mean:.3}): friction between them is too large, a channel loses a tenth of its \
+         flux; give it `plugins: [density_diffusion(), particle_shifting()]`, or start it with a pressure of some rho v^2"
+    )
 }
 
-/// The square of the first moment of a particle, 1/m2; none near a surface.
-struct FirstMoments<'a>(&'a FlowCloud);
+fn stiff_text(name: &str, time: f64, ratio: f64) -> String {
+    format!(
+        "the particles of `{name}` resist as a solid does by {time:.6e} s: where they are sheared, pressure times unevenness is {ratio:.2} of the stress of friction, and a body \
+         that they flow around is too slow by a third of that; take a smaller constant in `pressure`, `plugins: [density_diffusion(), particle_shifting()]`, or a wider `support`"
+    )
+}
 
-impl RowPass for FirstMoments<'_> {
-    type Output = Option<f64>;
+/// Means over the particles inside of a fluid.
+struct Means {
+    /// Root mean square of h |m_i|.
+    plain: f64,
+    /// The same with the power of friction as weights.
+    weighted: f64,
+    /// Mean stress of order over that of friction, with the same weights.
+    order: f64,
+}
 
-    #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Option<f64> {
-        let cloud = self.0;
-        let (mut moment, mut first) = (FourMoments::new(a), Vector::zero(a));
-        for near in cloud.fours(a, i, &cloud.everything()) {
-            let weight = near.volume * near.weight;
-            moment.add(weight, near.x_ij);
-            first = near.x_ij.mul_add(weight, first);
-        }
-        let is_inside = cloud.records[i].volume() > 0.0
-            && smallest_eigenvalue(moment.sum().matrix(), A::AXES == 2) > INSIDE;
-        is_inside.then(|| first.sum().length_squared())
+/// The means; none for a flow with a free surface.
+fn means(rows: &[Option<Friction>]) -> Option<Means> {
+    let inside = || rows.iter().flatten();
+    let count = inside().count() as f64;
+    if count <= CONFINED * rows.len() as f64 {
+        return None;
     }
+    let plain = (inside().map(|row| row.moment.powi(2)).sum::<f64>() / count).sqrt();
+    let power: f64 = inside().map(|row| row.power).sum();
+    if power <= 0.0 {
+        return Some(Means { plain, weighted: 0.0, order: 0.0 });
+    }
+    let weighted = (inside().map(|row| row.power * row.moment.powi(2)).sum::<f64>() / power).sqrt();
+    Some(Means { plain, weighted, order: inside().map(|row| row.power * row.order).sum::<f64>() / power })
 }

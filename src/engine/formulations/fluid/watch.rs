@@ -2,6 +2,7 @@
 
 use super::cloud::FlowCloud;
 use super::filling::Filling;
+use super::friction::Friction;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
 use super::unevenness::Unevenness;
@@ -23,6 +24,7 @@ struct FlowWatch {
     end: f64,
     /// What the looks compute for each particle.
     scratch: Vec<Option<f64>>,
+    friction: Vec<Option<Friction>>,
 }
 
 /// Adds the system that looks.
@@ -35,6 +37,7 @@ pub(super) fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) 
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
         scratch: Vec::new(),
+        friction: Vec::new(),
     };
     sim.add_system(
         System::new(Stage::Record, "fluid_watch", watch)
@@ -56,7 +59,7 @@ impl Run for FlowWatch {
         }
         if is_frame {
             self.filling.look(&cloud, &mut self.scratch, step);
-            self.unevenness.look(&cloud, &mut self.scratch, step);
+            self.unevenness.look(&cloud, &mut self.friction, step);
         }
         Ok(())
     }

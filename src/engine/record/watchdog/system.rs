@@ -3,7 +3,7 @@
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
-use super::wrong_sign::{WrongSign, work_of_weight};
+use super::wrong_sign::WrongSign;
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
@@ -23,7 +23,6 @@ struct Watchdog {
     resolution: f64,
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
-    weight: f64,
     domain: Option<DomainCheck>,
     /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
     frames: Trigger,
@@ -37,8 +36,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         energy: EnergyGrowth::default(),
         resolution: resolution(sim),
         hourglass: HourglassShare::default(),
-        wrong_sign: WrongSign::default(),
-        weight: work_of_weight(sim),
+        wrong_sign: WrongSign::new(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
@@ -61,7 +59,7 @@ impl Run for Watchdog {
             if at_end || step.clock.time > START * self.end {
                 self.hourglass.warn(step);
             }
-            self.wrong_sign.warn(step, self.weight, at_end);
+            self.wrong_sign.warn(step, at_end);
         }
         Ok(())
     }

@@ -28,6 +28,10 @@ fn blocks_under(gravity: f64, more: &str) -> Simulation {
     {more}
 )"#
     );
+    simulation(text)
+}
+
+fn simulation(text: String) -> Simulation {
     let (scene, source) = parse(Source::new("blocks.ron", text)).unwrap_or_else(|e| panic!("{e}"));
     let registry = Registry::standard().with(|registry| {
         registry.condition::<Book>();
@@ -195,4 +199,29 @@ fn hourglass_energy_of_the_first_load_is_not_judged() {
     let mut sim = blocks(scene);
     sim.run(|sim| sim.clock().time < 0.01).unwrap();
     assert!(!sim.warnings().iter().any(|w| w.contains("hourglass energy")), "{:?}", sim.warnings());
+}
+
+#[test]
+fn what_walls_give_is_measured_by_the_weight_that_a_load_is() {
+    let tank = |energy: f64| {
+        let mut sim = simulation(format!(
+            r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02,
+                     formulation: Fluid(pressure: "9810*(0.2 - y)")),
+                    (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.4)), Box(min: (0, 0), max: (0.4, 1)))),
+                ],
+                conditions: [
+                    BodyForce(on: Select(body: "water"), value: (0.0, -9.81)),
+                    Book(account: "given", energy: {energy:?}, dissipated: true),
+                ],
+                time: (end: 0.1))"#
+        ));
+        sim.run(|_| true).unwrap();
+        sim.warnings().iter().any(|warning| warning.contains("`given` has given energy"))
+    };
+    // The weight of 80 kg along their height of 0.2 m is 157 J, the energy of compression 0.13 J.
+    assert!(!tank(-0.5));
+    assert!(tank(-20.0));
 }

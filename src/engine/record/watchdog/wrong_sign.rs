@@ -1,14 +1,16 @@
 //! Energy from what can only take it: friction, diffusion, shifting, walls.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::formulations::fluid::{FlowCloud, Group};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, Step};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.05;
-/// The same over the work that gravity could do on all bodies along their own heights: what is at rest has hardly any energy else.
+/// The same over the work that gravity and loads on fluids could do on all bodies along their own heights: what is at rest has hardly any energy else.
 const SHARE_OF_WEIGHT: f64 = 0.005;
 /// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of a run counts for all.
 const LOOKS: u32 = 5;
@@ -19,6 +21,8 @@ const GROWTH: f64 = 1.2;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WrongSign {
     accounts: Vec<Given>,
+    /// Largest work that gravity or a load could do, seen so far, J.
+    weight: f64,
 }
 
 /// What an account has given.
@@ -32,10 +36,17 @@ struct Given {
 }
 
 impl WrongSign {
-    /// Warns of every account that has given energy; the warning keeps up with the largest share. `weight` is the work of
-    /// [`work_of_weight`], J.
-    pub fn warn(&mut self, step: &mut Step<'_>, weight: f64, at_end: bool) {
-        let largest = step.ledger.largest().max(SHARE_OF_WEIGHT / SHARE * weight);
+    /// Over the work that gravity could do.
+    pub fn new(sim: &SimBuilder<'_>) -> Self {
+        Self { weight: work_of_weight(sim), accounts: Vec::new() }
+    }
+
+    /// Warns of every account that has given energy; the warning keeps up with the largest share.
+    pub fn warn(&mut self, step: &mut Step<'_>, at_end: bool) {
+        if let Some(cloud) = step.resources.try_get::<FlowCloud>() {
+            self.weight = self.weight.max(work_of_loads(&cloud));
+        }
+        let largest = step.ledger.largest().max(SHARE_OF_WEIGHT / SHARE * self.weight);
         let can_only_take = |account: &&Account| {
             // What has left the domain may have been below zero height.
             account.kind == AccountKind::Dissipated && account.name != REMOVED_ENERGY
@@ -69,7 +80,7 @@ impl WrongSign {
 }
 
 /// Work that gravity could do on all bodies along their own heights, J.
-pub(super) fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
+fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
     let gravity = sim.gravity();
     let of = |body: &BodyPlan| {
         let volume: f64 = body.sites.iter().map(|site| site.volume).sum();
@@ -78,6 +89,23 @@ pub(super) fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
     };
     let moved = sim.bodies().iter().filter(|body| body.kind != BodyKind::Boundary);
     moved.map(of).sum()
+}
+
+/// Work that the loads on fluids could do on them along their own heights, J: a `BodyForce` may be their gravity.
+fn work_of_loads(cloud: &FlowCloud) -> f64 {
+    let of = |group: &Group| {
+        let (Some(state), rows) = (group.fluid(), group.cloud.clone()) else { return 0.0 };
+        let (mut low, mut high, mut weight) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
+        for (i, record) in
+            rows.clone().zip(&cloud.records()[rows]).filter(|(_, record)| record.volume() > 0.0)
+        {
+            (low, high) = (low.min(record.position()), high.max(record.position()));
+            weight += state.density * record.volume() * cloud.load(i).abs();
+        }
+        let height = high - low;
+        if height.is_finite() { weight.dot(height) } else { 0.0 }
+    };
+    cloud.groups.iter().map(of).sum()
 }
 
 fn advice(account: &str) -> &'static str {
