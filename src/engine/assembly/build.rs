@@ -14,7 +14,9 @@ use super::plausibility;
 use super::spawn;
 use super::{clamps, supports};
 use crate::materials::{Law, Material};
-use crate::plugin::{BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
+use crate::plugin::{
+    BodyKind, BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder,
+};
 use crate::record::{OutputPlan, Recorder};
 use crate::rigid::Rigid;
 use crate::scene::{Body, Domain, Item, Place, Problem, Scene, SceneError, Source};
@@ -160,7 +162,11 @@ fn place_bodies<'r>(
         };
         let filled = match endless_tool(body, formulation.0.name, scene, folder) {
             Some(sites) => Ok(sites),
-            None => shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room),
+            None => {
+                let fill =
+                    if formulation.0.kind == BodyKind::Boundary { shapes::fill_wall } else { shapes::fill };
+                fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room)
+            }
         };
         let region = body.shape.region(scene.dimension, folder, "shape");
         let (sites, bounds) = match (filled, region) {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::cavity;
 use super::concentric::Rings;
 use super::moments::Moments;
 use super::region::{Aabb, Region};
@@ -116,6 +117,16 @@ impl<R: Region + ?Sized> Region for Difference<R> {
 
     fn frame(&self) -> Aabb {
         self.whole.frame()
+    }
+
+    fn wall_frame(&self, spacing: f64) -> Option<Aabb> {
+        let mut faces = [Vec::new(), Vec::new(), Vec::new()];
+        let is_box = self.hole.box_faces(&mut faces) && faces[0].len() == 2;
+        if is_box {
+            cavity::frame(&self.whole.frame(), &self.hole.bounds(), spacing, self.axes)
+        } else {
+            None
+        }
     }
 
     fn box_faces(&self, faces: &mut [Vec<f64>; 3]) -> bool {

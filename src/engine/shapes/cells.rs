@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::error::FillErrorKind;
-use super::region::Region;
+use super::region::{Aabb, Region};
 use super::tiling::{Block, Tiling};
 
 /// Part of the particles that may sit in walls of one layer: tips and edges of round and sharp bodies have some.
@@ -53,25 +53,26 @@ impl Packing {
     }
 }
 
-/// The lattice points of `packing` in `region`, near ones after each other.
+/// The lattice points of `packing` in `region` with cells that divide `frame`, near ones after each other.
 ///
 /// # Errors
 /// No point is inside, or the body is thinner than two particles: its frame is, or more than a tenth of the points are in walls of a
 /// single layer.
 pub(super) fn points(
     region: &dyn Region,
+    frame: &Aabb,
     packing: Packing,
     spacing: f64,
     axes: usize,
 ) -> Result<Vec<DVec3>, FillErrorKind> {
-    let (frame, bounds) = (region.frame(), region.bounds());
+    let bounds = region.bounds();
     let sides = ["x", "y", "z"].into_iter().zip(bounds.extent().to_array()).take(axes);
     for (direction, thickness) in sides.chain(region.walls()) {
         if (thickness / spacing).round() < 2.0 {
             return Err(FillErrorKind::Thin { direction, thickness, spacing });
         }
     }
-    let tiling = Tiling::new(&frame, &bounds, packing.cell(spacing, axes), axes);
+    let tiling = Tiling::new(frame, &bounds, packing.cell(spacing, axes), axes);
     let tolerance = region.tolerance();
     let leaf = if axes == 2 { 32 } else { 8 };
     let blocks = tiling.blocks(region, leaf, leaf);

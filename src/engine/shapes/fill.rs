@@ -11,6 +11,7 @@ use super::lattice::Lattice;
 use super::region::Region;
 use super::shape::Shape;
 use super::surface::Surface;
+use super::tiling::Tiling;
 use super::transform::turned;
 use super::{concentric, fitted, morton_order, points, quadrature, relaxed};
 use crate::space::Dimension;
@@ -33,6 +34,8 @@ struct Filling<'a> {
     dimension: Dimension,
     folder: &'a Path,
     limit: usize,
+    /// Whether cells end at the cavity of the shape.
+    is_wall: bool,
 }
 
 /// The particles that fill `shape`, in the order of a Morton curve.
@@ -53,13 +56,32 @@ pub fn fill(
     folder: &Path,
     limit: usize,
 ) -> Result<Vec<Site>, FillError> {
+    fill_with(shape, spacing, Filling { lattice, dimension, folder, limit, is_wall: false })
+}
+
+/// The same for the wall of a flow: where a box is cut out of the shape, cells end at it, and volumes are those of cells.
+///
+/// # Errors
+/// As [`fill`].
+pub fn fill_wall(
+    shape: &Shape,
+    lattice: Lattice,
+    spacing: f64,
+    dimension: Dimension,
+    folder: &Path,
+    limit: usize,
+) -> Result<Vec<Site>, FillError> {
+    fill_with(shape, spacing, Filling { lattice, dimension, folder, limit, is_wall: true })
+}
+
+fn fill_with(shape: &Shape, spacing: f64, filling: Filling<'_>) -> Result<Vec<Site>, FillError> {
     if !spacing.is_finite() {
         return Err(FillError::new("spacing", FillErrorKind::NotFinite(spacing)));
     }
     if spacing <= 0.0 {
         return Err(FillError::new("spacing", FillErrorKind::NotPositive(spacing)));
     }
-    let filling = Filling { lattice, dimension, folder, limit: limit.min(u32::MAX as usize) };
+    let filling = Filling { limit: filling.limit.min(u32::MAX as usize), ..filling };
     let sites = filling.sites(shape, spacing, "shape")?;
     let positions: Vec<DVec3> = sites.iter().map(|site| site.position).collect();
     // A turn or a shift of what is very far away may leave the range of numbers.
@@ -154,7 +176,14 @@ impl Filling<'_> {
             return concentric::sites(&rings, spacing).map_err(at);
         }
         let packing = if self.lattice == Lattice::Hexagonal { Packing::Hexagonal } else { Packing::Centered };
-        let positions = cells::points(region, packing, spacing, axes).map_err(at)?;
+        let cavity =
+            if self.is_wall && self.lattice == Lattice::Regular { region.wall_frame(spacing) } else { None };
+        let frame = cavity.unwrap_or_else(|| region.frame());
+        let positions = cells::points(region, &frame, packing, spacing, axes).map_err(at)?;
+        if cavity.is_some() {
+            let cell = Tiling::new(&frame, &frame, packing.cell(spacing, axes), axes).cell_volume();
+            return Ok(positions.into_iter().map(|position| Site { position, volume: cell }).collect());
+        }
         match self.lattice {
             Lattice::Relaxed { iterations: found, .. } | Lattice::BodyFitted { iterations: found }
                 if found > MAX_ITERATIONS =>

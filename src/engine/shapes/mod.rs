@@ -3,6 +3,7 @@
 mod block;
 mod boolean;
 mod build;
+mod cavity;
 mod cells;
 mod check;
 mod concentric;
@@ -33,7 +34,7 @@ mod voronoi;
 pub use concentric::Rings;
 pub use error::{FillError, FillErrorKind};
 pub use facets::{Facets, directed_area};
-pub use fill::{Site, fill};
+pub use fill::{Site, fill, fill_wall};
 pub use lattice::Lattice;
 pub use mesh::MeshFault;
 pub use moments::Moments;

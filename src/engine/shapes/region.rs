@@ -106,6 +106,11 @@ pub trait Region: Send + Sync {
         self.bounds()
     }
 
+    /// The box that the cells of a wall of this region divide evenly, if a box is cut out of it and [`Region::frame`] does not fit that.
+    fn wall_frame(&self, _spacing: f64) -> Option<Aabb> {
+        None
+    }
+
     /// Thicknesses that the bounding box does not show, with the name of their direction \[m\].
     fn walls(&self) -> Vec<(&'static str, f64)> {
         Vec::new()

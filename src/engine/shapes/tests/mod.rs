@@ -12,6 +12,7 @@ mod regular;
 mod relaxed;
 mod surfaces;
 mod text;
+mod walls;
 
 use std::path::Path;
 

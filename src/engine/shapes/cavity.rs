@@ -1,0 +1,33 @@
+//! The lattice of a wall: its cells end where the cavity that is cut out of it begins.
+//!
+//! A fluid in the cavity has its own lattice from there on. Cells that divide the outer box of the wall instead leave a gap of up to half a spacing at the cavity, or overlap the fluid; a gap of a
+//! sixteenth of a spacing makes the pressure on the floor of a tank 4 % too large, because a column of water that sinks by that much is compressed.
+
+use super::region::Aabb;
+
+/// Part of a cell by which the two lattices may differ.
+const SAME: f64 = 1e-6;
+
+/// The box that cells of a wall divide evenly: along each axis the cavity, where both of its ends are inside of the wall; from its end on in whole spacings \[m\], where one is; and the wall, where
+/// none is. Nothing, where cells that divide the wall end at the cavity anyway.
+pub(super) fn frame(wall: &Aabb, cavity: &Aabb, spacing: f64, axes: usize) -> Option<Aabb> {
+    let mut frame = *wall;
+    let mut fits = true;
+    for k in 0..axes {
+        let is_inside = |x: f64| x > wall.min[k] + SAME * spacing && x < wall.max[k] - SAME * spacing;
+        let whole = |length: f64| (length / spacing).round().max(1.0) * spacing;
+        let side = wall.max[k] - wall.min[k];
+        let cell = side / (side / spacing).round().max(1.0);
+        for x in [cavity.min[k], cavity.max[k]].into_iter().filter(|x| is_inside(*x)) {
+            let cells = (x - wall.min[k]) / cell;
+            fits &= (cells - cells.round()).abs() < SAME;
+        }
+        (frame.min[k], frame.max[k]) = match (is_inside(cavity.min[k]), is_inside(cavity.max[k])) {
+            (true, true) => (cavity.min[k], cavity.max[k]),
+            (true, false) => (cavity.min[k], cavity.min[k] + whole(wall.max[k] - cavity.min[k])),
+            (false, true) => (cavity.max[k] - whole(cavity.max[k] - wall.min[k]), cavity.max[k]),
+            (false, false) => (wall.min[k], wall.max[k]),
+        };
+    }
+    (!fits).then_some(frame)
+}

@@ -1,0 +1,48 @@
+//! Lattices of walls: cells end at the cavity.
+
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::shape;
+use crate::scene::Dimension;
+use crate::shapes::{Lattice, Site, fill, fill_wall};
+
+fn wall(text: &str, dimension: Dimension) -> Vec<Site> {
+    fill_wall(&shape(text), Lattice::Regular, 0.02, dimension, Path::new("."), 1_000_000).unwrap()
+}
+
+/// Distance of the particle that is nearest to a place of the surface, along an axis.
+fn first(sites: &[Site], at: DVec3, axis: usize) -> f64 {
+    let beside = |site: &&Site| {
+        let x = site.position - at;
+        (x - x[axis] * DVec3::AXES[axis]).length() < 0.03
+    };
+    sites.iter().filter(beside).map(|site| (site.position - at)[axis].abs()).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn cells_end_at_the_cavity_whatever_is_outside() {
+    for outside in ["(-0.08, -0.08), max: (0.68, 0.55)", "(-0.0707, -0.09), max: (0.671, 0.561)"] {
+        let text = format!("Difference(Box(min: {outside}), Box(min: (0, 0), max: (0.6, 1)))");
+        let sites = wall(&text, Dimension::Two);
+        for (at, axis) in [((0.3, 0.0), 1), ((0.0, 0.2), 0), ((0.6, 0.2), 0)] {
+            let distance = first(&sites, DVec3::new(at.0, at.1, 0.0), axis);
+            assert!((distance - 0.01).abs() < 1e-9, "{outside} {at:?}: {distance}");
+        }
+        assert!(sites.iter().all(|site| (site.volume - 4e-4).abs() < 1e-12));
+    }
+    let text = "Rotate(shape: Difference(Box(min: (-0.07, -0.07, -0.07), max: (0.37, 0.4, 0.27)), Box(min: (0, 0, 0), max: (0.3, 0.3, 0.2))), axis: (0, 0, 1), angle_degrees: 90)";
+    let sites = wall(text, Dimension::Three);
+    // The floor y = 0 of the cavity is the plane x = 0 after the turn.
+    let distance = first(&sites, DVec3::new(0.0, 0.15, 0.1), 0);
+    assert!((distance - 0.01).abs() < 1e-9, "{distance}");
+}
+
+#[test]
+fn a_cavity_that_fits_the_outer_box_changes_nothing() {
+    let text = "Difference(Box(min: (-0.06, -0.06), max: (0.66, 0.6)), Box(min: (0, 0), max: (0.6, 1)))";
+    let as_any_shape =
+        fill(&shape(text), Lattice::Regular, 0.02, Dimension::Two, Path::new("."), 1_000_000).unwrap();
+    assert_eq!(wall(text, Dimension::Two), as_any_shape);
+}
