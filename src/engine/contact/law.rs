@@ -58,12 +58,14 @@ pub struct Spring {
 
 impl Spring {
     /// The spring along a way of which `scale` times as much is overlap.
+    #[inline]
     pub(super) fn along(self, scale: f64) -> Self {
         let Self { force, stiffness, energy } = self;
         Self { force: scale * force, stiffness: scale * scale * stiffness, energy }
     }
 
     /// The spring of so many times the area.
+    #[inline]
     pub(super) fn over(self, area: f64) -> Self {
         let Self { force, stiffness, energy } = self;
         Self { force: area * force, stiffness: area * stiffness, energy: area * energy }

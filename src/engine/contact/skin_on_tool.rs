@@ -158,9 +158,11 @@ impl SkinOnTool {
             let mut extremes = Extremes::default();
             for ((&facet, reached), on_facet) in facets.iter().zip(reached).zip(on_facets) {
                 let corners = patch.corners(facet);
-                let seen = patch.numbers(facet).map(|number| &seen[number]);
-                *reached = if corners.iter().all(|corner| corner.is_there) {
-                    Reached::of(corners.map(|corner| corner.place), seen)
+                let [a, b, c] = patch.numbers(facet);
+                let seen = [&seen[a], &seen[b], &seen[c]];
+                let [a, b, c] = corners;
+                *reached = if a.is_there && b.is_there && c.is_there {
+                    Reached::of([a.place, b.place, c.place], seen)
                 } else {
                     Reached::No(f64::INFINITY)
                 };

@@ -54,6 +54,7 @@ pub(super) enum Reached {
 
 impl Reached {
     /// Of a facet whose vertices are at these places, m, and see that.
+    #[inline]
     pub fn of(places: [DVec3; 3], seen: [&Seen; 3]) -> Self {
         let [p, q, r] = places;
         let size = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p)).sqrt();
@@ -90,6 +91,7 @@ pub(super) struct Pressed {
 
 impl Pressed {
     /// Adds a share of a spring along `normal` that stands for an area, m2 (m).
+    #[inline]
     pub fn add(&mut self, share: f64, spring: &Spring, normal: DVec3, area: f64, overlap: f64) {
         let part = spring.over(share);
         self.join(&Self {
@@ -101,6 +103,7 @@ impl Pressed {
     }
 
     /// Adds what presses by another facet.
+    #[inline]
     pub fn join(&mut self, other: &Self) {
         self.force += other.force;
         self.spring.force += other.spring.force;

@@ -89,11 +89,13 @@ impl RigidBody {
     }
 
     /// Where a point of space is in the reference configuration.
+    #[inline]
     pub fn reference(&self, place: DVec3) -> DVec3 {
         self.reference_center + self.state.rotation.inverse() * (place - self.state.center)
     }
 
     /// Velocity of the point of the body that is at `place`, m/s.
+    #[inline]
     pub fn velocity_at(&self, place: DVec3) -> DVec3 {
         self.state.velocity + self.state.angular_velocity.cross(place - self.state.center)
     }
@@ -104,6 +106,7 @@ impl RigidBody {
     }
 
     /// How much a force at `place` along `direction` speeds up that point along it, 1/kg.
+    #[inline]
     pub fn inverse_mass_at(&self, place: DVec3, direction: DVec3) -> f64 {
         let lever = (place - self.state.center).cross(direction);
         let spin = self.constraint.angular_response(&self.inertia, self.state.rotation, lever);

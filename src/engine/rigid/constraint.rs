@@ -70,6 +70,7 @@ pub(super) struct Constraint {
 
 impl Constraint {
     /// One along the axes along which the centre moves freely, else zero.
+    #[inline]
     pub fn free_axes(&self) -> DVec3 {
         let driven = |axis: usize| self.drives.iter().any(|drive| drive.axes[axis]);
         DVec3::from_array([0, 1, 2].map(|axis| if driven(axis) { 0.0 } else { 1.0 }))

@@ -65,11 +65,13 @@ pub(super) struct Facing {
 
 impl Facing {
     /// The nearer one of two faces of which a point inside is behind both.
+    #[inline]
     pub fn outermost(self, other: Self) -> Self {
         if other.distance > self.distance { other } else { self }
     }
 
     /// The foot of `point` on this face.
+    #[inline]
     pub fn foot(self, point: DVec3) -> SurfacePoint {
         SurfacePoint {
             point: point - self.distance * self.normal,
@@ -81,6 +83,7 @@ impl Facing {
 
 /// The nearest point of what lies behind all `faces`, whose normals are at right angles to each other: inside that of the nearest face, outside
 /// that of the edge or corner of all faces that the point is in front of.
+#[inline]
 pub(super) fn behind_all(point: DVec3, faces: &[Facing]) -> SurfacePoint {
     let in_front = faces.iter().filter(|face| face.distance > 0.0);
     let out: DVec3 = in_front.map(|face| face.distance * face.normal).sum();

@@ -209,23 +209,29 @@ impl Patch {
     }
 
     /// The number in the patch of a vertex of the skin that belongs to it.
+    #[inline]
     pub fn number(&self, vertex: u32) -> u32 {
         self.numbers[vertex as usize]
     }
 
     /// The numbers of the vertices of a facet among those of the patch; segments have two, and the last one twice.
+    #[inline]
     pub fn numbers(&self, facet: u32) -> [usize; 3] {
-        self.skin.facets.corners[facet as usize].map(|vertex| self.numbers[vertex as usize] as usize)
+        let [a, b, c] = self.skin.facets.corners[facet as usize];
+        [self.number(a) as usize, self.number(b) as usize, self.number(c) as usize]
     }
 
     /// A vertex of the skin that belongs to the patch.
+    #[inline]
     pub fn vertex(&self, vertex: u32) -> &Vertex {
         &self.now[self.numbers[vertex as usize] as usize]
     }
 
     /// The vertices of a facet of the patch; segments have two, and the last one twice.
+    #[inline]
     pub fn corners(&self, facet: u32) -> [&Vertex; 3] {
-        self.skin.facets.corners[facet as usize].map(|vertex| self.vertex(vertex))
+        let [a, b, c] = self.skin.facets.corners[facet as usize];
+        [self.vertex(a), self.vertex(b), self.vertex(c)]
     }
 
     /// Pushes the point of a facet with these shares of its vertices by a force, N, and a couple, N m, f (x) A of the reference configuration.

@@ -91,17 +91,20 @@ impl Skin {
     }
 
     /// The facets that meet at a vertex.
+    #[inline]
     pub fn facets_at(&self, vertex: u32) -> &[u32] {
         let k = vertex as usize;
         &self.facets_at[self.facet_starts[k] as usize..self.facet_starts[k + 1] as usize]
     }
 
+    #[inline]
     pub(super) fn carriers(&self, vertex: u32) -> &[Carrier] {
         let k = vertex as usize;
         &self.carriers[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
     /// What a carrier is an image by.
+    #[inline]
     pub(super) fn map(&self, carrier: &Carrier) -> &Map {
         &self.maps[carrier.map as usize]
     }
@@ -112,6 +115,7 @@ impl Skin {
     }
 
     /// The vertices of a facet: two or three.
+    #[inline]
     pub fn corners_of(&self, facet: u32) -> &[u32] {
         &self.facets.corners[facet as usize][..self.facets.axes]
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Facets, contour, refine, round};
+use super::{Facets, coarse, contour, refine, round};
 use crate::shapes::check::Check;
 use crate::shapes::concentric::Rings;
 use crate::shapes::mesh;
@@ -35,7 +35,7 @@ fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
         Shape::Cylinder { from, to, radius } => round::cylinder(from.0, to.0, 0.0, *radius, length),
         Shape::Tube { from, to, inner, outer } => round::cylinder(from.0, to.0, *inner, *outer, length),
         Shape::Extrusion { polygon, from, to } => {
-            refine::refined(refine::prism(polygon, *from, *to)?, 1.2 * length)
+            triangles(refine::prism(polygon, *from, *to)?, 1.2 * length)
         }
         Shape::Mesh { file, scale } => {
             let (points, corners) = mesh::load(folder, file, *scale).ok()?.into_triangles();
@@ -44,7 +44,7 @@ fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
             if mesh.corners.len() as f64 > FINEST * area / (length * length) {
                 return None;
             }
-            refine::refined(mesh, 1.2 * length)
+            triangles(mesh, 1.2 * length)
         }
         Shape::Union(shapes) => {
             shape.surface(Dimension::Three, folder, "shape").ok()?;
@@ -81,6 +81,11 @@ fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
         }
         _ => return None,
     })
+}
+
+/// The triangles of a mesh in parts that are no longer than that, m, and not much smaller where it is flat.
+fn triangles(mesh: Facets, longest: f64) -> Facets {
+    coarse::coarsened(refine::refined(mesh, longest), longest)
 }
 
 fn shell(center: DVec3, inner: f64, outer: f64, length: f64) -> Facets {

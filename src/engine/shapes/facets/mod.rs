@@ -1,5 +1,6 @@
 //! Surfaces in flat facets: segments in two dimensions, triangles in three, with outward normals, about as long as asked for.
 
+mod coarse;
 mod contour;
 mod cut;
 mod facet;

@@ -9,7 +9,7 @@ use crate::space::Dimension;
 
 fn facets(text: &str, dimension: Dimension, length: f64) -> Option<Facets> {
     let shape: Shape = ron::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
-    shape.facets(dimension, Path::new("."), length)
+    shape.facets(dimension, Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")), length)
 }
 
 /// Volume by the divergence theorem, of x . n / axes over the facets.
@@ -165,4 +165,29 @@ fn contoured_facets_lie_on_the_faces_and_the_bore() {
     let exact_top = 1.0 - 0.04 * std::f64::consts::PI;
     assert!((bore / exact_bore - 1.0).abs() < 0.01, "{bore} {exact_bore}");
     assert!((top / exact_top - 1.0).abs() < 0.01, "{top} {exact_top}");
+}
+
+#[test]
+fn fans_of_long_triangles_leave_no_slivers() {
+    // A turned part, the ends of which are fans of 24 triangles about 12 mm long.
+    let mesh = facets("Mesh(file: \"assets/meshes/buffer.stl\", scale: 0.001)", Dimension::Three, 1e-3)
+        .expect("a surface");
+    assert!(is_closed(&mesh));
+    let coarse = facets("Mesh(file: \"assets/meshes/buffer.stl\", scale: 0.001)", Dimension::Three, 6e-3)
+        .expect("a surface");
+    assert!((volume(&mesh) / volume(&coarse) - 1.0).abs() < 1e-6);
+    let (mut area, mut at_end) = (0.0, 0);
+    for facet in 0..mesh.corners.len() {
+        let [a, b, c] = mesh.ends(facet);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        assert!(longest < 1.2001e-3, "{longest}");
+        let (normal, measure) = mesh.normal_and_measure(facet);
+        if normal.z > 0.999 && a.z > 0.0199 {
+            area += measure;
+            at_end += 1;
+        }
+    }
+    // A grid of squares in halves has two.
+    let each = f64::from(at_end) * 1e-6 / area;
+    assert!(at_end > 0 && each < 4.0, "{each} triangles for every square of the length");
 }
