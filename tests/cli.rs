@@ -263,6 +263,18 @@ fn everything_that_is_registered_is_listed_and_described() {
         }
     }
     assert_eq!(meshless(&folder, &["plugins", "hourglas"]).status.code(), Some(2));
+    // Fields, of materials and fluids too, each with what it is.
+    for expected in [
+        "plastic strain, the integral of sqrt(2/3 D_p : D_p) [-]",
+        "Vorticity of the flow [1/s]",
+        "Temperature [K]",
+    ] {
+        assert!(list.contains(expected), "`{expected}` is missing in\n{list}");
+    }
+    let fields = list.lines().skip_while(|line| line.trim() != "fields").skip(1);
+    for line in fields.take_while(|line| line.trim() != "expressions") {
+        assert!(line.split_whitespace().count() > 2, "`{}` is not described", line.trim());
+    }
 }
 
 #[test]

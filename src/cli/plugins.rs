@@ -68,9 +68,9 @@ fn language(registry: &Registry) -> Vec<(&'static str, Vec<(String, String)>)> {
     let variants = |name: &str| docs.iter().find(|docs| docs.name == name).map(|docs| docs.variants.clone());
     let mut sections: Vec<_> =
         LISTED.iter().map(|(heading, name)| (*heading, variants(name).unwrap_or_default())).collect();
-    let fields = meshless_engine::assembly::fields(registry).into_iter().map(|(name, unit)| {
-        let unit = if unit == "1" { "-" } else { unit };
-        (name, format!("[{unit}]"))
+    let fields = meshless_engine::assembly::fields(registry).into_iter().map(|field| {
+        let unit = if field.unit() == "1" { "-" } else { field.unit() };
+        (field.name().to_owned(), format!("{} [{unit}]", field.description()).trim().to_owned())
     });
     sections.push(("fields", fields.collect()));
     let names = expression_names().iter().map(|(name, meaning)| ((*name).to_owned(), (*meaning).to_owned()));

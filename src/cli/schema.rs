@@ -52,9 +52,10 @@ fn names(registry: &Registry) -> String {
         let _ = writeln!(text, "| `{name}` | {meaning} |");
     }
     text += "\n# Fields\n\nWhat probes, recordings and ParaView files can show, by body as far as its particles have it. `velocity.x` is a \
-        component of a vector, `stress.xy` one of a tensor. Plugins may add fields.\n\n| field | unit |\n|---|---|\n";
-    for (name, unit) in meshless_engine::assembly::fields(registry) {
-        let _ = writeln!(text, "| `{name}` | {} |", if unit == "1" { "-" } else { unit });
+        component of a vector, `stress.xy` one of a tensor. Plugins may add fields.\n\n| field | unit | meaning |\n|---|---|---|\n";
+    for field in meshless_engine::assembly::fields(registry) {
+        let unit = if field.unit() == "1" { "-" } else { field.unit() };
+        let _ = writeln!(text, "| `{}` | {unit} | {} |", field.name(), field.description());
     }
     text
 }

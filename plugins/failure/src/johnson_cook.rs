@@ -75,7 +75,7 @@ impl JohnsonCookFailure {
         let given = self.melt_temperature.is_some();
         Err(ParameterError::new(
             if given { "criterion.melt_temperature" } else { "criterion" },
-            "`criterion.d5` needs a melt temperature above the reference temperature",
+            "`criterion.d5` needs `criterion.melt_temperature` above `criterion.reference_temperature`",
             "temperatures are in kelvin; leave `d5` out where temperature plays no part",
         ))
     }

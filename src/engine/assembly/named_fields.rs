@@ -1,17 +1,25 @@
 //! The fields that scenes may name.
 
 use super::spawn::standard_columns;
-use crate::fields::named;
+use crate::fields::{Field, named};
 use crate::plugin::Registry;
-use crate::world::ColumnSet;
+use crate::world::{
+    ColumnSet, Damage, EquivalentStress, InternalEnergy, PlasticStrain, PlasticWork, Temperature, YieldStress,
+};
+use crate::{formulations, solids};
 
-/// Name and unit of the fields that probes and recordings may ask for, as far as the bodies have them; plugins may add more.
-pub fn fields(registry: &Registry) -> Vec<(String, &'static str)> {
+/// The fields that probes and recordings may ask for, as far as the bodies have them, by name; plugins may add more.
+pub fn fields(registry: &Registry) -> Vec<Field> {
     let mut columns = ColumnSet::default();
     standard_columns(&mut columns);
     registry.formulations().for_each(|entry| (entry.columns)(&mut columns));
+    // Those of materials that flow, heat and fail.
+    columns.add::<PlasticStrain>().add::<EquivalentStress>().add::<YieldStress>().add::<PlasticWork>();
+    columns.add::<InternalEnergy>().add::<Temperature>().add::<Damage>();
     let mut fields = named(&columns);
-    fields.sort();
-    fields.dedup();
+    fields.extend(solids::fields());
+    fields.extend(formulations::fluid::fields());
+    fields.sort_by(|one, other| one.name().cmp(other.name()));
+    fields.dedup_by(|one, other| one.name() == other.name());
     fields
 }

@@ -25,6 +25,7 @@ type Evaluate = dyn Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColu
 pub struct Field {
     name: String,
     unit: &'static str,
+    about: &'static str,
     components: &'static [&'static str],
     needs: Vec<&'static str>,
     kind: Option<BodyKind>,
@@ -63,7 +64,7 @@ impl Field {
         evaluate: impl Fn(&FieldInput<'_>, &mut Vec<f64>) -> Result<(), MissingColumn> + Send + Sync + 'static,
     ) -> Self {
         let evaluate = Box::new(evaluate);
-        Self { name: name.into(), unit, components, needs, kind: None, evaluate }
+        Self { name: name.into(), unit, about: "", components, needs, kind: None, evaluate }
     }
 
     /// The field that a column is.
@@ -82,7 +83,15 @@ impl Field {
             }
             Ok(())
         };
-        Self::with_input(column.name, column.unit, column.components, vec![column.name], evaluate)
+        let needs = vec![column.name];
+        Self::with_input(column.name, column.unit, column.components, needs, evaluate).about(column.about)
+    }
+
+    /// The same field with a line for lists that says what it is.
+    #[must_use]
+    pub fn about(mut self, text: &'static str) -> Self {
+        self.about = text;
+        self
     }
 
     /// The same field for bodies of one kind only.
@@ -100,6 +109,13 @@ impl Field {
     /// Unit, SI; `1` for a pure number.
     pub fn unit(&self) -> &'static str {
         self.unit
+    }
+
+    /// What it is, in the first sentence of its description; empty without one.
+    pub fn description(&self) -> &'static str {
+        let text = self.about.trim();
+        let end = [". ", "; "].iter().filter_map(|end| text.find(end)).min().unwrap_or(text.len());
+        text[..end].trim_end_matches('.')
     }
 
     /// Names of the components; `[""]` for a number.

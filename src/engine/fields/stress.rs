@@ -11,11 +11,14 @@ pub(super) fn fields() -> Vec<Field> {
     vec![
         Field::new::<(DeformationGradient, PiolaStress), DMat3>("stress", "Pa", |row| {
             cauchy(row).to_matrix()
-        }),
-        scalar("von_mises", |sigma| (1.5_f64).sqrt() * sigma.deviator().norm()),
-        scalar("pressure", |sigma| -sigma.trace() / 3.0),
-        scalar("max_principal_stress", |sigma| Eigen::new(sigma).values.z),
-        scalar("min_principal_stress", |sigma| Eigen::new(sigma).values.x),
+        })
+        .about("Cauchy stress, positive in tension"),
+        scalar("von_mises", |sigma| (1.5_f64).sqrt() * sigma.deviator().norm()).about("Von Mises stress"),
+        scalar("pressure", |sigma| -sigma.trace() / 3.0).about("Pressure, positive in compression"),
+        scalar("max_principal_stress", |sigma| Eigen::new(sigma).values.z)
+            .about("Largest principal Cauchy stress"),
+        scalar("min_principal_stress", |sigma| Eigen::new(sigma).values.x)
+            .about("Smallest principal Cauchy stress"),
     ]
 }
 

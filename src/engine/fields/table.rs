@@ -111,11 +111,11 @@ impl FieldTable {
     }
 }
 
-/// Name and unit of all fields that particles with these columns have.
-pub(crate) fn named(columns: &ColumnSet) -> Vec<(String, &'static str)> {
+/// All fields that particles with these columns have.
+pub(crate) fn named(columns: &ColumnSet) -> Vec<Field> {
     let derived = motion::fields().into_iter().chain(deformation::fields()).chain(stress::fields());
     let all = derived.chain(columns.iter().map(|column| Field::column(*column)));
-    all.map(|field| (field.name().to_owned(), field.unit())).collect()
+    all.collect()
 }
 
 fn component_index(base: &str, component: &str, all: &[&str]) -> Result<usize, Box<Problem>> {

@@ -12,11 +12,17 @@ use crate::world::{
 
 /// Adds the fields.
 pub(crate) fn add_fields(sim: &mut SimBuilder<'_>) {
+    fields().into_iter().for_each(|field| sim.add_field(field));
+}
+
+/// The fields.
+pub(crate) fn fields() -> [Field; 2] {
     let needs = vec![DeformationGradient::NAME, Position::NAME, ReferencePosition::NAME];
     let error = Field::with_input("hourglass_error", "1", &[""], needs, hourglass_error);
-    sim.add_field(error.only_for(BodyKind::Solid));
+    let error = error.about("Root mean square error of the affine motion of the neighbours");
     let neighbors = Field::with_input("neighbors", "1", &[""], Vec::new(), neighbors);
-    sim.add_field(neighbors.only_for(BodyKind::Solid));
+    let neighbors = neighbors.about("Number of neighbours");
+    [error, neighbors].map(|field| field.only_for(BodyKind::Solid))
 }
 
 /// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the neighbours that hold, with the F that fits these, as

@@ -155,6 +155,8 @@ pub trait Column: Pod + Send + Sync + 'static {
     const SYMBOL: &'static str;
     /// Unit in SI, such as `m/s`; `1` for a pure number.
     const UNIT: &'static str;
+    /// What it is, as its documentation says.
+    const ABOUT: &'static str;
 
     /// The value of the row.
     fn value(&self) -> &Self::Value;
@@ -176,8 +178,8 @@ pub trait Column: Pod + Send + Sync + 'static {
 /// ```
 #[macro_export]
 macro_rules! column {
-    ($($(#[$meta:meta])* pub struct $name:ident($value:ty) = $label:literal, $symbol:literal, $unit:literal;)+) => {$(
-        $(#[$meta])*
+    ($($(#[doc = $doc:literal])* pub struct $name:ident($value:ty) = $label:literal, $symbol:literal, $unit:literal;)+) => {$(
+        $(#[doc = $doc])*
         ///
         #[doc = concat!("Column `", $label, "`: symbol ", $symbol, ", unit ", $unit, ".")]
         #[derive(Clone, Copy, Debug, Default, PartialEq, $crate::bytemuck::Pod, $crate::bytemuck::Zeroable)]
@@ -190,6 +192,7 @@ macro_rules! column {
             const NAME: &'static str = $label;
             const SYMBOL: &'static str = $symbol;
             const UNIT: &'static str = $unit;
+            const ABOUT: &'static str = concat!($($doc),*);
 
             #[inline(always)]
             fn value(&self) -> &$value {

@@ -17,6 +17,8 @@ pub struct ColumnInfo {
     pub symbol: &'static str,
     /// Unit, SI.
     pub unit: &'static str,
+    /// What it is.
+    pub about: &'static str,
     /// Names of the components of a row.
     pub components: &'static [&'static str],
     /// Bytes per row.
@@ -37,6 +39,7 @@ impl ColumnInfo {
             name: T::NAME,
             symbol: T::SYMBOL,
             unit: T::UNIT,
+            about: T::ABOUT,
             components: T::Value::COMPONENTS,
             element_size: size_of::<T>(),
             type_id: TypeId::of::<T>(),

@@ -20,7 +20,7 @@ column! {
     pub struct Mass(f64) = "mass", "m", "kg";
     /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
     pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
-    /// Whether the particle has been taken out of the run: [`Removed::NO`] or [`Removed::YES`]. A removed particle stays a
+    /// Whether the particle has been taken out of the run. It is [`Removed::NO`] or [`Removed::YES`]. A removed particle stays a
     /// row that nothing moves: it carries no stress and no force, and lists and sums leave it out. The systems of
     /// [`removal`](crate::removal) set it, and nothing takes it back.
     pub struct Removed(u32) = "removed", "-", "1";
@@ -44,7 +44,7 @@ column! {
     pub struct InversePlasticCauchyGreen(Sym3) = "inverse_plastic_cauchy_green", "Cp^-1", "1";
     /// Equivalent stress of the last step, sqrt(3/2 s : s) of the Kirchhoff stress.
     pub struct EquivalentStress(f64) = "equivalent_stress", "q", "Pa";
-    /// Flow stress at slow deformation, at the present plastic strain and temperature.
+    /// Quasi-static flow stress, at the present plastic strain and temperature.
     pub struct YieldStress(f64) = "yield_stress", "sigma_y", "Pa";
     /// Deviator of the Cauchy stress, integrated by a hypoelastic law.
     pub struct DeviatoricStress(Sym3) = "deviatoric_stress", "S", "Pa";
@@ -62,7 +62,7 @@ column! {
     pub struct Temperature(f64) = "temperature", "T", "K";
     /// Modulus that hourglass control resists with.
     pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
-    /// Error of the mean deformation that hourglass control last resisted, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
+    /// Hourglass residual of the last step, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
     pub struct HourglassMisfit(f64) = "hourglass_misfit", "e^2", "1";
     /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the neighbours that hold.
     pub struct HourglassGradient(DMat3) = "hourglass_gradient", "F_h", "1";

@@ -17,7 +17,7 @@ const INSIDE: f64 = 0.75;
 const ALONE: f64 = 0.2;
 
 /// Vorticity and free surface of fluids.
-pub(super) fn fields() -> [Field; 2] {
+pub(crate) fn fields() -> [Field; 2] {
     let needs = || vec![Velocity::NAME];
     let vorticity = Field::with_input("vorticity", "1/s", DVec3::COMPONENTS, needs(), |input, out| {
         let (view, _) = input.world.body_view(input.body);
@@ -35,6 +35,8 @@ pub(super) fn fields() -> [Field; 2] {
         out.extend(rows);
         Ok(())
     });
+    let vorticity = vorticity.about("Vorticity of the flow");
+    let surface = surface.about("1 at the free surface, 0 inside of the fluid");
     [vorticity, surface].map(|field| field.only_for(BodyKind::Fluid))
 }
 

@@ -88,6 +88,7 @@ pub use assemble::add_systems;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
 pub use density::{DensityShift, SHIFTING_ENERGY};
 pub use displace::displace;
+pub(crate) use fields::fields;
 pub use formulation::Fluid;
 pub use kernel::FluidKernel;
 pub use near::{FourNear, Fours, RowPass};

@@ -44,10 +44,11 @@ impl Error {
                 let (message, help) = unknown("variant", &found, known);
                 Problem::at_span(head, message).helps(help)
             }
-            Self::Missing(field) => {
-                let of = node.name.as_ref().map(|name| format!(" of `{}`", name.text)).unwrap_or_default();
-                Problem::at_span(head, format!("missing field `{field}`{of}"))
-            }
+            Self::Missing(field) => match node.name.as_ref().map(|name| &name.text) {
+                Some(name) => Problem::at_span(head, format!("missing field `{field}` of `{name}`"))
+                    .help(format!("`meshless plugins {name}` describes its fields")),
+                None => Problem::at_span(head, format!("missing field `{field}`")),
+            },
             Self::Message(message) => located(node, &message),
         };
         context.report(problem);
