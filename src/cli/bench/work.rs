@@ -72,6 +72,9 @@ const DAM_PLANE: (&str, &str) =
 const DAM_PLATE: (&str, &str) =
     ("benches/scenes/dam_plate.ron", include_str!("../../../benches/scenes/dam_plate.ron"));
 
+const ABRASIVE: (&str, &str) =
+    ("assets/scenes/abrasive_flow.ron", include_str!("../../../assets/scenes/abrasive_flow.ron"));
+
 /// Spacing of a lattice in the unit cube or square, m.
 fn cube(particles: f64) -> f64 {
     1.0 / particles.cbrt().round()
@@ -79,6 +82,12 @@ fn cube(particles: f64) -> f64 {
 
 fn square(particles: f64) -> f64 {
     1.0 / particles.sqrt().round()
+}
+
+/// Spacing in the channel of abrasive flow: a whole part of that of the scene, whose bodies then leave room between them.
+fn channel(particles: f64) -> f64 {
+    let (usual, area) = (2.0e-6, 2.8e-8);
+    usual / (usual / (area / particles).sqrt()).round().max(1.0)
 }
 
 /// All works.
@@ -222,5 +231,12 @@ pub const WORKS: &[Work] = &[
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(2)),
         ],
+    },
+    Work {
+        name: "abrasive",
+        title: "abrasive flow in a plane: fluid, grains, a wearing Eulerian solid, as the shipped scene has them",
+        scene: ABRASIVE,
+        spacing: channel,
+        set: &[("parameters.dx", Spacing)],
     },
 ];

@@ -105,8 +105,33 @@ impl FlowCloud {
     /// fluids, the rows of a body those of its own, and [`FlowCloud::everything`] also what bounds the fluid.
     #[inline(always)]
     pub fn fours<A: Arithmetic>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
-        let row = if i < self.fluid { self.near.row(i) } else { self.near_boundary.row(i - self.fluid) };
-        Fours { cloud: self, i, chunks: part(row, among).chunks(4), arithmetic: a }
+        Fours { cloud: self, i, chunks: part(self.near_row(i), among).chunks(4), arithmetic: a }
+    }
+
+    /// The neighbours of particle `i`, to be taken group by group ([`FlowCloud::next_fours`]).
+    #[inline(always)]
+    pub(super) fn near_row(&self, i: usize) -> &[u32] {
+        if i < self.fluid { self.near.row(i) } else { self.near_boundary.row(i - self.fluid) }
+    }
+
+    /// Takes the neighbours in group `n` out of what is left of the row of particle `i`, whose groups come in their order: a flow may have many bodies, of
+    /// which few are near.
+    #[inline(always)]
+    pub(super) fn next_fours<'a, A: Arithmetic>(
+        &'a self,
+        a: A,
+        i: usize,
+        n: usize,
+        rest: &mut &'a [u32],
+    ) -> Fours<'a, A> {
+        let end = self.groups[n].cloud.end as u32;
+        let count = match rest.last() {
+            Some(&last) if last >= end => rest.partition_point(|&j| j < end),
+            _ => rest.len(),
+        };
+        let (row, tail) = rest.split_at(count);
+        *rest = tail;
+        Fours { cloud: self, i, chunks: row.chunks(4), arithmetic: a }
     }
 
     /// All rows of the cloud.

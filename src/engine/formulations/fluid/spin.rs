@@ -71,11 +71,16 @@ impl RowPass for BestFit<'_> {
         let (mut moment, mut angular) = (FourMoments::new(a), Axial::zero(a));
         let own = Vector::splat(a, cloud.records[i].velocity());
         let viscosities = cloud.viscosities.of(group);
+        let mut rest = cloud.near_row(i);
         for n in 0..viscosities.len() {
+            if rest.is_empty() {
+                break;
+            }
+            let fours = cloud.next_fours(a, i, n, &mut rest);
             if viscosities[n] == 0.0 {
                 continue;
             }
-            for near in cloud.fours(a, i, &cloud.groups[n].cloud) {
+            for near in fours {
                 let weight = near.volume * near.weight * viscosities[n];
                 let v_ij = near.vector(|j| cloud.records[j].velocity()) - own;
                 moment.add(weight, near.x_ij);
@@ -101,12 +106,19 @@ impl RowPass for Sharpened<'_> {
         let Self { cloud, group, fits } = *self;
         let mut torque = Axial::zero(a);
         let own = Axial::splat(a, &fits[i].spin);
-        for (fluid, viscosity) in cloud.groups.iter().zip(cloud.viscosities.of(group)) {
-            if fluid.fluid().is_none() || *viscosity == 0.0 {
+        let viscosities = cloud.viscosities.of(group);
+        let mut rest = cloud.near_row(i);
+        // Fluids come first.
+        for n in 0..viscosities.len() {
+            if rest.is_empty() || cloud.groups[n].fluid().is_none() {
+                break;
+            }
+            let fours = cloud.next_fours(a, i, n, &mut rest);
+            if viscosities[n] == 0.0 {
                 continue;
             }
-            for near in cloud.fours(a, i, &fluid.cloud) {
-                let weight = near.volume * near.weight * (0.5 * viscosity);
+            for near in fours {
+                let weight = near.volume * near.weight * (0.5 * viscosities[n]);
                 let others = Axial::from_rows(a, near.rows.map(|j| &fits[j].spin));
                 torque = (own - others).around(near.x_ij).mul_add(weight, torque);
             }
