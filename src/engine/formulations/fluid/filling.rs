@@ -72,7 +72,7 @@ fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
 }
 
 /// The filling about a particle; none near a surface.
-struct FillingPass<'a>(&'a FlowCloud);
+pub(super) struct FillingPass<'a>(pub &'a FlowCloud);
 
 impl RowPass for FillingPass<'_> {
     type Output = Option<f64>;

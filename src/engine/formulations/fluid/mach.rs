@@ -39,7 +39,7 @@ pub(super) fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], reco
     for frame in bounds().map(mean).filter(|frame| frame.length() > (1.0 - SLOWER) * at_rest) {
         let largest = in_frame(frame);
         if largest < SLOWER * least {
-            (least, speed) = (largest, fastest(group, frame));
+            (least, speed) = (largest, fastest(group, frame).min(at_rest));
         }
     }
     speed

@@ -25,6 +25,7 @@ mod drift;
 mod exchange;
 mod fields;
 mod filling;
+mod fit;
 mod force;
 mod formulation;
 mod friction;

@@ -225,6 +225,30 @@ fn a_pressure_that_makes_a_solid_of_particles_in_order_is_warned_of() {
 }
 
 #[test]
+fn lattices_that_do_not_fit_at_the_start_are_warned_of() {
+    let float = |bottom: f64, lattice: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Difference(Box(min: (0, 0), max: (0.6, 0.2)), Box(min: (0.2, {bottom}), max: (0.4, 0.3))),
+                     spacing: 0.02, {lattice} formulation: Fluid),
+                    (name: "box", material: "wood", shape: Box(min: (0.2, {bottom}), max: (0.4, 0.24)), spacing: 0.02, formulation: Rigid()),
+                    (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (0.66, 0.4)), Box(min: (0, 0), max: (0.6, 1)))),
+                ],
+                time: (end: 1.0))"#
+        ));
+        sim.run(|sim| sim.clock().step < 2).expect("a run");
+        sim.warnings().iter().filter(|warning| warning.contains("do not fit")).cloned().collect::<Vec<_>>()
+    };
+    // The lines of the lattice of the water are multiples of 0.02 m.
+    let warnings = float(0.151, "");
+    assert!(warnings.len() == 1 && warnings[0].contains("`water` and `box`"), "{warnings:?}");
+    assert_eq!(float(0.16, ""), Vec::<String>::new());
+    assert_eq!(float(0.151, "lattice: Relaxed(seed: 1, iterations: 30),"), Vec::<String>::new());
+}
+
+#[test]
 fn walls_have_no_initial_velocity() {
     let more = r#"conditions: [InitialVelocity(on: Select(), value: (0.1, 0.0))], time: (end: 0.01)"#;
     let mut sim = simulation(&tank("", "", more));

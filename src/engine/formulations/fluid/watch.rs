@@ -2,6 +2,7 @@
 
 use super::cloud::FlowCloud;
 use super::filling::Filling;
+use super::fit;
 use super::friction::Friction;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
@@ -22,6 +23,8 @@ struct FlowWatch {
     /// Filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
+    /// Whether the lattices have been looked at.
+    is_started: bool,
     /// What the looks compute for each particle.
     scratch: Vec<Option<f64>>,
     friction: Vec<Option<Friction>>,
@@ -36,6 +39,7 @@ pub(super) fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) 
         unevenness: Unevenness::default(),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
+        is_started: false,
         scratch: Vec::new(),
         friction: Vec::new(),
     };
@@ -51,6 +55,9 @@ pub(super) fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) 
 impl Run for FlowWatch {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let cloud = step.resources.get::<FlowCloud>();
+        if !std::mem::replace(&mut self.is_started, true) && step.clock.step <= 1 {
+            fit::look(&cloud, &mut self.scratch, step);
+        }
         let at_end = step.clock.time >= self.end || step.stop.is_some();
         let is_frame = self.frames.is_due(step.clock.time) || at_end;
         if is_frame || step.clock.step.is_multiple_of(INTERVAL) {
