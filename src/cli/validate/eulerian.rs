@@ -57,7 +57,6 @@ pub(super) const COLUMN: Case = Case {
     resolutions: &[10, 12, 16],
     ci_resolution: 10,
     run: bent,
-    ..bending_column::CASE
 };
 pub(super) const TENSION: Case = Case {
     id: "S20",
