@@ -63,3 +63,13 @@ fn all_scenes_of_a_sweep_are_read_before_the_first_run() {
     assert!(shown.contains("`spacing` must be positive, found -0.01 m"), "{shown}");
     assert!(!folder.path().join("out").exists());
 }
+
+#[test]
+fn a_sweep_without_probes_has_one_table() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("beam.ron"), SCENE).expect("a scene");
+    let sweep = ["sweep", "beam.ron", "--set", "parameters.dx=0.01", "--set", "probes=[]"];
+    let output = meshless(folder.path(), &sweep);
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(shown.contains("outcome") && !shown.contains("minimum"), "{shown}");
+}

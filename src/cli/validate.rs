@@ -132,7 +132,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
             None => {
                 let known: Vec<&str> = all.map(|case| case.id).collect();
                 return Err(Failure::Usage(format!(
-                    "there is no case `{name}`; there are: {}",
+                    "unknown case `{name}`; the cases are {}",
                     known.join(", ")
                 )));
             }

@@ -56,11 +56,15 @@ pub fn text(rows: &[Row]) -> String {
         cells.push(format!("{relative_error:.1e}"));
         runs.row(cells);
     }
+    let series = columns(rows);
+    if series.is_empty() {
+        return runs.render();
+    }
     let mut headings = vec!["probe", "unit"];
     headings.extend(names);
     headings.extend(["minimum", "maximum", "last"]);
     let mut probes = Table::new(&headings, 3);
-    for (probe, column) in columns(rows) {
+    for (probe, column) in series {
         for row in rows {
             let found =
                 row.summary.probes.get(&probe).and_then(|columns| columns.iter().find(|c| c.name == column));
