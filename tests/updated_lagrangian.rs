@@ -7,7 +7,7 @@ use common::{all_plugins, failing, failing_metals, removal, simulation};
 use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, Mass, Position, Velocity};
+use meshless::world::{BodyId, DeformationGradient, Mass, Position, Velocity};
 
 /// The scene with another formulation in the place of the total-Lagrangian one.
 fn with(formulation: &str, source: &Source) -> Source {
@@ -139,6 +139,104 @@ fn what_frequent_updates_change_is_booked() {
         let share = sim.ledger().balance_error() / sim.ledger().total_named("kinetic");
         assert!(share.abs() < 2e-3, "`{plugin}`: balance {share} of the kinetic energy");
     }
+}
+
+/// A rubber ring, five particles across, that hits a wall at an eleventh of its wave speed.
+fn ring(formulation: &str, plugin: &str) -> Source {
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"rubber": DecoupledNeoHookean(density: 1000, bulk: 1.67e6, shear: 0.3571e6),
+                         "steel": NeoHookean(density: 7850, young: 2.1e11, poisson: 0.3)}},
+            bodies: [(name: "ring", material: "rubber", shape: Ring(center: (0, 0), inner: 0.03, outer: 0.04), spacing: 2e-3,
+                      lattice: Concentric, formulation: {formulation}, velocity: (-4, 0), plugins: [{plugin}]),
+                     (name: "wall", material: "steel", shape: Box(min: (-0.05, -0.05), max: (-0.04, 0.05)), spacing: 5e-3, formulation: Rigid)],
+            conditions: [Fix(on: Select(body: "wall"))],
+            contacts: [Contact(between: ("ring", "wall"), law: Penalty())],
+            time: (end: 15e-3))"#
+    );
+    Source::new("ring.ron", text)
+}
+
+/// Energies that ways of updating may differ by, over that at the start.
+const DRIFT: f64 = 0.02;
+
+#[test]
+fn frequent_updates_take_no_energy_out_of_the_motion() {
+    for plugin in ["hourglass_control()", "hessian_stabilization()"] {
+        let run = |update: &str| {
+            let mut sim = simulation(&ring(&format!("UpdatedLagrangian(update: {update})"), plugin));
+            sim.start().expect("a start");
+            let start = sim.ledger().stored();
+            sim.run(|_| true).expect("a run");
+            let share = |name| sim.ledger().total_named(name) / start;
+            ["kinetic", "strain", "reference_update"].map(share)
+        };
+        let never = run("Never");
+        for update in ["Every(3)", "Adaptive(change: 0.25)"] {
+            for (found, expected) in run(update).into_iter().zip(never) {
+                let error = (found - expected).abs();
+                assert!(
+                    error < DRIFT,
+                    "`{plugin}`, {update}: {found} of the energy, {expected} without updates"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_gate_beside_water_moves_alike_in_every_formulation() {
+    let scene = include_str!("validation/elastic_gate/scene.ron");
+    let swing = |formulation: &str| {
+        let text = scene.replace("formulation: TotalLagrangian", &format!("formulation: {formulation}"));
+        let mut sim = simulation(&Source::new("gate.ron", text.replace("end: 0.4", "end: 0.04")));
+        let start = positions(&sim, 1);
+        sim.run(|_| true).expect("a run");
+        let moved = positions(&sim, 1).into_iter().zip(start).map(|(now, start)| now - start);
+        moved.max_by(|a, b| a.length().total_cmp(&b.length())).expect("particles")
+    };
+    let total = swing("TotalLagrangian");
+    assert!(total.x > 0.01, "the water pushes the gate to the side: {total}");
+    for formulation in ["UpdatedLagrangian", "UpdatedLagrangian(update: Every(3))", "Eulerian"] {
+        let found = swing(formulation);
+        assert!((found - total).length() < 0.03 * total.length(), "{formulation}: {found}, {total}");
+    }
+}
+
+/// A quarter of a metal bar, 5 x 12 particles, that is squeezed to a tenth of its height.
+fn squeezed(formulation: &str) -> Source {
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"metal": J2(density: 2700, young: 78.2e9, poisson: 0.3, hardening: Perfect(yield_stress: 0.29e9))}},
+            bodies: [(name: "bar", material: "metal", shape: Box(min: (0, 0), max: (4e-3, 9.6e-3)), spacing: 0.8e-3,
+                      formulation: {formulation}, plugins: [hourglass_control()])],
+            conditions: [Symmetry(plane: X, at: 0.0, side: Above), Symmetry(plane: Y, at: 0.0, side: Above),
+                         InitialVelocity(on: Select(), value: ("1e4*x", "-1e4*y")),
+                         Velocity(on: Select(body: "bar", face: MaxY), value: (None, "-96*exp(-1e4*t)"))],
+            time: (end: 230e-6))"#
+    );
+    Source::new("squeezed.ron", text)
+}
+
+#[test]
+fn a_bar_that_is_squeezed_to_a_tenth_becomes_ten_times_as_wide() {
+    // The volume of metal that flows stays: x = X exp(1e4 t).
+    let error = |formulation: &str| {
+        let mut sim = simulation(&squeezed(formulation));
+        let widest = |sim: &Simulation| positions(sim, 0).iter().map(|x| x.x).fold(0.0, f64::max);
+        let start = widest(&sim);
+        sim.run(|_| true).expect("a run");
+        assert!(sim.ledger().relative_error().abs() < 0.01, "energy balance");
+        let body = sim.world().body(BodyId(0));
+        let view = sim.world().phase(body.phase);
+        let gradient = view.read::<DeformationGradient>().expect("deformation gradients");
+        let volume = gradient.iter().map(|f| f.0.determinant()).sum::<f64>() / gradient.len() as f64;
+        assert!((volume - 1.0).abs() < 0.01, "{formulation}: volume {volume}");
+        (widest(&sim) / (start * 2.3f64.exp()) - 1.0).abs()
+    };
+    let (updated, total) = (error("UpdatedLagrangian"), error("TotalLagrangian"));
+    assert!(updated < 0.025, "the width is off by {updated}");
+    assert!(updated < total, "{updated}, {total} of a total-Lagrangian bar");
 }
 
 /// A metal bar of 5 x 15 particles that hits a wall and flows.

@@ -63,10 +63,14 @@ macro_rules! for_each_case {
             K2U updated_lagrangian::AFFINE;
             K3U updated_lagrangian::GRADIENT;
             K4U updated_lagrangian::PAIR_TERM;
+            K6U updated_lagrangian::THROWN;
             S2U updated_lagrangian::CANTILEVER;
+            S8U updated_lagrangian::PLATE;
             S9U updated_lagrangian::FLAG;
             S11U updated_lagrangian::COLUMN;
             S12U updated_lagrangian::TWISTED;
+            S13U updated_lagrangian::COPPER;
+            S15U updated_lagrangian::ALUMINIUM;
             S20 eulerian::TENSION;
             K2E eulerian::AFFINE;
             K4E eulerian::PAIR_TERM;

@@ -4,7 +4,9 @@ use anyhow::Result;
 
 use super::case::Case;
 use super::check::Check;
-use super::{bending_column, cantilever, invariants, turek_hron, twisting_column};
+use super::{
+    bending_column, cantilever, invariants, oscillating_plate, taylor_bars, turek_hron, twisting_column,
+};
 use meshless_engine::plugin::Registry;
 
 macro_rules! cases {
@@ -22,10 +24,14 @@ cases! {
     AFFINE "K2U" invariants::AFFINE, 1.0;
     GRADIENT "K3U" invariants::GRADIENT, 1.0;
     PAIR_TERM "K4U" invariants::PAIR_TERM, 1.0;
+    THROWN "K6U" invariants::THROWN, 1.0;
     CANTILEVER "S2U" cantilever::CASE, 1.5;
+    PLATE "S8U" oscillating_plate::CASE, 1.5;
     FLAG "S9U" turek_hron::CASE, 1.5;
     COLUMN "S11U" bending_column::CASE, 1.5;
     TWISTED "S12U" twisting_column::CASE, 1.5;
+    COPPER "S13U" taylor_bars::COPPER, 1.5;
+    ALUMINIUM "S15U" taylor_bars::ALUMINIUM, 1.5;
 }
 
 /// Runs a case with the other formulation and wider tolerances.

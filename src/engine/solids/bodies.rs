@@ -393,6 +393,11 @@ impl SolidBody {
         self.hessian.is_some_and(|own| own.form == HessianForm::FrameIndifferent)
     }
 
+    /// Whether anything resists motions that the gradient does not see.
+    pub fn is_stabilized(&self) -> bool {
+        !self.terms.is_empty() || self.hessian.is_some()
+    }
+
     fn book(&self, sum: &SolidSum, terms: &[Arc<FoldedTermOfBodies>], ledger: &mut Ledger) {
         let strain = ledger.account("strain", AccountKind::Stored);
         ledger.set(strain, self.id, sum.strain);

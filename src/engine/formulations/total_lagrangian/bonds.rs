@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::reach::Ellipsoids;
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::Sym3;
@@ -61,6 +62,8 @@ pub(in crate::formulations) struct BodyBonds<'a> {
     pub volume: &'a [f64],
     /// Support radii of the whole phase, m.
     pub support: &'a [f64],
+    /// Supports that are ellipsoids in place of spheres.
+    pub ellipsoids: Option<Ellipsoids<'a>>,
     /// Kernel.
     pub kernel: Kernel,
     /// Ghosts of the bodies.
@@ -80,13 +83,14 @@ impl BodyBonds<'_> {
             search.within(cloud, 0.0, &Periodic::NONE, &mut list)
         };
         let (position, support) = (&self.position[self.rows.clone()], &self.support[self.rows.clone()]);
-        if self.ghost_rows.is_empty() {
+        let farthest = |row: usize| self.support[row] * self.ellipsoids.map_or(1.0, |own| own.0[row].longest);
+        if self.ghost_rows.is_empty() && self.ellipsoids.is_none() {
             find(position, support)?;
         } else {
             let places = self.ghost_rows.clone().map(|row| self.ghosts.place(self.position, row));
-            let radii = self.ghost_rows.clone().map(|row| self.support[self.ghosts.source(row)]);
+            let sources = self.ghost_rows.clone().map(|row| self.ghosts.source(row));
             let position: Vec<DVec3> = position.iter().copied().chain(places).collect();
-            let support: Vec<f64> = support.iter().copied().chain(radii).collect();
+            let support: Vec<f64> = self.rows.clone().chain(sources).map(farthest).collect();
             find(&position, &support)?;
         }
         Ok(list)
@@ -99,6 +103,14 @@ impl BodyBonds<'_> {
             Some(ghost) => (self.ghosts.source(self.ghost_rows.start + ghost) - self.rows.start) as u32,
         };
         self.hidden.binary_search(&own).is_err()
+    }
+
+    /// Whether row `j` is within the ellipsoid of row `i`, of those that lie in the sphere around it.
+    fn is_near(&self, i: usize, j: usize) -> bool {
+        self.ellipsoids.is_none_or(|own| {
+            let distance = own.distance(self.ghosts, i, j, self.ghosts.pair(self.position, i, j));
+            distance < 0.5 * (self.support[i] + self.support[self.ghosts.source(j)])
+        })
     }
 
     /// The row of the phase that a number of [`BodyBonds::neighbors`] means.
@@ -127,8 +139,8 @@ impl Bonds {
         let first_bond = self.neighbors.len();
         for k in 0..rows.len() {
             if body.is_seen(k as u32) {
-                let seen = list.row(k).iter().filter(|&&j| body.is_seen(j));
-                self.neighbors.extend(seen.map(|&j| body.row(j)));
+                let seen = list.row(k).iter().filter(|&&j| body.is_seen(j)).map(|&j| body.row(j));
+                self.neighbors.extend(seen.filter(|&j| body.is_near(rows.start + k, j as usize)));
             }
             self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
         }
@@ -158,10 +170,13 @@ impl Bonds {
             let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
             for (weight, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
                 let j = j as usize;
-                let distance = body.ghosts.pair(body.position, *i, j).length();
+                let r_ij = body.ghosts.pair(body.position, *i, j);
+                let (distance, density) = body.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
+                    (own.distance(body.ghosts, *i, j, r_ij), own.density(body.ghosts, *i, j))
+                });
                 let support = body.support[*i] + body.support[body.ghosts.source(j)];
                 let smoothing_length = 0.5 * support * ratio;
-                *weight = kernel.pair_weight(distance, smoothing_length) as f32;
+                *weight = (density * kernel.pair_weight(distance, smoothing_length)) as f32;
             }
         });
     }
@@ -213,9 +228,13 @@ impl Bonds {
         axes: usize,
         estimate: &StepEstimate,
         support: &[f64],
+        ellipsoids: Option<Ellipsoids<'_>>,
     ) -> f64 {
+        let trace =
+            |i: usize, inverse: &Sym3| ellipsoids.map_or(inverse.trace(), |own| own.0[i].trace(inverse));
         let particle = |i: usize| {
-            let (sum, mean_inverse) = (self.weight_sum[i], self.inverse_moment[i].trace() / axes as f64);
+            let sum = self.weight_sum[i];
+            let mean_inverse = trace(i, &self.inverse_moment[i]) / axes as f64;
             estimate.stable_step_with(sum, mean_inverse, 0.5 * support[i] * sum)
         };
         rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)

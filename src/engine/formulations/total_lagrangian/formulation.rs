@@ -236,6 +236,7 @@ fn set_up(
             position,
             volume,
             support,
+            ellipsoids: None,
             kernel,
             ghosts: &ghosts,
             ghost_rows,
@@ -253,7 +254,7 @@ fn set_up(
             );
             setup.warnings.push(text);
         }
-        stable_step.push(bonds.stable_step(rows, dimension, estimate, support));
+        stable_step.push(bonds.stable_step(rows, dimension, estimate, support, None));
     }
     let stresses = vec![CorrectedStress::default(); view.len() + ghosts.len()];
     let self_force = vec![DVec3::ZERO; view.len()];

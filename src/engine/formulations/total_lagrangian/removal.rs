@@ -117,7 +117,8 @@ impl Deformation {
         for (law, stable_step) in self.solids.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, ghosts);
-            *stable_step = bonds.stable_step(rows, dimension, &law.estimate, bytemuck::cast_slice(&support));
+            *stable_step =
+                bonds.stable_step(rows, dimension, &law.estimate, bytemuck::cast_slice(&support), None);
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::column;
+use crate::linalg::Sym3;
 
 column! {
     /// Position at the last update of the reference.
@@ -11,4 +12,6 @@ column! {
     pub struct UpdatedGradient(DMat3) = "updated_gradient", "F_r", "1";
     /// Volume at the last update of the reference.
     pub struct UpdatedVolume(f64) = "updated_volume", "V", "m3";
+    /// What measures distances in the kernel, from the last update on.
+    pub struct UpdatedMetric(Sym3) = "updated_metric", "G", "1";
 }

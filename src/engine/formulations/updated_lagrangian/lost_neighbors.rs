@@ -5,8 +5,11 @@
 //! support radius, once and for all; where that does not help it carries no stress.
 
 use super::phase::UpdatedRows;
+use crate::formulations::total_lagrangian::{BodyKernel, Ellipsoid};
 use crate::linalg::{Eigen, Sym3};
-use crate::world::{Damage, SupportRadius, World};
+use crate::plugin::Setup;
+use crate::schedule::Step;
+use crate::world::{BodyId, Damage, SupportRadius, World};
 
 /// Smallest eigenvalue of a moment matrix, which is 1 inside of a body, 1/2 at a face and 1/8 in a corner, below which the support grows.
 const FEW: f64 = 0.05;
@@ -33,7 +36,9 @@ pub(super) fn widen(
         for row in world.body(kernel.body).rows.clone().filter(|&row| packed.volume[row] > 0.0) {
             let inverse = &packed.bonds.inverse_moment[row];
             let grown = GROWTH * support[row].0;
-            if grown <= LARGEST * first && (*inverse == Sym3::ZERO || is_below(FEW, inverse)) {
+            if grown <= LARGEST * first
+                && (*inverse == Sym3::ZERO || is_below(FEW, inverse, &packed.ellipsoids[row]))
+            {
                 support[row].0 = grown;
                 has_grown = true;
             }
@@ -46,16 +51,74 @@ impl UpdatedRows {
     /// Lets go of particles whose fit is nearly singular.
     pub fn release_lost(&mut self) {
         for row in 0..self.bonds.inverse_moment.len() {
-            if is_below(LOST, &self.bonds.inverse_moment[row]) {
+            if is_below(LOST, &self.bonds.inverse_moment[row], &self.ellipsoids[row]) {
                 self.bonds.release(row);
+            }
+        }
+    }
+
+    /// Number of particles of a body that are there and carry no stress for want of neighbours.
+    pub fn released(&self, world: &World, body: BodyId) -> usize {
+        let rows = world.body(body).rows.clone();
+        let hidden = self.held.hidden_of(body);
+        let is_lost = |row: &&u32| {
+            let row = **row as usize;
+            let number = || (row - rows.start) as u32;
+            rows.contains(&row) && self.volume[row] > 0.0 && hidden.binary_search(&number()).is_err()
+        };
+        self.bonds.free.iter().filter(is_lost).count()
+    }
+
+    /// Says of every body how many of its particles have too few neighbours from the start on.
+    pub fn warn_of_released_at_start(&mut self, setup: &mut Setup<'_>) {
+        let released = |kernel: &BodyKernel| self.released(setup.world, kernel.body);
+        self.released_at_start = self.kernels.iter().map(released).collect();
+        for (kernel, free) in self.kernels.iter().zip(&self.released_at_start).filter(|(_, free)| **free > 0)
+        {
+            let name = &setup.world.body(kernel.body).name;
+            let text =
+                format!("{free} particles of body `{name}` have too few neighbours and carry no stress");
+            setup.warnings.push(text);
+        }
+    }
+
+    /// Says of every body how many of its particles an update has let go of; the last word counts.
+    pub fn warn_of_released(&self, step: &mut Step<'_>) {
+        for (kernel, at_start) in self.kernels.iter().zip(&self.released_at_start) {
+            let now = self.released(step.world, kernel.body);
+            if now <= *at_start {
+                continue;
+            }
+            let begin = format!(
+                "particles of body `{}` have lost their neighbours and carry no stress:",
+                step.world.body(kernel.body).name
+            );
+            let told = step.warnings.iter_mut().find(|warning| warning.starts_with(&begin));
+            if told.as_ref().is_some_and(|told| number_of(told, &begin) >= now) {
+                continue;
+            }
+            let text = format!(
+                "{begin} {now} of them at {:.3e} s; smaller spacings or a larger `support` keep the body together, a plugin of failure lets it tear",
+                step.clock.time
+            );
+            match told {
+                Some(told) => *told = text,
+                None => step.warnings.push(text),
             }
         }
     }
 }
 
-/// Whether the matrix that has this inverse has an eigenvalue below a limit.
-fn is_below(limit: f64, inverse: &Sym3) -> bool {
+/// The number that a warning of released particles has given.
+fn number_of(warning: &str, begin: &str) -> usize {
+    let rest = warning[begin.len()..].trim_start();
+    rest.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0)
+}
+
+/// Whether the moment matrix that has this inverse has an eigenvalue below a limit, as seen in the ellipsoid of the particle.
+fn is_below(limit: f64, inverse: &Sym3, ellipsoid: &Ellipsoid) -> bool {
+    let round = ellipsoid.rounded(inverse);
     // The largest eigenvalue of a positive matrix is at most its trace.
     let most = 1.0 / limit;
-    inverse.trace() > most && Eigen::new(inverse).values.max_element() > most
+    round.trace() > most && Eigen::new(&round).values.max_element() > most
 }

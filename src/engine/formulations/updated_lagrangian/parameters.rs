@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
+use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::force::InternalForce;
 use super::phase::UpdatedRows;
 use super::reference::set_up;
@@ -83,6 +83,7 @@ impl Formulation for UpdatedLagrangian {
             .add::<PiolaStress>()
             .add::<UpdatedReference>()
             .add::<UpdatedGradient>()
+            .add::<UpdatedMetric>()
             .add::<UpdatedVolume>();
     }
 
@@ -116,6 +117,7 @@ impl Formulation for UpdatedLagrangian {
             .reads::<Mass>()
             .writes::<UpdatedReference>()
             .writes::<UpdatedGradient>()
+            .writes::<UpdatedMetric>()
             .writes::<UpdatedVolume>()
             .writes::<DeformationGradient>()
             .writes::<PiolaStress>();

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::formulations::total_lagrangian::{
-    BodyKernel, BondedRows, Bonds, Cracks, Frame, Held, HessianRows, Site,
+    BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site,
 };
 use crate::neighbors::NeighborSearch;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -29,6 +29,8 @@ pub(super) struct UpdatedRows {
     pub pair_sites: Vec<Site>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
+    /// How far the real rows see.
+    pub ellipsoids: Vec<Ellipsoid>,
     /// Volume V_0 det F_r of the real rows, m3; zero for removed ones.
     pub volume: Vec<f64>,
     /// Corrected stress A.
@@ -52,6 +54,8 @@ pub(super) struct UpdatedRows {
     pub follows: Vec<bool>,
     /// Whether the phase has folded terms.
     pub has_control: bool,
+    /// Of every body: how many particles carry no stress for want of neighbours, from the start on.
+    pub released_at_start: Vec<usize>,
     /// Kept for the next update.
     pub search: NeighborSearch,
 }

@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
+use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::parameters::UpdatedLagrangian;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
-    BodyBonds, BodyKernel, BondError, Bonds, Cracks, Held, HessianRows, Site,
+    BodyBonds, BodyKernel, BondError, Bonds, Cracks, Ellipsoid, Ellipsoids, Held, HessianRows, Site,
 };
 use crate::kernels::Kernel;
+use crate::linalg::Sym3;
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
 use crate::schedule::StepError;
@@ -44,6 +45,7 @@ pub(super) fn set_up(
         let mut volume = view.write::<UpdatedVolume>().map_err(missing)?;
         volume.iter_mut().zip(start.iter()).for_each(|(now, start)| now.0 = start.0);
         view.write::<UpdatedGradient>().map_err(missing)?.fill(UpdatedGradient(DMat3::IDENTITY));
+        view.write::<UpdatedMetric>().map_err(missing)?.fill(UpdatedMetric(Sym3::IDENTITY));
         view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
         for (id, parameters) in bodies {
             let body = setup.world.body(*id);
@@ -66,6 +68,7 @@ pub(super) fn set_up(
         originals: Vec::new(),
         pair_sites: Vec::new(),
         gradient: Vec::new(),
+        ellipsoids: Vec::new(),
         volume: Vec::new(),
         stresses: Vec::new(),
         control: Vec::new(),
@@ -81,23 +84,14 @@ pub(super) fn set_up(
         stable_step: Vec::with_capacity(bodies.len()),
         follows: Vec::with_capacity(bodies.len()),
         has_control,
+        released_at_start: Vec::new(),
         search: NeighborSearch::default(),
     };
     rows.renew(setup.world, phase, estimates, &[]).map_err(|RenewError { body, error }| {
         let help = "use a larger `support`, or more particles across the body";
         SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
     })?;
-    for kernel in &rows.kernels {
-        let body = setup.world.body(kernel.body);
-        let free = rows.bonds.free.iter().filter(|&&row| body.rows.contains(&(row as usize))).count();
-        let free = free - rows.held.hidden_of(kernel.body).len();
-        if free > 0 {
-            let name = &body.name;
-            let text =
-                format!("{free} particles of body `{name}` have too few neighbours and carry no stress");
-            setup.warnings.push(text);
-        }
-    }
+    rows.warn_of_released_at_start(setup);
     setup.resources.insert_solid(phase, rows);
     Ok(())
 }
@@ -132,6 +126,10 @@ impl UpdatedRows {
         let reference = view.read::<UpdatedReference>().map_err(internal)?;
         let volume = view.read::<UpdatedVolume>().map_err(internal)?;
         let support = view.read::<SupportRadius>().map_err(internal)?;
+        let metric = view.read::<UpdatedMetric>().map_err(internal)?;
+        let start = view.read::<ReferenceVolume>().map_err(internal)?;
+        self.ellipsoids.clear();
+        self.ellipsoids.extend(metric.iter().map(|metric| Ellipsoid::new(metric.0)));
         self.volume.clear();
         self.volume.extend(volume.iter().map(|volume| volume.0));
         removed.iter().for_each(|&row| self.volume[row as usize] = 0.0);
@@ -145,11 +143,11 @@ impl UpdatedRows {
         self.origin = 0.5 * (low + high);
         self.bonds = Bonds { carried: std::mem::take(&mut self.bonds.carried), ..Bonds::default() };
         self.ghosts = Ghosts::new(view.len());
-        self.stable_step.clear();
         for (kernel, repeats) in self.kernels.iter().zip(&self.repeats) {
             let rows = world.body(kernel.body).rows.clone();
             let (low, high) = bounds(rows.clone());
-            let widest = support[rows.clone()].iter().copied().fold(0.0, f64::max);
+            let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
+            let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
             let (repeats, reach) = follow(repeats, low, high, widest);
             let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
             let ghosts = &self.ghosts;
@@ -159,6 +157,7 @@ impl UpdatedRows {
                 position,
                 volume,
                 support,
+                ellipsoids: Some(Ellipsoids(&self.ellipsoids)),
                 kernel: kernel.kernel,
                 ghosts,
                 ghost_rows,
@@ -168,10 +167,8 @@ impl UpdatedRows {
             made.map_err(|error| RenewError { body: kernel.body, error })?;
         }
         self.release_lost();
-        for (kernel, estimate) in self.kernels.iter().zip(estimates) {
-            let (rows, axes) = (world.body(kernel.body).rows.clone(), kernel.kernel.dimension());
-            self.stable_step.push(self.bonds.stable_step(rows, axes, estimate, support));
-        }
+        let start: &[f64] = bytemuck::cast_slice(&start);
+        self.find_stable_steps(world, estimates, support, start);
         let all = view.len() + self.ghosts.len();
         self.sites.resize(all, Site::default());
         self.stresses.resize(all, CorrectedStress::default());
@@ -182,6 +179,26 @@ impl UpdatedRows {
             self.control.resize(all, CorrectedStress::default());
         }
         self.take_gradients(world, phase).map_err(internal)
+    }
+
+    /// Finds the stable step of each body in the reference, s, from support radii, m, and the volumes of the start, m3.
+    fn find_stable_steps(
+        &mut self,
+        world: &World,
+        estimates: &[StepEstimate],
+        support: &[f64],
+        start: &[f64],
+    ) {
+        self.stable_step.clear();
+        for (kernel, estimate) in self.kernels.iter().zip(estimates) {
+            let (rows, axes) = (world.body(kernel.body).rows.clone(), kernel.kernel.dimension());
+            let seen = Ellipsoids(&self.ellipsoids);
+            // What stabilizers store belongs to the present volume, the mass to that of the start.
+            let grown = rows.clone().map(|row| self.volume[row] / start[row]).fold(1.0, f64::max);
+            let (bond, hessian) = (grown * estimate.bond, grown * estimate.hessian);
+            let estimate = &StepEstimate { bond, hessian, ..*estimate };
+            self.stable_step.push(self.bonds.stable_step(rows, axes, estimate, support, Some(seen)));
+        }
     }
 
     /// Takes the deformation gradients of the reference from their column.
@@ -212,7 +229,8 @@ impl UpdatedRows {
         support: &[f64],
         has_failed: impl Fn(usize) -> bool,
     ) {
-        let Self { bonds, ghosts, gradient, kernels, control_bonds, volume, .. } = self;
+        let Self { bonds, ghosts, gradient, kernels, control_bonds, volume, ellipsoids, .. } = self;
+        let ellipsoids = Ellipsoids(ellipsoids);
         let mut weights = std::mem::take(&mut control_bonds.weights);
         weights.clear();
         for BodyKernel { body, kernel, .. } in kernels.iter() {
@@ -224,7 +242,8 @@ impl UpdatedRows {
                     let x_ij = ghosts.pair(original, i, j);
                     let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
                     let h = 0.5 * (support[i] + support[source]) * ratio;
-                    kernel.pair_weight(mean.length(), h) as f32
+                    let distance = ellipsoids.distance(ghosts, i, j, mean);
+                    (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
                 }));
             }
         }

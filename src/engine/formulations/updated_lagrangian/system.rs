@@ -2,15 +2,15 @@
 
 use glam::{DMat3, DVec3};
 
-use super::columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
+use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::force;
 use super::gradient::{GradientPass, GradientRows};
 use super::lost_neighbors::widen;
 use super::parameters::{Update, UpdatedLagrangian};
 use super::phase::UpdatedRows;
 use super::smoothed_reference::{increments, smooth};
-use crate::formulations::total_lagrangian::{Frame, FrameIndifferent, Site};
-use crate::parallel::{Largest, sum_over_blocks};
+use crate::formulations::total_lagrangian::{Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site};
+use crate::parallel::{Largest, for_each_block, sum_over_blocks};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
     HessianDifference, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
@@ -183,6 +183,7 @@ impl UpdatedSolids {
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, (0.0, false))?;
         self.solids.book(step)?;
+        packed.warn_of_released(step);
         let after = self.forces(step.world, packed)?;
         let velocity = view.read::<Velocity>()?;
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
@@ -209,17 +210,18 @@ impl UpdatedSolids {
         {
             let mut reference = view.write::<UpdatedReference>()?;
             let mut volume = view.write::<UpdatedVolume>()?;
+            let mut metric = view.write::<UpdatedMetric>()?;
             let start = view.read::<ReferenceVolume>()?;
-            let changes = increments(packed, self.plane);
             for k in (0..is_due.len()).filter(due) {
                 let rows = world.body(self.solids.id(k)).rows.clone();
                 for row in rows.clone() {
                     reference[row].0 = position[row].0;
+                    metric[row].0 = Ellipsoid::following(&deformation[row].0);
                     volume[row].0 = start[row].0 * deformation[row].0.determinant();
                 }
                 if self.is_smoothed(k) {
-                    let (damage, body) = (damage.as_deref(), (rows.start, self.updates[k].1));
-                    smooth(packed, &changes, damage, body, &mut reference[rows]);
+                    let body = (rows.clone(), self.updates[k].1);
+                    smooth(packed, &deformation, damage.as_deref(), body, &mut reference);
                 }
             }
         }
@@ -247,10 +249,12 @@ impl UpdatedSolids {
         Ok(())
     }
 
-    /// Whether the reference of body `k` is that of its particles without what no gradient sees; the form of the paper sees it itself.
+    /// Whether the reference of body `k` is that of its particles without what no gradient sees. The form of the paper sees it itself, and without a stabilizer nothing
+    /// would hold places and reference together.
     fn is_smoothed(&self, k: usize) -> bool {
-        let term = self.solids.iter().nth(k).and_then(|body| body.hessian);
-        term.is_none_or(|term| term.form != HessianForm::Vidal2007)
+        self.solids.iter().nth(k).is_some_and(|body| {
+            body.is_stabilized() && body.hessian.is_none_or(|term| term.form != HessianForm::Vidal2007)
+        })
     }
 
     /// The internal forces of the last pass.
@@ -333,15 +337,29 @@ fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), M
     let original = view.read::<ReferencePosition>()?;
     let reference = view.read::<UpdatedReference>()?;
     let damage = view.read::<Damage>().ok();
-    for row in 0..view.len() {
-        let (x, r, volume) = (position[row].0, reference[row].0, packed.volume[row]);
-        packed.sites[row] = Site::new(r - packed.origin, x - r, volume);
-        let start = original[row].0;
-        packed.pair_sites[row] = Site::new(start, x - start, volume);
-        if packed.has_control {
-            let holds = damage.as_ref().is_none_or(|damage| !has_failed(&damage[row]));
-            packed.originals[row] = Site::new(start, x - start, if holds { volume } else { 0.0 });
+    let UpdatedRows { sites, pair_sites, originals, volume, origin, has_control, .. } = &mut *packed;
+    let (count, origin) = (view.len(), *origin);
+    let (position, original, reference) = (&position[..], &original[..], &reference[..]);
+    let damage = damage.as_deref();
+    let rows = (&mut sites[..count], &mut pair_sites[..count]);
+    type Rows<'a> = (&'a mut [Site], &'a mut [Site]);
+    for_each_block(rows, &mut Vec::new(), &|first, (sites, pair_sites): Rows<'_>| {
+        for (k, (site, pair_site)) in sites.iter_mut().zip(pair_sites).enumerate() {
+            let row = first + k;
+            let (x, r, start) = (position[row].0, reference[row].0, original[row].0);
+            *site = Site::new(r - origin, x - r, volume[row]);
+            *pair_site = Site::new(start, x - start, volume[row]);
         }
+    });
+    if *has_control {
+        let holds = |row: usize| damage.is_none_or(|damage| !has_failed(&damage[row]));
+        for_each_block(&mut originals[..count], &mut Vec::new(), &|first, originals: &mut [Site]| {
+            for (k, site) in originals.iter_mut().enumerate() {
+                let row = first + k;
+                let start = original[row].0;
+                *site = Site::new(start, position[row].0 - start, if holds(row) { volume[row] } else { 0.0 });
+            }
+        });
     }
     packed.fill_ghost_sites();
     Ok(())
@@ -349,14 +367,17 @@ fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), M
 
 /// The largest change of the length of a pair since the last update, m.
 fn largest_change(rows: std::ops::Range<usize>, packed: &UpdatedRows) -> f64 {
-    let UpdatedRows { sites, bonds, .. } = packed;
+    let UpdatedRows { sites, bonds, ghosts, .. } = packed;
+    let ellipsoids = Ellipsoids(&packed.ellipsoids);
     let first_row = rows.start;
     let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
         let changes = own.iter().enumerate().flat_map(|(k, site)| {
-            bonds.row(first_row + first + k).map(move |(j, _)| {
+            let i = first_row + first + k;
+            bonds.row(i).map(move |(j, _)| {
+                let length = |r_ij| ellipsoids.distance(ghosts, i, j, r_ij);
                 let reference = sites[j].reference.xyz() - site.reference.xyz();
                 let present = reference + (sites[j].displacement.xyz() - site.displacement.xyz());
-                (present.length() - reference.length()).abs()
+                (length(present) - length(reference)).abs()
             })
         });
         Largest::of(changes)

@@ -1,0 +1,105 @@
+//! How far a particle sees: a sphere, or an ellipsoid that is drawn out with the material.
+//!
+//! Where material is drawn out along one direction and squeezed along another, particles are far apart along the one and close together along the other. A sphere then holds
+//! neighbours in few directions only. An ellipsoid measures distances by a tensor G before they enter the kernel, `|r|^2 = r . G r`; a pair takes the mean of the
+//! tensors of both ends, and the kernel is as much denser as its ellipsoid is smaller: `w_ij = (det G)^(1/2) |W'(|r|)| / |r|`.
+
+use glam::{DMat3, DVec3};
+
+use crate::linalg::{Eigen, Sym3};
+use crate::symmetry::Ghosts;
+
+/// Longest half axis of an ellipsoid, and shortest one's inverse.
+const LONGEST: f64 = 20.0;
+/// Share of the deformation that an ellipsoid follows: half way, in the logarithm of the stretches, between a sphere and what a sphere becomes.
+const FOLLOWED: f64 = 0.5;
+/// Share of a stretch that it follows in any case: a support of 2.4 spacings then reaches over 1.6 of those that the stretch makes of them.
+const LEAST: f64 = 2.0 / 3.0;
+
+/// The ellipsoid r . G r = 1 of a particle.
+#[derive(Clone, Copy)]
+pub(in crate::formulations) struct Ellipsoid {
+    tensor: Sym3,
+    /// G^(-1/2), which makes it of the unit sphere.
+    axes: Sym3,
+    /// Longest half axis.
+    pub longest: f64,
+    shortest: f64,
+    /// (det G)^(1/2), one over its volume.
+    density: f64,
+}
+
+impl Ellipsoid {
+    /// G of the ellipsoid that follows a deformation F.
+    pub fn following(f: &DMat3) -> Sym3 {
+        let axis = |stretch: f64| stretch.powf(FOLLOWED).max(LEAST * stretch);
+        let squares = Eigen::new(&Sym3::gram(f.transpose()));
+        squares.map(|square| axis(square.sqrt()).clamp(LONGEST.recip(), LONGEST).powi(-2))
+    }
+
+    /// The ellipsoid of G.
+    pub fn new(tensor: Sym3) -> Self {
+        let own = Eigen::new(&tensor);
+        let axis = |value: f64| value.sqrt().recip();
+        Self {
+            tensor,
+            axes: own.map(axis),
+            longest: axis(own.values.x),
+            shortest: axis(own.values.z),
+            density: (own.values.x * own.values.y * own.values.z).sqrt(),
+        }
+    }
+
+    /// The matrix A of a quadratic form, seen in the coordinates in which the ellipsoid is the unit sphere.
+    pub fn rounded(&self, a: &Sym3) -> Sym3 {
+        let axes = self.axes.to_matrix();
+        Sym3::symmetric_part(axes * a.to_matrix() * axes)
+    }
+
+    /// Trace of an inverse moment matrix as waves along the shortest axis feel it.
+    pub fn trace(&self, inverse: &Sym3) -> f64 {
+        self.rounded(inverse).trace() / (self.shortest * self.shortest)
+    }
+}
+
+/// The ellipsoids of the real rows of a phase.
+#[derive(Clone, Copy)]
+pub(in crate::formulations) struct Ellipsoids<'a>(pub &'a [Ellipsoid]);
+
+impl Ellipsoids<'_> {
+    /// Distance r_ij of row `j` from row `i` as both measure it, m.
+    pub fn distance(&self, ghosts: &Ghosts, i: usize, j: usize, r_ij: DVec3) -> f64 {
+        let seen = ghosts.mirror(j).map_or(r_ij, |signs| signs * r_ij);
+        let square = |g: &Sym3, r: DVec3| g.double_dot(&Sym3::dyad(r));
+        let theirs = square(&self.0[ghosts.source(j)].tensor, seen);
+        (0.5 * (square(&self.0[i].tensor, r_ij) + theirs)).sqrt()
+    }
+
+    /// Factor of the kernel of a pair.
+    pub fn density(&self, ghosts: &Ghosts, i: usize, j: usize) -> f64 {
+        0.5 * (self.0[i].density + self.0[ghosts.source(j)].density)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ellipsoid_is_between_the_sphere_and_what_a_deformation_makes_of_it() {
+        let turn = DMat3::from_rotation_x(0.4) * DMat3::from_rotation_z(1.1);
+        let f = turn * DMat3::from_diagonal(DVec3::new(1.44, 0.25, 9.0)) * DMat3::from_rotation_y(0.7);
+        let own = Ellipsoid::new(Ellipsoid::following(&f));
+        assert!((own.longest - 6.0).abs() < 1e-12 && (own.shortest - 0.5).abs() < 1e-12);
+        assert!((own.density * 1.2 * 0.5 * 6.0 - 1.0).abs() < 1e-12);
+        assert!((own.rounded(&own.tensor) - Sym3::IDENTITY).norm() < 1e-12);
+        let (ghosts, both) = (Ghosts::new(2), [own; 2]);
+        for (axis, length) in [(DVec3::X, 1.2), (DVec3::Y, 0.5), (DVec3::Z, 6.0)] {
+            let found = Ellipsoids(&both).distance(&ghosts, 0, 1, turn * axis * length);
+            assert!((found - 1.0).abs() < 1e-12, "{found} along {axis}");
+        }
+        let round = [Ellipsoid::new(Ellipsoid::following(&turn)); 2];
+        let r = DVec3::new(0.3, -1.0, 2.0);
+        assert!((Ellipsoids(&round).distance(&ghosts, 0, 1, r) - r.length()).abs() < 1e-12);
+    }
+}
