@@ -69,10 +69,8 @@ fn the_warning_of_a_fast_flow_names_its_largest_mach_number_and_sound_is_the_end
 #[test]
 fn the_mach_number_of_a_tank_that_moves_as_a_whole_is_that_of_the_flow_in_it() {
     let scene = |walls: f64, sound: &str| {
-        let moves = format!(
-            r#"conditions: [InitialVelocity(on: Select(body: "water"), value: (15.0, 0.0))], time: (end: 0.02)"#
-        );
-        tank("", "", &moves)
+        let moves = r#"conditions: [InitialVelocity(on: Select(body: "water"), value: (15.0, 0.0))], time: (end: 0.02)"#;
+        tank("", "", moves)
             .replace("formulation: Wall()", &format!("velocity: ({walls:?}, 0.0), formulation: Wall()"))
             .replace(", sound_speed: 20.0", sound)
     };
