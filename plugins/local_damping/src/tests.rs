@@ -115,7 +115,10 @@ fn relaxation_finds_the_static_solution_of_a_cantilever_in_few_periods() {
         sim.run(|_| true).expect("a run");
         let periods = sim.clock().time / period;
         let error = tip(&sim) / wanted - 1.0;
-        assert!(sim.stop_reason().is_some_and(|reason| reason.contains("in static equilibrium")), "{periods} periods");
+        assert!(
+            sim.stop_reason().is_some_and(|reason| reason.contains("in static equilibrium")),
+            "{periods} periods"
+        );
         assert!(error.abs() < 1e-5, "{error:e}");
         assert!(periods < 5.0, "{periods}");
         let balance = sim.ledger().relative_error();
@@ -164,5 +167,9 @@ fn wrong_parameters_are_refused_at_their_place() {
 fn the_scene_beside_the_plugin_comes_to_rest() {
     let mut sim = simulation(include_str!("../scene.ron"));
     sim.run(|_| true).expect("a run");
-    assert!(sim.stop_reason().is_some_and(|reason| reason.contains("in static equilibrium")), "{}", sim.clock().time);
+    assert!(
+        sim.stop_reason().is_some_and(|reason| reason.contains("in static equilibrium")),
+        "{}",
+        sim.clock().time
+    );
 }

@@ -219,7 +219,7 @@ fn what_walls_give_is_measured_by_the_weight_that_a_load_is() {
                 time: (end: 0.1))"#
         ));
         sim.run(|_| true).unwrap();
-        sim.warnings().iter().any(|warning| warning.contains("`given` has given energy"))
+        sim.warnings().iter().any(|warning| warning.contains("`given` has produced energy"))
     };
     // The weight of 80 kg along their height of 0.2 m is 157 J, the energy of compression 0.13 J.
     assert!(!tank(-0.5));
