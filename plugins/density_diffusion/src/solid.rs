@@ -44,7 +44,7 @@ pub fn add(bodies: &BodySet, model: Model, delta: f64, sim: &mut SimBuilder<'_>)
             .reads::<ReferenceVolume>()
             .reads::<DeformationGradient>()
             .reads::<Removed>()
-            .writes::<DilatationRate>(),
+            .adds::<DilatationRate>(),
     );
     Ok(())
 }

@@ -13,11 +13,16 @@ const SPACING: f64 = 0.05;
 
 /// A block whose particles start with a rough density.
 fn block(plugins: &str) -> Simulation {
+    block_beside("", plugins)
+}
+
+/// The same with more bodies behind it.
+fn block_beside(others: &str, plugins: &str) -> Simulation {
     let text = format!(
         r#"(dimension: Two,
             materials: {{"m": StVenantKirchhoff(density: 1000.0, young: 1.0e6, poisson: 0.3)}},
             bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1.0, 0.6)), spacing: {SPACING},
-                      lattice: Relaxed(seed: 7), formulation: Eulerian(), plugins: [{plugins}])],
+                      lattice: Relaxed(seed: 7), formulation: Eulerian(), plugins: [{plugins}]){others}],
             conditions: [InitialDisplacement(on: Select(body: "b"), value: ("0.004*sin(40*x)*cos(31*y)", "0.02*y"))],
             time: (end: 1.0))"#
     );
@@ -80,6 +85,21 @@ fn the_rate_is_that_of_a_naive_sum_over_all_pairs() {
             assert!((rate[i].0 - expected).abs() < 1e-10 * largest, "{plugin}: {} {expected}", rate[i].0);
         }
     }
+}
+
+#[test]
+fn each_of_two_bodies_has_its_own() {
+    let plugin = "density_diffusion(delta: 0.2)";
+    let other = r#", (name: "c", material: "m", shape: Box(min: (3, 0), max: (4, 0.6)), spacing: 0.05, formulation: Eulerian(),
+                     plugins: [density_diffusion(model: Molteni)])"#;
+    let (mut alone, mut beside) = (block(plugin), block_beside(other, plugin));
+    for sim in [&mut alone, &mut beside] {
+        sim.step().expect("a step");
+    }
+    assert_eq!(alone.clock().dt, beside.clock().dt);
+    let (alone, beside) = (column::<DilatationRate>(&alone), column::<DilatationRate>(&beside));
+    assert!(beside.len() > alone.len() && alone.iter().any(|rate| rate.0 != 0.0));
+    assert!(alone.iter().zip(&beside).all(|(one, two)| one.0 == two.0));
 }
 
 #[test]
