@@ -66,8 +66,18 @@ fn the_engine_depends_on_no_plugin_and_on_neither_the_viewer_nor_the_command_lin
     for plugin in plugins() {
         assert!(!engine.contains(&name(&plugin)), "the engine depends on {}", name(&plugin));
     }
-    for other in ["rerun", "clap", "indicatif", "ctrlc", "anyhow", "meshless"] {
+    for other in ["rerun", "clap", "indicatif", "ctrlc", "anyhow", "meshless", "meshless_validation"] {
         assert!(!engine.contains(&other.to_owned()), "the engine depends on {other}");
+    }
+}
+
+#[test]
+fn validation_cases_depend_on_the_engine_alone() {
+    let own = dependencies(&root().join("src/validation/Cargo.toml"));
+    assert!(own.contains(&"meshless_engine".to_owned()), "the list is read wrongly: {own:?}");
+    assert!(!own.contains(&"meshless".to_owned()), "the cases depend on the application");
+    for plugin in plugins() {
+        assert!(!own.contains(&name(&plugin)), "the cases depend on {}", name(&plugin));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every plugin of fluids on coarse variants of every shipped flow; `meshless validate sweep` takes the flows as they are.
 
-use meshless::cli::validate::sweep::{flows, sweep_of};
 use meshless::standard_plugins;
+use meshless_validation::sweep::{flows, sweep_of};
 
 /// Steps of each run.
 const STEPS: u64 = 300;

@@ -1,7 +1,7 @@
 //! Every case of `meshless validate` at its cheapest meaningful resolution.
 
-use meshless::cli::validate::CASES;
 use meshless::standard_plugins;
+use meshless_validation::CASES;
 
 fn passes(id: &str) {
     let case = CASES.iter().find(|case| case.id == id).expect("a known case");
@@ -13,7 +13,7 @@ fn passes(id: &str) {
 }
 
 macro_rules! tests {
-    ($($id:ident $file:ident::$case:ident;)*) => {
+    ($($id:ident $case:path;)*) => {
         $(
             #[test]
             fn $id() {
@@ -23,7 +23,7 @@ macro_rules! tests {
     };
 }
 
-meshless::for_each_case!(tests);
+meshless_validation::for_each_case!(tests);
 
 #[test]
 fn every_case_has_resolutions_that_rise() {

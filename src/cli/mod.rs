@@ -23,9 +23,8 @@ mod schema;
 mod summary;
 mod surface;
 mod sweep;
-mod template;
 mod text;
-pub mod validate;
+mod validate;
 mod version;
 mod view;
 #[cfg(feature = "rerun")]

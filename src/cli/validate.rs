@@ -1,85 +1,12 @@
 //! `meshless validate`: cases with known answers, run through the real engine and compared.
-//!
-//! A case is a scene in `tests/validation/<case>/`, whose resolution and few parameters are set the way `--set` sets
-//! them, and one file here, which says what is measured and what it is compared with.
 
-mod abrasive_flow;
-mod bar_impact;
-mod bending_column;
-mod bending_cylinder;
-mod cantilever;
-mod cantilever_large;
-mod case;
-mod check;
-mod closed_box;
-mod cook_membrane;
-mod dam_break;
-mod dam_break_box;
-mod dam_break_obstacle;
-mod dam_front;
-mod disorder;
-mod elastic_bar;
-mod elliptic_drop;
-mod eulerian;
-mod floating_box;
-mod four_point;
-mod hertz;
-mod homogeneous;
-mod hydrostatic_tank;
-mod incline;
-mod invariants;
-mod jaumann_shear;
-mod johnson_cook;
-mod kernels;
-mod laminar_flows;
-mod laws;
-mod level_at_rest;
-mod lid_driven_cavity;
-mod measure;
-mod metal_cutting;
-mod moving_square;
-mod neighbor_lists;
-mod oscillating_plate;
-mod patch;
-mod plate_with_hole;
-mod pressurised;
-mod punch;
-mod quarter_punch;
-mod random;
-mod rebound;
 mod report;
-mod restitution;
-mod rigid;
-mod rotating_flows;
-mod rotating_patch;
-mod rubber_pull;
-mod rubber_rings;
-pub mod sweep;
-mod taylor;
-mod taylor_bars;
-mod taylor_plane;
-mod tensile_failure;
-mod thick_ring;
-mod touching_surfaces;
-mod turek_hron;
-mod twisting_column;
-mod uniaxial_strain;
-mod updated_lagrangian;
-mod upsetting;
-mod viscous_channel;
-mod viscous_layers;
-mod vortices;
-mod water_on_plate;
-mod waves;
-mod wedge_entry;
 
 use meshless_engine::plugin::Registry;
+use meshless_validation::{CASES, Case, sweep};
 
 use super::failure::Failure;
-use super::template;
 use super::text::say;
-pub use case::{CASES, Case};
-pub use check::{Check, Tolerance};
 use report::Report;
 
 /// Run cases with known answers and print measured value, reference, error and tolerance.

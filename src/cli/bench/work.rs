@@ -1,8 +1,7 @@
 //! The benchmark cases: scenes at any number of particles.
 
 use anyhow::Result;
-
-use super::super::template::Template;
+use meshless_validation::Template;
 
 /// A standard work.
 pub struct Work {

@@ -3,9 +3,8 @@
 use std::time::{Duration, Instant};
 
 use meshless_engine::plugin::Registry;
+use meshless_validation::{Case, Check, Tolerance};
 
-use super::case::Case;
-use super::check::{Check, Tolerance};
 use crate::cli::failure::Failure;
 use crate::cli::text::say;
 

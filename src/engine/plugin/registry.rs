@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 
@@ -67,6 +68,7 @@ const LATER: &[(Kind, &str)] = &[(Kind::Plugin, "artificial_stress")];
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
 
+#[derive(Clone)]
 pub(crate) struct FormulationEntry {
     pub name: &'static str,
     pub reference: &'static str,
@@ -84,13 +86,13 @@ type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 type ReadSupport = fn(&Item, &mut dyn FnMut(Support<'_>));
 
 /// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin crates.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Registry {
     materials: BTreeMap<&'static str, BuildMaterial>,
     formulations: BTreeMap<&'static str, FormulationEntry>,
     /// Formulations that stand in for others.
     stand_ins: BTreeMap<&'static str, &'static str>,
-    builders: BTreeMap<(Kind, &'static str), Box<dyn Any + Send + Sync>>,
+    builders: BTreeMap<(Kind, &'static str), Arc<dyn Any + Send + Sync>>,
     plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
     supports: BTreeMap<&'static str, ReadSupport>,
     /// Names of the plugins that change the laws of materials.
@@ -151,7 +153,7 @@ impl Registry {
         (name, reference): (&'static str, &'static str),
         build: B,
     ) -> &mut Self {
-        self.builders.insert((kind, name), Box::new(build));
+        self.builders.insert((kind, name), Arc::new(build));
         self.describe::<T>(kind, name, reference)
     }
 

@@ -1,0 +1,87 @@
+//! F1: water at rest in a tank.
+
+use anyhow::{Context, Result};
+use meshless_engine::plugin::Registry;
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, Position, Pressure};
+
+use crate::case::Case;
+use crate::check::{Check, Tolerance};
+use crate::measure::{Record, body, run};
+use crate::template::Template;
+
+pub(crate) const CASE: Case = Case {
+    id: "F1",
+    title: "tank at rest",
+    resolutions: &[20, 40, 80],
+    ci_resolution: 20,
+    run: hydrostatic_tank,
+};
+
+const SOURCE: &str = "rho g H";
+const WEIGHT: f64 = 9810.0;
+/// Potential energy of the water, J: rho g H^2 / 2 per metre.
+const POTENTIAL: f64 = 4905.0;
+
+/// Mean over the lowest layer of the pressure at the bottom: that of the particle and of the water below its centre.
+fn bottom(simulation: &Simulation, water: BodyId) -> Result<f64> {
+    let (view, rows) = simulation.world().body_view(water);
+    let (position, pressure) = (view.read::<Position>()?, view.read::<Pressure>()?);
+    let spacing = simulation.world().body(water).spacing;
+    let low: Vec<f64> = rows
+        .filter(|&row| position[row].0.y < spacing)
+        .map(|row| pressure[row].0 + WEIGHT * position[row].0.y)
+        .collect();
+    Ok(low.iter().sum::<f64>() / low.len() as f64)
+}
+
+fn hydrostatic_tank(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let spacing = 1.0 / across as f64;
+    let side = 4.0 * spacing;
+    let path = "tests/validation/hydrostatic_tank/scene.ron";
+    let text = include_str!("../../../tests/validation/hydrostatic_tank/scene.ron");
+    let mut simulation = Template::new(path, text)
+        .set("bodies.water.spacing", spacing)?
+        .set("bodies.tank.spacing", spacing)?
+        .set("bodies.tank.shape[0].min", format!("({}, {})", -side, -side))?
+        .set("bodies.tank.shape[0].max", format!("({}, 1.2)", 1.0 + side))?
+        .build(registry)?;
+    let water = body(&simulation, "water")?;
+    let (mut pressure, mut kinetic) = (Record::default(), Record::default());
+    run(&mut simulation, |simulation| {
+        let time = simulation.clock().time;
+        pressure.push(time, bottom(simulation, water)?);
+        kinetic.push(time, simulation.ledger().total_named("kinetic"));
+        Ok(())
+    })?;
+    let end = simulation.end();
+    let mean = |record: &Record, from: f64, to: f64| {
+        let values: Vec<f64> = record
+            .0
+            .iter()
+            .filter(|(t, _)| (from * end..=to * end).contains(t))
+            .map(|sample| sample.1)
+            .collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let largest = kinetic.0.iter().map(|sample| sample.1).reduce(f64::max).context("no sample")?;
+    let (early, late) = (mean(&kinetic, 0.0, 0.5), mean(&kinetic, 0.5, 1.0));
+    Ok(vec![
+        Check::new(
+            "pressure at the bottom",
+            mean(&pressure, 0.4, 1.0),
+            WEIGHT,
+            Tolerance::Relative(0.01),
+            "Pa",
+            SOURCE,
+        ),
+        Check::below("largest kinetic over potential energy", largest / POTENTIAL, 1e-5, "at rest"),
+        Check::below("kinetic energy, second half over first", late / early, 1.0, "at rest"),
+        Check::below(
+            "energy balance error",
+            simulation.ledger().relative_error().abs(),
+            1e-3,
+            "energy is conserved",
+        ),
+    ])
+}

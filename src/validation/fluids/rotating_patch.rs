@@ -1,0 +1,136 @@
+//! F9: a square patch of fluid that turns, without walls.
+
+use anyhow::{Context, Result};
+use meshless_engine::formulations::fluid::FlowCloud;
+use meshless_engine::glam::DVec3;
+use meshless_engine::plugin::Registry;
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, Position, Pressure};
+
+use crate::case::Case;
+use crate::check::{Check, Tolerance};
+use crate::measure::{Record, body};
+use crate::template::Template;
+
+pub(crate) const CASE: Case = Case {
+    id: "F9",
+    title: "rotating square patch",
+    resolutions: &[25, 50, 100],
+    ci_resolution: 25,
+    run: rotating_patch,
+};
+
+const REFERENCE: &str = include_str!("../../../tests/validation/rotating_patch/reference.csv");
+const SOURCE: &str = "boundary elements, reference.csv";
+/// Tolerances at 50 across; they are in proportion to the spacing.
+const SIDE: f64 = 0.02;
+const PRESSURE: f64 = 0.1;
+/// Resolution from which on the patch is asked to stay in one piece.
+const FINE: usize = 50;
+/// Half of the time over which the pressure is a mean, s, and radius about the centre, m.
+const WINDOW: f64 = 0.1;
+const MIDDLE: f64 = 0.06;
+
+fn rotating_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let spacing = 1.0 / across as f64;
+    let path = "tests/validation/rotating_patch/scene.ron";
+    let text = include_str!("../../../tests/validation/rotating_patch/scene.ron");
+    let mut simulation = Template::new(path, text).set("bodies.patch.spacing", spacing)?.build(registry)?;
+    let patch = body(&simulation, "patch")?;
+    let coarse = 50.0 * spacing;
+    let mut checks = Vec::new();
+    for time in [1.0, 2.0] {
+        let mut pressure = Record::default();
+        let mut side = f64::NAN;
+        while simulation.clock().time < time + WINDOW {
+            simulation.step()?;
+            let now = simulation.clock().time;
+            if now > time - WINDOW {
+                pressure.push(now, pressure_in_the_middle(&simulation, patch)?);
+            }
+            if side.is_nan() && now >= time {
+                side = nearest_side(&simulation, patch)?;
+            }
+        }
+        let mean = pressure.0.iter().map(|sample| sample.1).sum::<f64>() / pressure.0.len() as f64;
+        let reference = |name: &str| -> Result<f64> {
+            let record = Record::read(REFERENCE, "omega_t", name)?;
+            let found = record.0.iter().find(|sample| (sample.0 - time).abs() < 1e-9);
+            Ok(found.context("the reference has no such time")?.1)
+        };
+        let tolerance = Tolerance::Relative(SIDE * coarse);
+        let name = format!("nearest side at omega t = {time}, over L");
+        checks.push(Check::new(name, side, reference("r_min/L")?, tolerance, "1", SOURCE));
+        // The pressure rises by rho omega^2 r^2 / 2 from the centre: what the mean over the disc is above it.
+        let centre = mean - 0.25 * MIDDLE * MIDDLE;
+        let tolerance = Tolerance::Relative(PRESSURE * coarse);
+        let name = format!("pressure in the middle at omega t = {time}, over rho omega^2 L^2");
+        let exact = reference("p_centre/(rho omega^2 L^2)")?;
+        checks.push(Check::new(name, centre, exact, tolerance, "1", SOURCE));
+    }
+    if across >= FINE {
+        let share = largest_piece(&simulation, patch, 2.5 * spacing)?;
+        checks.push(Check::above("share of the largest piece at omega t = 2", share, 0.98, "one piece"));
+    }
+    let balance = simulation.ledger().relative_error().abs();
+    checks.push(Check::below("energy balance error", balance, 5e-3, "energy is conserved"));
+    Ok(checks)
+}
+
+fn positions(simulation: &Simulation, patch: BodyId) -> Result<Vec<DVec3>> {
+    let (view, rows) = simulation.world().body_view(patch);
+    let position = view.read::<Position>()?;
+    Ok(rows.map(|row| position[row].0).collect())
+}
+
+/// Mean pressure within a distance of the centre, Pa.
+fn pressure_in_the_middle(simulation: &Simulation, patch: BodyId) -> Result<f64> {
+    let (view, rows) = simulation.world().body_view(patch);
+    let (position, pressure) = (view.read::<Position>()?, view.read::<Pressure>()?);
+    let inside: Vec<f64> =
+        rows.filter(|&row| position[row].0.length() < MIDDLE).map(|row| pressure[row].0).collect();
+    Ok(inside.iter().sum::<f64>() / inside.len() as f64)
+}
+
+/// Least distance of the surface from the centre, m, as a mean over the four sides: the surface is where the volume of particles over that of space falls to a half.
+fn nearest_side(simulation: &Simulation, patch: BodyId) -> Result<f64> {
+    let positions = positions(simulation, patch)?;
+    let cloud = simulation.resources().get::<FlowCloud>();
+    let filled = |at: DVec3| -> f64 {
+        positions.iter().enumerate().map(|(i, x)| cloud.volume(i) * cloud.kernel.value(x.distance(at))).sum()
+    };
+    let surface = |degrees: u32| {
+        let (y, x) = f64::from(degrees).to_radians().sin_cos();
+        let (mut inside, mut outside) = (0.15, 0.8);
+        for _ in 0..12 {
+            let middle = 0.5 * (inside + outside);
+            if filled(middle * DVec3::new(x, y, 0.0)) > 0.5 { inside = middle } else { outside = middle }
+        }
+        0.5 * (inside + outside)
+    };
+    let mean = |k: u32| (0..4).map(|side| surface(3 * k + 90 * side)).sum::<f64>() / 4.0;
+    Ok((0..30).map(mean).fold(f64::INFINITY, f64::min))
+}
+
+/// Share of the particles in the largest group whose members are nearer to each other than `gap`, m.
+fn largest_piece(simulation: &Simulation, patch: BodyId, gap: f64) -> Result<f64> {
+    let positions = positions(simulation, patch)?;
+    let mut waiting: Vec<usize> = (0..positions.len()).collect();
+    let mut largest = 0;
+    while let Some(start) = waiting.pop() {
+        let (mut piece, mut done) = (vec![start], 0);
+        while done < piece.len() {
+            let at = positions[piece[done]];
+            waiting.retain(|&k| {
+                let near = positions[k].distance(at) < gap;
+                if near {
+                    piece.push(k);
+                }
+                !near
+            });
+            done += 1;
+        }
+        largest = largest.max(piece.len());
+    }
+    Ok(largest as f64 / positions.len() as f64)
+}

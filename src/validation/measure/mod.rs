@@ -1,0 +1,15 @@
+//! What cases measure, and how they run.
+
+mod disorder;
+mod motion;
+mod random;
+mod record;
+mod rigid;
+mod runs;
+
+pub use disorder::Disorder;
+pub use motion::{MaterialPoint, body, momentum};
+pub use random::Random;
+pub use record::{Record, rows};
+pub use rigid::state;
+pub use runs::{relax, run, run_until};

@@ -1,0 +1,160 @@
+//! The sweep: every plugin of fluids at its default on every shipped flow.
+//!
+//! Each plugin joins those that the scene gives its fluids, or takes the place of the one of its name. Looked at is what holds for every flow: the volume of the
+//! fluid, the signs of the accounts, and that nothing is inside of a wall.
+
+use anyhow::{Context, Result};
+use meshless_engine::assembly;
+use meshless_engine::formulations::fluid::{FlowCloud, Near};
+use meshless_engine::glam::DVec3;
+use meshless_engine::plugin::Registry;
+use meshless_engine::scene::{self, Source};
+use meshless_engine::schedule::{Account, AccountKind};
+use meshless_engine::simulation::Simulation;
+
+use crate::case::Case;
+use crate::check::Check;
+
+/// The whole sweep. It is no case of the list: it takes minutes, and runs where it is asked for by name.
+pub const CASE: Case = Case {
+    id: "sweep",
+    title: "every plugin at its default on every shipped flow, 2 000 steps",
+    resolutions: &[1],
+    ci_resolution: 1,
+    run: |registry, _| sweep(registry, 2000),
+};
+
+macro_rules! flows {
+    ($($name:literal),*) => {
+        const FLOWS: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../assets/scenes/", $name, ".ron")))),*];
+    };
+}
+flows!(
+    "dam_break",
+    "dam_break_3d",
+    "dam_break_obstacle",
+    "elastic_gate",
+    "floating_box",
+    "sloshing",
+    "taylor_green",
+    "water_on_plate",
+    "water_wheel"
+);
+
+/// Plugins of fluids.
+const PLUGINS: &[&str] =
+    &["density_diffusion", "particle_shifting", "tensile_control", "xsph", "artificial_viscosity"];
+
+/// Share of all energy that walls may give.
+const WALLS: f64 = 0.05;
+
+/// Names of the flows.
+pub fn flows() -> impl Iterator<Item = &'static str> {
+    FLOWS.iter().map(|(name, _)| *name)
+}
+
+/// Runs every plugin for so many steps on every flow.
+fn sweep(registry: &Registry, steps: u64) -> Result<Vec<Check>> {
+    let mut checks = Vec::new();
+    for flow in flows() {
+        checks.extend(sweep_of(registry, flow, &[], steps)?);
+    }
+    Ok(checks)
+}
+
+/// Runs every plugin for so many steps on one of the flows, with values set as `--set path=value` does.
+///
+/// # Errors
+/// No such flow, a value that cannot be set, or a run that fails.
+pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u64) -> Result<Vec<Check>> {
+    let (_, text) = FLOWS.iter().find(|(name, _)| *name == flow).context("no such flow")?;
+    let mut source = Source::new(format!("assets/scenes/{flow}.ron"), *text);
+    for (path, value) in set {
+        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
+    }
+    let mut checks = Vec::new();
+    for plugin in PLUGINS {
+        checks.extend(run(registry, (flow, source.clone()), plugin, steps)?);
+    }
+    Ok(checks)
+}
+
+fn run(registry: &Registry, (flow, source): (&str, Source), plugin: &str, steps: u64) -> Result<[Check; 5]> {
+    let (scene, source) = scene::parse(with_plugin(source, plugin)?)?;
+    let mut simulation = assembly::build(&scene, &source, registry)?;
+    simulation.start()?;
+    let at_start = volumes(&simulation);
+    simulation.run(|simulation| simulation.clock().step < steps)?;
+    let at_end = volumes(&simulation);
+    let change = |k: usize| (at_end[k] / at_start[k] - 1.0).abs();
+    let name = |what: &str| format!("{flow} with {plugin}: {what}");
+    let [accounts, walls] = given(&simulation);
+    Ok([
+        Check::below(name("change of volume"), change(0), 0.01, "a liquid"),
+        Check::below(name("change of volume over room"), change(1), 0.01, "a liquid"),
+        Check::below(name("energy from accounts that take it"), accounts, 1e-3, "of all energy"),
+        Check::below(name("energy from walls"), walls, WALLS, "of all energy"),
+        Check::below(name("walls and bodies entered"), intrusions(&simulation), 0.5, "closed"),
+    ])
+}
+
+/// The scene with a plugin at its default on all of its fluids.
+fn with_plugin(source: Source, plugin: &str) -> Result<Source> {
+    let (scene, mut source) = scene::parse(source)?;
+    // What all bodies have of that name would have none left to act on.
+    if scene.plugins.iter().any(|item| item.name() == plugin) {
+        let others = scene.plugins.iter().filter(|item| item.name() != plugin);
+        let list: Vec<&str> = others.map(|item| item.text()).collect();
+        let set = source.with_override("plugins", &format!("[{}]", list.join(", ")));
+        source = set.map_err(|problem| source.error(vec![problem]))?;
+    }
+    for body in scene.bodies.iter().filter(|body| body.formulation.name() == "Fluid") {
+        let others =
+            body.plugins.iter().filter(|item| item.name() != plugin).map(|item| item.text().to_owned());
+        let list: Vec<String> = others.chain([format!("{plugin}()")]).collect();
+        let set =
+            source.with_override(&format!("bodies.{}.plugins", body.name), &format!("[{}]", list.join(", ")));
+        source = set.map_err(|problem| source.error(vec![problem]))?;
+    }
+    Ok(source)
+}
+
+/// Volume of the fluids by their density, m3, and the volume that particles away from surfaces have over the room that they take.
+fn volumes(simulation: &Simulation) -> [f64; 2] {
+    let cloud = simulation.resources().get::<FlowCloud>();
+    let volume: f64 = (0..cloud.fluid).map(|i| cloud.volume(i)).sum();
+    let (mut filled, mut count) = (0.0, 0.0);
+    for i in 0..cloud.fluid {
+        let mut sum = cloud.volume(i) * cloud.kernel.value(0.0);
+        let mut first = DVec3::ZERO;
+        cloud.for_each_neighbor(i, |near: &Near| {
+            sum += near.volume * near.kernel;
+            first += near.volume * near.weight * near.x_ij;
+        });
+        if first.length() * cloud.kernel.smoothing_length() < 0.1 {
+            (filled, count) = (filled + sum, count + 1.0);
+        }
+    }
+    [volume, filled / count]
+}
+
+/// Largest energy that an account of dissipation has given, and that walls have, over the largest account. Walls push water on at the start and take as much when it arrives:
+/// of them a share is allowed.
+fn given(simulation: &Simulation) -> [f64; 2] {
+    let ledger = simulation.ledger();
+    let total = |name: &str| ledger.total_named(name);
+    let scale = ledger.accounts().iter().map(|account| total(&account.name).abs()).fold(0.0, f64::max);
+    let of = |walls: bool| {
+        let chosen = |account: &&Account| {
+            account.kind == AccountKind::Dissipated && (account.name == "wall_pressure") == walls
+        };
+        let accounts = ledger.accounts().iter().filter(chosen);
+        accounts.map(|account| -total(&account.name)).fold(0.0, f64::max) / scale
+    };
+    [of(false), of(true)]
+}
+
+/// Number of bodies and walls that the run has found particles inside of.
+fn intrusions(simulation: &Simulation) -> f64 {
+    simulation.warnings().iter().filter(|text| text.contains(" is inside of ")).count() as f64
+}
