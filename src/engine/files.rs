@@ -1,4 +1,4 @@
-//! Files of users: read whole, but never without a limit.
+//! Files of users: read whole, up to a limit.
 
 use std::fs::File;
 use std::io::{Error, Read};

@@ -1,6 +1,6 @@
-//! Held parts of bodies whose kernels live in the present configuration: they must be as thick as the kernel reaches.
+//! Clamps of bodies whose kernels live in the current configuration: they must be as thick as the support radius.
 //!
-//! A particle before the clamp sees through a thinner one: what lies behind it is empty, as at a free surface, and the clamp is soft.
+//! The support of a particle in front of a thinner clamp reaches into the empty space behind it, as at a free surface, and the clamp is too soft.
 
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::notation::quantity;

@@ -1,4 +1,4 @@
-//! What plugins hand in goes to the bodies that it is for, whatever their formulations, or is an error that says where.
+//! Terms of plugins reach the bodies they are meant for, whatever the formulation, or are an error with its place.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,4 +1,4 @@
-//! How many particles this program can hold.
+//! The number of particles that fit into memory.
 
 use std::fs::read_to_string;
 

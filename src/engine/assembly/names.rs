@@ -1,4 +1,4 @@
-//! The first look at a scene with a registry: every name is known, and its parameters can be read. All that is misspelt is told at once, before
+//! The first check of a scene against a registry: every name is known, and its parameters can be read. All misspellings are reported at once, before
 //! anything is placed or estimated.
 
 use crate::plugin::{Kind, Registry};

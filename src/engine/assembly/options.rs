@@ -1,4 +1,4 @@
-//! What is asked of a simulation beside its scene.
+//! Options of a simulation beside its scene.
 
 use std::path::PathBuf;
 

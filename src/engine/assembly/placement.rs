@@ -1,4 +1,4 @@
-//! Bodies against the domain and its periods, before anything looks for neighbours: particles that lie outside, or twice at one place, make that
+//! Bodies against the domain and its periods, before any neighbour search: particles outside the domain, or two at one place, make that
 //! search slow and its result wrong.
 
 use crate::notation::{count, digits, number};

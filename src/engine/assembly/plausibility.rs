@@ -1,4 +1,4 @@
-//! Values that are allowed and most likely a slip of units.
+//! Values that are allowed but most likely a slip of units.
 
 use crate::materials::Law;
 use crate::notation::{number, quantity, quantity_to};

@@ -1,4 +1,4 @@
-//! Plans to columns: spawns every phase and fills the columns that all phases have.
+//! From plans to columns: spawns every phase and fills the columns that all phases have.
 
 use glam::DVec3;
 

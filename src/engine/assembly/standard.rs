@@ -1,4 +1,4 @@
-//! What the engine itself brings under a name.
+//! The names that the engine itself registers.
 
 use crate::materials::{
     Al6061T6, Copper, DecoupledNeoHookean, Fluid, Hypoelastic, J2, JohnsonCook, NeoHookean, PMMA, Rubber,

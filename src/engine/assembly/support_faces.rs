@@ -1,8 +1,8 @@
-//! Particles that a side of a body is held by stand on that side.
+//! Particles held by a side of a body stand on that side.
 //!
-//! The outermost layer is half a spacing inside of it, and would make the body shorter by that. It is put on the side with all that it is: the next layer is one and a half spacings away,
-//! and the cells of both are still the body between them. Where the side is no plane, beside symmetry planes and periodic sides, and in scenes with fluids, which see the
-//! particles of a body as its surface, particles stay in their lattice.
+//! The outermost layer of a lattice is half a spacing inside, which would shorten the body by that much. It is moved onto the side with its mass and volume: the next layer is then one and a half
+//! spacings away, and the cells of both fill the body between them. Particles keep their lattice where the side is not a plane, beside symmetry planes and periodic sides, and in scenes with fluids, for which
+//! the particles of a body are its surface.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Held particles stand on the edge of what a scene says is held.
+//! Held particles stand on the edge that the scene states.
 
 use glam::DVec3;
 

@@ -1,11 +1,11 @@
-//! Held particles stand where the held part of a body is said to end.
+//! Held particles stand at the edge that the scene states for the held part of a body.
 //!
-//! A lattice has its outermost held particles a way d behind the edge of the held part, mostly half a spacing a, and the field of displacements has its kink there. They are
-//! put on the edge, and what is held behind them is seen by nobody: as if the body ended there. Every particle carries the share of its stress and energy that
-//! its cell has before the edge, 1/2 - d/a of one that was put there, and 3/2 - d/a at most of the one in front of it. Then the fit of F is exact for what is linear up to the edge, all cells
-//! together are the body before the edge, and a bar is as stiff as it should be, to 0.08 (in shear 0.03) spacings of its length wherever the edge is in the lattice.
+//! On a lattice the outermost held particles stand a distance d behind that edge, mostly half a spacing a, and the displacement field has its kink there. They are moved to
+//! the edge, and the particles held behind them become invisible, as if the body ended there. Every particle carries the share of its stress and energy that
+//! its cell has in front of the edge: 1/2 - d/a for a particle that was moved, and at most 3/2 - d/a for the one in front of it. The fit of F is then exact for linear fields up to the edge, and all cells
+//! together fill the body in front of it. A bar has the correct stiffness to 0.08 (in shear 0.03) spacings of its length, wherever the edge lies in the lattice.
 //!
-//! `face` is the same with the side of the body for an edge: d = -a/2, and nothing behind it.
+//! `face` is the same with the side of the body as the edge: d = -a/2, and no particles behind it.
 
 use glam::DVec3;
 

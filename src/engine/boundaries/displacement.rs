@@ -1,4 +1,4 @@
-//! Particles that are moved to given places.
+//! Particles with prescribed displacement.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

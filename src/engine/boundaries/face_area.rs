@@ -1,4 +1,4 @@
-//! The area that a load acts on, from the particles that carry it.
+//! The area on which a load acts, from the particles that carry it.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Loads on fluids, told to the walls beside them: the pressure in a wall rises along every acceleration that the fluid feels.
+//! Loads on fluids, as the walls beside them need them: the pressure in a wall rises along every acceleration that acts on the fluid.
 
 use std::sync::Arc;
 

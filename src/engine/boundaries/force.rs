@@ -1,4 +1,4 @@
-//! Forces of a given total.
+//! Forces with a given total.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,6 +1,6 @@
-//! Forces from outside, and the work they do.
+//! External forces and their work.
 //!
-//! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, which is what the two kicks of the leapfrog put into the motion.
+//! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, the kinetic energy added by the two kicks of the leapfrog.
 
 use std::sync::Arc;
 

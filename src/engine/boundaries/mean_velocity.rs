@@ -1,4 +1,4 @@
-//! Flows that are driven so that their mean velocity stays: a channel with a constant flux.
+//! Flows driven at a constant mean velocity: a channel with a constant flux.
 //!
 //! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies together at the end of a step, weighted by mass,
 //! `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.

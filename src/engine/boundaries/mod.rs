@@ -1,4 +1,4 @@
-//! Conditions: what holds, moves and loads bodies. A condition is one file and one line of [`register`].
+//! Conditions: supports, prescribed motion and loads. A condition is one file and one line of [`register`].
 
 mod body_force;
 mod displacement;

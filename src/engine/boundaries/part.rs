@@ -1,4 +1,4 @@
-//! The selected particles of a body, with their places in the reference configuration.
+//! The selected particles of a body, with their positions in the reference configuration.
 
 use glam::DVec3;
 

@@ -1,8 +1,7 @@
 //! Prescribed motion: the velocity of constrained axes at mid-step and at the end of the step.
 //!
-//! The drift moves a particle by dt v(n+1/2), so the velocity at mid-step decides where it goes. The velocity at the end
-//! of the step is what outputs, damping and viscosity see. Whatever the condition changes of the kinetic energy is the
-//! work of the constraint.
+//! The drift moves a particle by dt v(n+1/2), so that the velocity at mid-step determines its path. Outputs, damping and viscosity use the velocity at the end
+//! of the step. The change of kinetic energy by the condition is the work of the constraint.
 
 use std::sync::Arc;
 

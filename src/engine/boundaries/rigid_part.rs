@@ -1,4 +1,4 @@
-//! Rigid bodies in a selection: what holds or drives them does so as a whole.
+//! Rigid bodies in a selection: a support or a prescribed motion acts on the whole body.
 
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::world::BodyId;

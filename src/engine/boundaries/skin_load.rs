@@ -1,6 +1,6 @@
-//! Tractions and pressures on the surface of a body, which its skin hands on to the particles.
+//! Tractions and pressures on the surface of a body, which its skin distributes to the particles.
 //!
-//! The work of a step is that of the mean of the forces at its two ends on the way of the vertices.
+//! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

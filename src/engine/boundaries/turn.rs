@@ -1,4 +1,4 @@
-//! Rigid bodies that turn with a given rate.
+//! Rigid bodies that rotate at a given rate.
 
 use glam::DVec3;
 use schemars::JsonSchema;

@@ -1,4 +1,4 @@
-//! Particles that move with a given velocity.
+//! Particles with prescribed velocity.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,8 +1,8 @@
-//! What bodies see of each other across periodic sides and symmetry planes.
+//! Images of bodies in contact, across periodic sides and symmetry planes.
 //!
 //! Across a periodic side the nearest image counts. Across symmetry planes the particles of the first body touch mirror images of those of the
-//! second: a force on the first goes mirrored, with opposite sign, to the source of the image. Of the two pairs of the whole problem, one is
-//! the mirror image of the other, and one is in the half that is solved.
+//! second: a force on the first acts mirrored, with opposite sign, on the source of the image. Of the two pairs of the whole problem, one is
+//! the mirror image of the other, and one lies in the half that is computed.
 
 use crate::symmetry::{Map, MirrorPlane, images};
 use crate::world::BodyId;

@@ -1,4 +1,4 @@
-//! What a contact law is: a normal force as a function of the overlap.
+//! The trait of a contact law: a normal force as a function of the overlap.
 
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;

@@ -1,4 +1,4 @@
-//! The least of lengths.
+//! The minimum of lengths.
 
 use crate::parallel::BlockSum;
 

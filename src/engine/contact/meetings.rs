@@ -1,5 +1,5 @@
-//! The contacts of a step: which candidates touch, and what each contact does. Both are found in parallel and kept in the order of the
-//! candidates; sums are taken over blocks of contacts, so that nothing depends on the number of threads or on when the list of candidates was made.
+//! The active contacts of a step and their forces. Both are computed in parallel and kept in the order of the
+//! candidates. Sums are taken over blocks of contacts, so that nothing depends on the number of threads or on the age of the list of candidates.
 
 use super::memory::{Memories, Memory, PairKey};
 use super::sieve::{BLOCKS_OF_TEST, Found, keep};

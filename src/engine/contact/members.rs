@@ -1,4 +1,4 @@
-//! The particles of a body in contact, as they are now.
+//! The particles of a body in contact, in their current state.
 
 use std::cell::Ref;
 

@@ -1,4 +1,4 @@
-//! What a contact remembers from one step to the next, by its pair.
+//! Contact history: values of a contact kept from one step to the next, by pair.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Which nodes are near a surface: found again when the bodies may have moved by the skin.
+//! Nodes near a surface, searched again when the bodies may have moved by the skin of the search.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! How fast the bodies in contact move, and how far their particles are stretched: on that depends how long a list of candidates holds.
+//! Bounds of the motion and the stretches of the bodies in contact, which determine how long a list of candidates is valid.
 
 use super::shape::squared_stretch;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};

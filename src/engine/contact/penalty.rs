@@ -1,4 +1,4 @@
-//! A spring that hardens as particles are pressed in.
+//! A spring that hardens with the penetration of a particle.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

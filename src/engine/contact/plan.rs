@@ -1,4 +1,4 @@
-//! From the contacts of a scene to the systems that make them.
+//! From the contacts of a scene to the systems that compute them.
 
 use std::sync::Arc;
 

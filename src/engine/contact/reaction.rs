@@ -1,4 +1,4 @@
-//! What contacts with a surface do to both sides, and how the rigid bodies take it.
+//! Forces of contacts with a surface on both sides, and their sum on rigid bodies.
 
 use glam::DVec3;
 

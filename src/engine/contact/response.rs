@@ -1,9 +1,9 @@
-//! The force of one contact: spring and dashpot along the normal, spring, dashpot and Coulomb's limit across it.
+//! The force of one contact: spring and dashpot along the normal; spring, dashpot and Coulomb's limit in the tangential direction.
 //!
-//! Velocities are those of mid-step. The dashpots act on the velocity that the contact itself leaves at the end of the
-//! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w: they are damping at any time step, and the
-//! restitution does not depend on it to first order. A particle of a body is held by its bonds: they take up the force f of the
-//! last step, and only its change moves the particle. Without that, a dashpot would pull at what is pressed and at rest, and its heat were negative.
+//! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at the end of the
+//! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time step, and the
+//! restitution does not depend on the step to first order. A particle of a body is also held by its bonds, which balance the contact force f of the
+//! last step: only the change of f moves the particle. Otherwise a dashpot would pull at pressed bodies at rest, and its heat would be negative.
 
 use glam::DVec3;
 

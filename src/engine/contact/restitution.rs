@@ -1,4 +1,4 @@
-//! Restitution of a spring and dashpot that do not pull.
+//! Restitution of a spring and dashpot without adhesion.
 
 use std::f64::consts::PI;
 

@@ -1,7 +1,7 @@
-//! Which particles may touch: pairs within reach and a skin, found again when the bodies may have moved by the skin.
+//! Candidates of contact: pairs within reach and a skin, searched again when the bodies may have moved by the skin.
 //!
-//! Only particles near the common part of the boxes around two bodies are looked at. The list holds every pair that
-//! touches, whenever it was made, so that nothing depends on when that was.
+//! The search covers the particles near the common part of the boxes around two bodies. The list contains every pair in
+//! contact, however old it is, so that results do not depend on its age.
 
 use glam::DVec3;
 

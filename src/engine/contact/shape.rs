@@ -1,8 +1,8 @@
-//! The shapes of particles in contact: ellipsoids, what the deformation gradients have made of spheres of half a spacing.
+//! The shapes of particles in contact: ellipsoids, into which the deformation gradients map spheres of half a spacing.
 //!
-//! Overlaps are measured in the reference configuration, d = r (1 - s), where s is how far the other side is away over how far it would be where
-//! both just touch. So contact is at the surface of the body however flat its particles are pressed, a particle that turns keeps its shape, and
-//! the spring of a particle gets stiffer as it gets thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the
+//! Overlaps are measured in the reference configuration, d = r (1 - s), where s is the distance of the other side over its distance at first
+//! contact. Contact is thus at the surface of the body however flat its particles are, a rotating particle keeps its shape, and
+//! the spring of a particle stiffens as it gets thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the
 //! point of contact `x_i + F_i A_i` and not at the particle (see [`LocalMotion`](crate::solids::LocalMotion)).
 
 use glam::{DMat3, DVec3};

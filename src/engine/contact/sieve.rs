@@ -1,4 +1,4 @@
-//! Members of a long list that pass a test: found in parallel, kept in their order.
+//! Selects the entries of a long list that pass a test, in parallel and in order.
 
 use crate::parallel::{BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks};
 

@@ -1,6 +1,6 @@
-//! Which facets of two skins may touch each other, found again when the bodies may have moved by the skin of the search.
+//! Facets of two skins that may touch each other, searched again when the bodies may have moved by the skin of the search.
 //!
-//! The search looks at regions of the skins alone, which are found again when the bodies may have moved a few spacings.
+//! The search covers regions of the skins, which are searched again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The point of a skin that is nearest to a place: on which facet, how deep below the surface.
+//! The point of a skin nearest to a position: its facet and the depth below the surface.
 
 use glam::DVec3;
 

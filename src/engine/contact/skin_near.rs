@@ -1,6 +1,6 @@
-//! Which facets of a skin may touch a tool, found again when the bodies may have moved by the skin of the search.
+//! Facets of a skin that may touch a tool, searched again when the bodies may have moved by the skin of the search.
 //!
-//! The search looks at a region of the skin alone, which is found again when the bodies may have moved a few spacings.
+//! The search covers a region of the skin, which is searched again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 

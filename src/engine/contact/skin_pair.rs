@@ -1,14 +1,14 @@
 //! Contact of the skins of two deformable bodies.
 //!
-//! Points of either skin are tested against the facets of the other one, and the integral is shared out: a point counts by
+//! Points of either skin are tested against the facets of the other one, and the integral is shared. A point counts by
 //!
 //! ```text
 //! w = (1 + c - c')/2,       c at the point, c' at its foot,      c = 1 at corners, 0 elsewhere, linear in between
 //! ```
 //!
-//! so that flat sides share it evenly, and a corner is always the one that is tested. The overlap is the distance of the point from the facets, radial at
-//! notches. The force follows from the energy, with the change of w as the foot moves, and acts along the line between point and foot. Friction acts on both
-//! bodies at the point, which the material of the other one reaches by its deformation gradient at the foot.
+//! so that flat sides share it evenly, and at a corner the corner is the tested point. The overlap is the distance of the point from the facets, radial at
+//! notches. The force is the gradient of the energy, including the change of w as the foot moves, and acts along the line between point and foot. Friction acts on both
+//! bodies at the point; the material of the other body follows it with the deformation gradient at the foot.
 
 use std::sync::Arc;
 

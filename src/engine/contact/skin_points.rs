@@ -1,8 +1,8 @@
-//! The points at which a skin feels a tool.
+//! The points at which the contact of a skin with a tool is integrated.
 //!
-//! Where the contact ends on a facet, and where the tool is curved or has an edge, a facet has points so close that it slides there without grooves. A facet that is
-//! behind a smooth part of the tool with all of its vertices has as few as the square of a linear overlap needs; behind a plane its vertices tell where they are, and
-//! where the overlap is even they are its points themselves. That is most of a contact. Points remember nothing, so that a facet may go from one rule to another; friction belongs to vertices.
+//! A facet has closely spaced points, so that it slides without grooves, where the contact area ends on it or where the tool is curved or has an edge. A facet with all vertices
+//! behind a smooth part of the tool has only the points needed to integrate the square of a linear overlap. Behind a plane the vertices determine the points,
+//! and under uniform overlap the vertices are the points; that is most of a contact. Points carry no history, so that a facet can change its rule; friction belongs to vertices.
 
 use glam::DVec3;
 

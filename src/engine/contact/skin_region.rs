@@ -1,4 +1,4 @@
-//! The part of a skin that may come near another body before long.
+//! The part of a skin that may soon come near another body.
 
 use crate::skins::Skin;
 

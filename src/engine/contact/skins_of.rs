@@ -1,4 +1,4 @@
-//! Which bodies touch with their skins.
+//! The bodies that touch with their skins.
 
 use std::sync::Arc;
 

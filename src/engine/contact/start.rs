@@ -1,4 +1,4 @@
-//! Bodies that start inside others.
+//! Bodies that overlap others at the start.
 
 use super::sides::{Nodes, Sides};
 use super::touching::Touching;

@@ -1,4 +1,4 @@
-//! The time step that contact allows.
+//! The stable time step of contact.
 
 use super::law::{NormalForce, Touch};
 use crate::schedule::Step;

@@ -1,5 +1,5 @@
-//! The particles of a body that touch in a step. What their neighbourhoods do is worked out once for each, and so is what acts on them: every
-//! particle adds up what its contacts do, in their order.
+//! The particles of a body in contact in a step. The motion of their neighbourhoods is computed once for each, and every
+//! particle sums the forces of its contacts in their order.
 
 use glam::{DMat3, DVec3};
 

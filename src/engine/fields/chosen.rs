@@ -1,4 +1,4 @@
-//! A field that something has asked for, found in every body that has it.
+//! A requested field, found in every body that has it.
 
 use std::ops::Range;
 use std::sync::Arc;

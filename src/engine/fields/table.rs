@@ -1,4 +1,4 @@
-//! All fields of a simulation, and how a name finds its field.
+//! All fields of a simulation, and the lookup of a field by its name.
 
 use std::sync::Arc;
 

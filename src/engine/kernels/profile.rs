@@ -1,4 +1,4 @@
-//! What a kernel file states.
+//! The trait that a kernel file implements.
 
 /// Shape of a kernel, `f(q)` with `q = r / h >= 0`, and its constants.
 ///

@@ -1,4 +1,4 @@
-//! Small symmetric matrices, eigenvalues and polar decomposition: what glam does not have.
+//! Small symmetric matrices, eigenvalues and polar decomposition, which glam does not provide.
 
 mod eigen;
 mod near_identity;

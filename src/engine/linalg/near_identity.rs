@@ -1,6 +1,6 @@
-//! Logarithm and exponential of symmetric matrices near the identity: what elastic strains of metals are.
+//! Logarithm and exponential of symmetric matrices near the identity, such as elastic strains of metals.
 //!
-//! Nearly equal eigenvalues are where closed forms by eigenvectors lose their digits, and where series are best. Far from
+//! Closed forms with eigenvectors lose their digits where eigenvalues nearly coincide; series are most accurate there. Far from
 //! the identity the spectral decomposition takes over.
 
 use super::{Eigen, Sym3};

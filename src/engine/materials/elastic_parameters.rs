@@ -1,4 +1,4 @@
-//! The parameters that all elastic solids share, declared once.
+//! The parameters shared by all elastic solids, declared once.
 
 /// Declares the parameters of an elastic solid as a scene gives them: density and elastic constants, then its own fields.
 ///

@@ -1,5 +1,5 @@
-//! The state of an equation of state whose pressure depends on the path: what volume change and plastic work have put into
-//! a particle.
+//! The state of an equation of state with a path-dependent pressure: the internal energy from volume change and plastic
+//! work.
 
 use super::eos::Pressure;
 use super::state::StateRows;

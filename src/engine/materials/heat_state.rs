@@ -1,4 +1,4 @@
-//! The temperature of a law that plastic work heats, or of one in which it plays no part.
+//! The temperature of a law heated by plastic work, or of a law without temperature.
 
 use super::state::StateRows;
 use crate::world::{ColumnSet, Temperature};

@@ -1,4 +1,4 @@
-//! Heat from plastic work: too fast to flow away, it stays where it is made.
+//! Adiabatic heating: heat of plastic work stays in the particle.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,4 +1,4 @@
-//! The hypoelastic law of [`HypoelasticJ2`] for formulations that know the deformation gradient.
+//! The hypoelastic law of [`HypoelasticJ2`] for formulations with a deformation gradient.
 
 use glam::DMat3;
 

@@ -1,4 +1,4 @@
-//! J2 plasticity against closed forms, its books, frame indifference, and the return mapping.
+//! J2 plasticity against closed forms, its energy balance, frame indifference, and the return mapping.
 
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;

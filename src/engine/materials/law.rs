@@ -1,4 +1,4 @@
-//! What a material is to the engine, and what a hyperelastic law has to provide.
+//! The material as the engine sees it, and the trait of a hyperelastic law.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Named materials with their sources: parameters from the literature, each of which a scene may override.
+//! Named materials with their sources: parameters from the literature, each of which a scene can override.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

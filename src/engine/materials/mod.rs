@@ -1,4 +1,4 @@
-//! Materials: laws as functions of small matrices, without any knowledge of particles.
+//! Materials: laws as functions of small matrices, independent of particles.
 
 mod decoupled_neo_hookean;
 mod elastic_constants;

@@ -1,4 +1,4 @@
-//! The state of a material: columns that a law declares, handed to it block by block.
+//! The state of a material: columns that a law declares, passed to it block by block.
 
 use std::any::TypeId;
 

@@ -1,4 +1,4 @@
-//! What a plugin sees while a simulation is built.
+//! The interface of a plugin while a simulation is built.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Why a plugin, a condition or a formulation cannot be built.
+//! Errors of building a plugin, a condition or a formulation.
 
 use thiserror::Error;
 

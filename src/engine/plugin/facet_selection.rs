@@ -1,4 +1,4 @@
-//! Selections of surfaces: the facets of a skin that a load acts on.
+//! Selections of surfaces: the facets of a skin on which a load acts.
 
 use glam::DVec3;
 

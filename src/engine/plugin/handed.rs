@@ -1,5 +1,5 @@
-//! What plugins hand to the rest of the engine while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
-//! Terms are given out by body, and what nobody has taken in the end is an error.
+//! Contributions of plugins while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
+//! Terms are assigned by body, and a term that nobody has taken in the end is an error.
 
 use std::any::{Any, TypeId};
 use std::collections::BTreeMap;

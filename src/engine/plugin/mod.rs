@@ -1,4 +1,4 @@
-//! How things are added to the engine: the registry that scenes are resolved with, and the builder that plugins see.
+//! Extension of the engine: the registry that resolves names of scenes, and the builder that plugins use.
 
 mod builder;
 mod error;

@@ -1,4 +1,4 @@
-//! What the bodies of a formulation are, and what they take from plugins, conditions and contacts.
+//! The kind of bodies that a formulation moves, and the terms it accepts from plugins, conditions and contacts.
 
 use super::builder::SimBuilder;
 use super::error::SetupError;

@@ -1,4 +1,4 @@
-//! A body between the scene and the world: its particles are placed, its columns not yet made.
+//! A body between scene and world: its particles are placed, its columns do not exist yet.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The registry: which names a scene may use, and what is behind them.
+//! The registry: the names that a scene can use, and their implementations.
 
 use std::any::Any;
 use std::collections::{BTreeMap, BTreeSet};

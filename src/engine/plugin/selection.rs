@@ -1,4 +1,4 @@
-//! Selections: the rows that a condition or a probe acts on.
+//! Selections: the rows on which a condition or a probe acts.
 
 use std::path::Path;
 

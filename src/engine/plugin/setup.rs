@@ -1,4 +1,4 @@
-//! What is done once, between spawning the particles and the first step.
+//! Work done once, between spawning the particles and the first step.
 
 use super::error::SetupError;
 use crate::schedule::Resources;

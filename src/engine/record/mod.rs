@@ -1,7 +1,7 @@
-//! What a run writes, and how it is read back: the file formats.
+//! Output of a run and its file formats, for writing and reading.
 //!
-//! The files know nothing of the world or the scene: slices go in, files come out. A [`Recorder`] gets the same slices.
-//! [`output`] knows what is due and where it goes.
+//! The formats know nothing of world or scene: slices go in, files come out. A [`Recorder`] gets the same slices.
+//! [`output`] decides when something is due and where it goes.
 
 pub mod atomic;
 pub mod container;

@@ -1,4 +1,4 @@
-//! What a run gives to those that show or keep it: frames of particles, samples of time series.
+//! The interface of recorders: frames of particles, samples of time series.
 
 use std::path::Path;
 

@@ -1,8 +1,8 @@
-//! Time series as CSV: what probes and the energy ledger write, and what reference data comes in.
+//! Time series as CSV: output of probes and of the energy ledger, and reference data.
 //!
-//! A header `t[s],x[m],...` of names and units, then one row a record. Numbers are written with the fewest digits
-//! that read back to the same bits. Rows reach the file whole, so that a run killed at any moment leaves a file that
-//! can be read up to its last flush.
+//! A header `t[s],x[m],...` of names and units, then one row per record. Numbers are written with the fewest digits
+//! that read back to the same bits. Rows reach the file whole, so that a killed run leaves a file that is
+//! readable up to its last flush.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};

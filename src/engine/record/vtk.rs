@@ -1,9 +1,9 @@
-//! ParaView files: one `.vtu` a frame and body, and a `.pvd` that lists them with their times.
+//! ParaView files: one `.vtu` per frame and body, and a `.pvd` that lists them with their times.
 //!
-//! An own writer, because what is needed is small and the library for it is not kept well enough: the last stable
-//! release of vtkio (0.6.3) draws in long outdated parsers, its successor is a release candidate, it wants the data
-//! as its own owned model, and it does not write `.pvd`. Here columns go from memory to the file as they are: each
-//! particle is a vertex cell, the XML head says at which offset each array lies, and the arrays follow as raw
+//! An own writer, because the need is small and the library is not well maintained: the last stable
+//! release of vtkio (0.6.3) depends on outdated parsers, its successor is a release candidate, it requires an owned
+//! data model, and it does not write `.pvd`. Here columns go from memory to the file unchanged: each
+//! particle is a vertex cell, the XML head states the offset of each array, and the arrays follow as raw
 //! little-endian bytes ("appended, raw"), each after its length as 64-bit number.
 //!
 //! Format: VTK file formats, section "XML file formats", versions 1.0 (`UnstructuredGrid`) and 0.1 (`Collection`).

@@ -1,4 +1,4 @@
-//! The box in which particles may be; where the scene asks for it, those outside are removed.
+//! The box in which particles may be. If the scene asks for it, particles outside are removed.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Particles that are taken out of a run: those outside of the domain, and those that a rule of a plugin names.
+//! Particles removed from a run: those outside the domain, and those selected by a rule of a plugin.
 
 mod domain;
 mod system;

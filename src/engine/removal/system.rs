@@ -1,8 +1,8 @@
-//! The one system that takes particles out of a run.
+//! The one system that removes particles from a run.
 //!
-//! A particle that is out stays a row: [`Removed`] is set, its velocity, force and mobility are zero, mass and volume stay
-//! for the books. Formulations, contacts and conditions leave such rows out; it stays where it was. The kinetic energy it
-//! had goes to the account `removed`, and so does what its bonds held (the formulation books that).
+//! A removed particle keeps its row and its position: [`Removed`] is set, its velocity, force and mobility are zero, mass and volume stay
+//! for the energy balance. Formulations, contacts and conditions leave such rows out. Its kinetic energy
+//! goes to the account `removed`, and so does the energy of its bonds, which the formulation books.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! A rigid body: where it is, how it moves, what acts on it.
+//! A rigid body: its position, its motion, the forces on it.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -1,4 +1,4 @@
-//! What of the motion of a rigid body is prescribed.
+//! The prescribed part of the motion of a rigid body.
 
 use glam::{DQuat, DVec3};
 

@@ -1,4 +1,4 @@
-//! The formulation of rigid bodies: parameters, and what they are made of at the start.
+//! The formulation of rigid bodies: parameters and initial state.
 
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;

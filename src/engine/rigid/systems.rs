@@ -1,4 +1,4 @@
-//! The systems that move rigid bodies: kick and drift of the body, the second kick, particles taken along.
+//! The systems that move rigid bodies: kick and drift of the body, the second kick, motion of the particles.
 
 use glam::{DMat3, DVec3};
 

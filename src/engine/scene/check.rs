@@ -1,4 +1,4 @@
-//! What must hold in a scene beyond the types of its values, as far as the scene alone can tell.
+//! Requirements on a scene beyond the types of its values, as far as the scene alone can tell.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! The whole experiment: what a scene file says.
+//! The whole experiment: the content of a scene file.
 
 use std::collections::BTreeMap;
 

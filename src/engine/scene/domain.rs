@@ -1,4 +1,4 @@
-//! The box in which particles may be, and what happens at its sides.
+//! The box in which particles may be, and the conditions at its sides.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

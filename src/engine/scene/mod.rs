@@ -1,7 +1,7 @@
 //! The scene: the description of an experiment as a RON text, read into typed values with errors that point at the text.
 //!
-//! The way of a text: [`Source`] -> tree of values with their places -> typed [`Scene`] -> checks of what the types
-//! cannot say. What a registry knows by name stays an [`Item`] until its type is found.
+//! The stages are [`Source`] -> tree of values with their positions -> typed [`Scene`] -> checks beyond the
+//! types. A value that a registry knows by name remains an [`Item`] until its type is found.
 
 mod body;
 mod check;

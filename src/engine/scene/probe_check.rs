@@ -1,4 +1,4 @@
-//! What can be wrong with the probes of a scene before anything is built.
+//! Errors of the probes of a scene that are found before anything is built.
 
 use super::check::{in_plane, positive_time, twice, unknown_body, usable_name};
 use super::{Probe, Problem, Quantity, Scene, Take};

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, where, and what would be right.
+//! A problem of a scene: what, where, and how to correct it.
 
 use std::fmt;
 use std::ops::Range;

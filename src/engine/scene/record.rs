@@ -1,4 +1,4 @@
-//! What is recorded, and how often.
+//! The output of a run and its intervals.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! The energy ledger: where every joule is, came from, and went, per body.
+//! The energy ledger: stored, supplied and dissipated energies, per body.
 
 use serde::{Deserialize, Serialize};
 

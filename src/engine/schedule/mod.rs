@@ -1,4 +1,4 @@
-//! The step: stages, systems with declared access, their order, and what a system sees while it runs.
+//! The step: stages, systems with declared access, their order, and the interface of a running system.
 
 mod each;
 mod ledger;

@@ -1,4 +1,4 @@
-//! What systems share that is not particle state: neighbour lists, packed rows, tables. One value per type, or per type and phase.
+//! Shared data that is not particle state: neighbour lists, packed rows, tables. One value per type, or per type and phase.
 
 use std::any::{Any, TypeId, type_name};
 use std::cell::{Ref, RefCell, RefMut};

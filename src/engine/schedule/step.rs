@@ -1,4 +1,4 @@
-//! What a system sees while it runs, and how it can fail.
+//! The interface of a running system, and its errors.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

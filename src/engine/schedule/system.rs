@@ -1,4 +1,4 @@
-//! A system: a piece of the step with a stage, a label, declared access to columns, and a place in the order.
+//! A system: a part of the step with a stage, a label, declared access to columns, and a position in the order.
 
 use super::each::EachRow;
 use super::ledger::AccountKind;

@@ -1,4 +1,4 @@
-//! Two clocks in one step: what is stiff takes several sub-steps while the rest takes one long one.
+//! Two clocks in one step: stiff bodies take several sub-steps in one long step of the rest.
 
 use crate::world::{BodyId, BodySet, PhaseId, World};
 

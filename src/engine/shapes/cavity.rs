@@ -1,7 +1,7 @@
-//! The lattice of a wall: where cells that divide it miss the cavity that is cut out of it, they end at the cavity.
+//! The lattice of a wall. Where its cells miss the cavity that is cut out of it, they are adapted to end at the cavity.
 //!
-//! A fluid in the cavity has its own lattice from there on. Cells that divide the outer box of the wall instead leave a gap of up to half a spacing at the cavity, or overlap the fluid; a gap of a
-//! sixteenth of a spacing makes the pressure on the floor of a tank 4 % too large, because a column of water that sinks by that much is compressed.
+//! A fluid in the cavity has its own lattice. Cells that divide only the outer box of the wall leave a gap of up to half a spacing at the cavity, or overlap the fluid. A gap of a
+//! sixteenth of a spacing makes the pressure on the floor of a tank 4 % too large, because the column of water sinks by that much and is compressed.
 
 use super::region::Aabb;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a shape, a spacing or a particle file.
+//! Errors of a shape, a spacing or a particle file.
 
 use glam::DVec3;
 use thiserror::Error;

@@ -1,5 +1,5 @@
-//! Body-fitted packings: a regular lattice inside, and near the boundary layers that follow it, made even by Lloyd's method with the outermost layer
-//! kept half a spacing from the boundary.
+//! Body-fitted packings: a regular lattice inside, and layers that follow the boundary near it, made uniform by Lloyd's method with the outermost layer
+//! held at half a spacing from the boundary.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! How particles are laid out inside a shape.
+//! The arrangement of particles inside a shape.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Volume, centre and second moments of shapes in closed form: what a rigid body weighs and how it resists being turned.
+//! Volume, centre and second moments of shapes in closed form, for mass and inertia of rigid bodies.
 
 use glam::{DQuat, DVec3};
 

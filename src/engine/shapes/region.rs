@@ -1,4 +1,4 @@
-//! A set of points: what every shape is once it is checked.
+//! A set of points: the checked form of every shape.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Irregular packings: random points evened out by Lloyd's method, with Voronoi volumes.
+//! Irregular packings: random points made uniform by Lloyd's method, with Voronoi volumes.
 
 use std::collections::HashMap;
 

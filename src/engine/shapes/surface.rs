@@ -1,4 +1,4 @@
-//! The surface of a shape: what a tool needs to be touched.
+//! The surface of a shape, as contact with a tool needs it.
 
 use std::f64::consts::TAU;
 

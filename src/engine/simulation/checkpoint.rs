@@ -1,7 +1,7 @@
 //! Saving and restoring the whole state, bit for bit.
 //!
-//! Every column goes into a section of its own, the rest (clock, ledger, next limit, states of systems, the scene) into
-//! one header section. Lists and packed rows are not saved: they are made again from the columns.
+//! Every column has a section of its own; clock, ledger, next limit, states of systems and the scene are in
+//! one header section. Lists and packed rows are not saved: they are rebuilt from the columns.
 
 use std::path::{Path, PathBuf};
 

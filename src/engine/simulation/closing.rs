@@ -1,4 +1,4 @@
-//! Checkpoints on the way, and the end of a run: files closed, summary written.
+//! Checkpoints during a run, and its end: files closed, summary written.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! What a checkpoint keeps of that which its scene text does not say: the files that the scene names, and where the scene lies.
+//! Inputs of a checkpoint beside the text of the scene: the files that it names, and its folder.
 
 use std::path::{Component, Path, PathBuf};
 

@@ -1,6 +1,6 @@
-//! Sub-steps of what is stiff in the long step of the rest.
+//! Sub-steps of stiff bodies within the long step of the rest.
 //!
-//! A long step of length dt takes k short ones. What acts between both sides is frozen in it; the systems that make it give the
+//! A long step of length dt takes k sub-steps. Forces between both sides are frozen in it; the systems that compute them apply the
 //! difference to the next value as an impulse at the end of the long step, equal and opposite on both sides.
 
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
-//! Which particles carry the vertices of a skin.
+//! The particles that carry the vertices of a skin.
 //!
-//! Near symmetry planes mirror images of particles are carriers, too: an image is that of a particle that carries the image of the vertex. Then a skin
-//! that ends at a plane is half of that of the whole body.
+//! Near symmetry planes mirror images of particles are carriers as well: an image stands for the particle that carries the image of the vertex. A skin
+//! that ends at a plane is then half of the skin of the whole body.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What a skin reads of its particles.
+//! The columns that a skin reads of its particles.
 
 use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;

@@ -1,4 +1,4 @@
-//! The part of a skin that something acts on in a step: where its vertices are, and the forces on them.
+//! The loaded part of a skin in a step: positions of its vertices, and the forces on them.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Points of facets at which a surface integral is taken, with equal weights.
+//! Integration points of facets, with equal weights.
 
 /// Points of a facet, by their shares of its vertices; each stands for the same part of it.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! Skins: exact for affine motions, and forces that go back by the transpose.
+//! Skins: exact for affine motions, and forces that return by the transpose.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The bodies of a solid formulation: each with its law, its folded terms, and the energies that they report.
+//! The bodies of a solid formulation: law, folded terms and energies of each.
 
 use std::fmt;
 use std::ops::Range;

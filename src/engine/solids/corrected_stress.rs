@@ -1,4 +1,4 @@
-//! The stress of a particle as its neighbours read it: 128 bytes, four lanes of f64 each.
+//! The stress of a particle in the form that its neighbours read: 128 bytes, four lanes of f64 each.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};

@@ -1,14 +1,14 @@
-//! Damping of what rings faster than a force that is frozen in a long step can follow.
+//! Stiffness-proportional damping of sub-cycled bodies, for modes too fast for a force that is frozen in a long step.
 //!
-//! A body that takes sub-steps in the long one of a fluid feels a force that lags behind its motion by up to the long step. A mode of the body whose
-//! phase turns by theta = omega dt in it gains energy by the share `kappa / omega^2 (1 - cos theta - theta/2 sin theta)` a step, kappa being the
-//! stiffness of the fluid beside it over its mass, and for theta above one the fluid resolves no wave that would carry that away. Slow modes
-//! gain with theta^4. Stiffness-proportional damping takes with theta^2 and so bounds all of them: the stress is that of the strain a share c of the last
-//! sub-step ahead,
+//! A body with sub-steps in the long step of a fluid feels a force that lags behind its motion by up to the long step. A mode of the body whose
+//! phase advances by theta = omega dt in it gains the share `kappa / omega^2 (1 - cos theta - theta/2 sin theta)` of its energy per step, where kappa is the
+//! stiffness of the adjacent fluid over its mass; for theta above one the fluid resolves no wave that could carry this away. Slow modes
+//! gain with theta^4. Stiffness-proportional damping removes energy with theta^2 and so bounds all of them. The stress is that of the strain extrapolated by a share c of the last
+//! sub-step,
 //!
 //! `S_v = c (lambda tr(dE) I + 2 mu dE)`, `P = F (S + S_v)`, `dE = E_n - E_n-1`,
 //!
-//! symmetric in S, so that angular momentum is kept. A mode of the period T loses the share `c 4 pi^2 dt_short / T` of its energy a period.
+//! symmetric in S, so that angular momentum is conserved. A mode of the period T loses the share `c 4 pi^2 dt_short / T` of its energy per period.
 
 use glam::DMat3;
 

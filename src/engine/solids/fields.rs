@@ -1,4 +1,4 @@
-//! Fields of solids that need the neighbours: how far a neighbourhood is from deforming affinely, and how many neighbours there are.
+//! Fields of solids that need the neighbours: the hourglass residual, and the number of neighbours.
 
 use glam::{DMat3, DVec3};
 

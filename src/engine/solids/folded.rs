@@ -1,4 +1,4 @@
-//! Terms of plugins that are linear in X_ij or u_ij: they fold into the stress of a particle, `(A_i + A_j) X_ij + (k_i + k_j) u_ij` per pair with the weight of
+//! Terms of plugins that are linear in X_ij or u_ij. They fold into the stress of a particle, `(A_i + A_j) X_ij + (k_i + k_j) u_ij` per pair with the weight of
 //! the formulation, and cost nothing per pair.
 
 use std::ops::Range;

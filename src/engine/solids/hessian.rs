@@ -1,8 +1,8 @@
-//! Stabilization by the difference of two second derivatives of the positions, as a plugin hands it in for bodies. The formulation computes it with its own
+//! Stabilization by the difference of two second derivatives of the positions, as a plugin requests it for bodies. The formulation computes it with its own
 //! neighbours and weights.
 //!
-//! Motions that leave the mean gradient as it is are seen by a second derivative that is taken from the positions, and not by one that is the gradient of
-//! the gradient. Their difference vanishes for affine motions, falls with the spacing for smooth ones, and is what is resisted.
+//! Motions that do not change the averaged gradient are seen by a second derivative of the positions, but not by the gradient of
+//! the gradient. The difference vanishes for affine motions, decreases with the spacing for smooth ones, and is resisted.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Points of the material beside a particle: what moves with them, and what a force on them does.
+//! Points of the material beside a particle: their motion, and the effect of a force on them.
 //!
 //! The deformation gradient of a particle is a weighted sum over its neighbours, and so is the motion of the material point at
 //! X_i + A, with a short vector A of the reference configuration:
@@ -7,9 +7,9 @@
 //! v(X_i + A) = v_i + F'_i A = v_i + sum_j c_j (v_j - v_i),      c_j = V_j w_ij X_ij . M_i^-1 A
 //! ```
 //!
-//! A force f on the point acts on the particles with the same weights: then its work is that on the motion of the point, and, because the sum
-//! of c_j x_ij is F_i A, its moment that of a force at x_i + F_i A. What it does to the neighbours and takes from the particle is what a stress
-//! `P_i = -f (x) A / V_i` in the particle would do: it is added to the stress that the pass of the internal force reads.
+//! A force f on the point acts on the particles with the same weights. Its power is then that on the motion of the point and, because the sum
+//! of c_j x_ij is F_i A, its moment is that of a force at x_i + F_i A. Its effect on the neighbours and on the particle equals that of a stress
+//! `P_i = -f (x) A / V_i` in the particle: it is added to the stress that the pass of the internal force reads.
 
 use glam::{DMat3, DVec3};
 

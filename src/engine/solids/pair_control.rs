@@ -1,4 +1,4 @@
-//! Hourglass control along pairs, as a plugin hands it in for bodies whose weights are those of the present places. The formulation computes it with its own
+//! Hourglass control along pairs, as a plugin requests it for bodies whose weights live in the current configuration. The formulation computes it with its own
 //! neighbours.
 
 use super::folded::FoldedEnergy;

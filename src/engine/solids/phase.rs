@@ -1,4 +1,4 @@
-//! A phase of solids as everything else sees it: contact, fields, the command line.
+//! The interface of a phase of solids to contact, fields and the command line.
 
 use std::any::Any;
 use std::cell::{Ref, RefMut};

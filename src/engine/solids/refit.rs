@@ -1,8 +1,8 @@
-//! What a cut in its neighbourhood does to the measure of a particle's deformation.
+//! The effect of a cut bond on the measured deformation of a particle.
 //!
-//! Without a removed neighbour the fit F_i is another one, though nothing has moved. A law of F alone takes the new fit as it is. Plastic
-//! flow, however, belongs to the F under which it came about: a fit that jumps by some per cent would put the metal far beyond yield, and
-//! energy into the body. Such a law goes on from where it was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it.
+//! Without a removed neighbour the fit F_i changes although nothing has moved. A law of F alone uses the new fit directly. Plastic
+//! flow, however, belongs to the F under which it occurred: a jump of the fit by some per cent would put the metal far beyond yield, and
+//! energy into the body. Such a law continues where it was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it.
 //! The force is the gradient of its energy by F_i, P_i C_i^T.
 
 use glam::DMat3;

@@ -1,4 +1,4 @@
-//! What the bodies of a scene repeat themselves by: symmetry planes and the periodic axes of the domain.
+//! The symmetry planes and periodic axes by which bodies of a scene repeat.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! What a column is: one newtype per physical quantity, with name, symbol and unit.
+//! The definition of a column: one newtype per physical quantity, with name, symbol and unit.
 
 use bytemuck::Pod;
 use glam::{DMat3, DVec3};

@@ -1,4 +1,4 @@
-//! The table of column types: what the engine can do with a column without knowing its type.
+//! The table of column types: operations of the engine on a column of unknown type.
 
 use std::any::TypeId;
 use std::collections::BTreeMap;

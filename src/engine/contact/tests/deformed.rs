@@ -1,4 +1,4 @@
-//! Particles that are pressed flat: contact at the surface of the body, as the gradient of an energy.
+//! Flattened particles: contact at the surface of the body, as the gradient of an energy.
 
 use glam::{DMat3, DVec3};
 

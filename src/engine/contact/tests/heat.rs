@@ -1,4 +1,4 @@
-//! Heat of friction: what the books call friction warms the sides by their shares.
+//! Friction heat: the energy booked as friction warms the sides by their shares.
 
 use super::simulation;
 use crate::simulation::Simulation;

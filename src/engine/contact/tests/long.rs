@@ -1,4 +1,4 @@
-//! What only long runs show: springs of friction that creep.
+//! Effects that appear only in long runs: friction springs that creep.
 
 use super::simulation;
 use crate::rigid::RigidBodies;

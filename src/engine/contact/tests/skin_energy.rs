@@ -1,4 +1,4 @@
-//! The forces of two skins that touch are the gradient of one energy, which nothing makes jump: at faces, edges and corners, straight and deformed.
+//! The forces between two skins are the gradient of one continuous energy: at faces, edges and corners, straight and deformed.
 
 use std::sync::Arc;
 

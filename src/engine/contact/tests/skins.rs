@@ -1,4 +1,4 @@
-//! Bodies that touch with their skins: no tangential force without friction, Coulomb's with it, and exact restarts.
+//! Contact of skins: no tangential force without friction, Coulomb's force with it, and exact restarts.
 
 use super::{angular_momentum, centre, momentum, simulation};
 use crate::scene::Source;

@@ -1,16 +1,16 @@
-//! Hourglass control along pairs: the exact gradient of an energy of places and deformation gradients.
+//! Hourglass control along pairs: the exact gradient of an energy of positions and deformation gradients.
 //!
 //! ```text
 //! U = sum_i xi/4 E_i V_0,i sum_j V_0,j m_ij w_ij s_ij^2 ,   s_ij = (F_i X_ij) . x_ij / |x_ij| - |x_ij| ,   m_ij = min(1, H^2 / |X_ij|^2)^2
 //! ```
 //!
-//! F is no function of the places: it goes along with the velocity gradient. So U changes by the motion of the pairs at fixed F, which gives a force on the
-//! pair, and by dF/dt = L F, which gives the Kirchhoff stress `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L makes forces of it, as of the stress of the material. What is
-//! conserved is the sum of all energies, and as U does not change where places and F turn together, the angular momentum.
+//! F is a state and not a function of the positions. U therefore changes in two ways: by the motion of the pairs at fixed F, which gives a force on the
+//! pair, and by dF/dt = L F, which gives the Kirchhoff stress `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L turns the latter into forces, as it does for the stress of the material. The
+//! sum of all energies is conserved; so is angular momentum, because U does not change where positions and F rotate together.
 //!
-//! Each particle resists the error of its own F, as in the variational form of Lagrangian bodies: that of the mean of both is of third order in a body that
-//! bends, and leaves it as soft as the mean gradient makes it. The weight is that of the velocity gradient: a steeper one, as W / |X|^2, needs thrice
-//! the largest stiffness for the same in bending. Pairs that were further apart than the support H, and have met in a flow, count less and less.
+//! Each particle resists the residual of its own F, as in the variational form of Lagrangian bodies. With the mean F of both particles the residual is of third order in
+//! bending, and the body stays as soft as the averaged gradient makes it. The weight is that of the velocity gradient: with a steeper one, W / |X|^2, bending would need three times
+//! the largest stiffness. m_ij reduces the weight of pairs that were originally further apart than the support H and became neighbours by flow.
 
 use glam::DMat3;
 

@@ -1,4 +1,4 @@
-//! The sums over the pairs of a particle that its hourglass control is made of, four neighbours at once.
+//! The sums over the pairs of a particle for its hourglass control, four neighbours at once.
 
 use glam::{DMat3, DVec3};
 

@@ -1,7 +1,7 @@
-//! Change of volume that plugins ask for beside that of the motion: smoothing of the density.
+//! Change of volume that plugins request in addition to that of the motion: smoothing of the density.
 //!
-//! F goes along with the velocity gradient, and is a state of the particle, so that its volume can be changed without a motion. What the stress, that of the hourglass control
-//! included, does in it is no work of a force: it is booked by the name of what asks for it.
+//! F is a state of the particle, so that its volume can be changed without a motion. The work of the stress in that change, including the stress of hourglass
+//! control, is not the work of a force: it is booked under the name of the plugin.
 
 use glam::DMat3;
 

@@ -1,19 +1,19 @@
-//! Particles from elsewhere in a body that touches itself: they are in contact, not in the sums over the kernel.
+//! Pairs of a body that touches itself: kernel neighbours, or two surfaces in contact.
 //!
-//! The deformation of a particle says how far apart two particles were that are now `x_ij` apart: `|F^-1 x_ij|`. Where they were much further apart at the start, no
-//! deformation has brought them together: two sides of the body meet. A pair is in the sums or in contact, never in both and, within the support, never in neither.
+//! The deformation of a particle implies the original distance of a pair that is now `x_ij` apart: `|F^-1 x_ij|`. Where the real original distance was much larger, no
+//! deformation has brought the two particles together: two surfaces of the body meet. A pair is in the kernel sums or in contact, never in both and, within the support, never in neither.
 
 use glam::{DMat3, DVec3};
 
 use super::lists::Lists;
 use crate::world::DeformationGradient;
 
-/// Two particles come from elsewhere if they were further apart at the start than this times the distance that their deformation says, and the support.
-/// Slip along a shear band of a particle's width passes for deformation until it has left the support twice behind.
+/// A pair is in contact if its original distance exceeds this many supports and this many times the distance that the deformation implies.
+/// Slip along a shear band one particle wide counts as deformation until then.
 const ELSEWHERE: f64 = 2.5;
 
 impl Lists {
-    /// Leaves particles from elsewhere out of the rows of bodies that touch themselves: a function of the present state alone, whenever the lists were built.
+    /// Leaves pairs in contact out of the rows of bodies that touch themselves. The result depends on the current state alone, not on the age of the lists.
     pub fn leave_out_elsewhere(
         &mut self,
         (position, reference): (&[DVec3], &[DVec3]),

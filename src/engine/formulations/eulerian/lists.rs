@@ -1,4 +1,4 @@
-//! Lists of neighbours in the present configuration, with a skin, so that they live for several steps.
+//! Neighbour lists in the current configuration, with a skin, so that they are valid for several steps.
 
 use std::ops::Range;
 

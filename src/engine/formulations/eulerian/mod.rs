@@ -1,20 +1,20 @@
-//! Solids whose kernels live in the present configuration (Mohseni-Mofidi and Bierwisch 2020), with the corrections of docs/eulerian.md.
+//! Solids whose kernels live in the current configuration (Mohseni-Mofidi and Bierwisch 2020), with the corrections of docs/eulerian.md.
 //!
-//! Neighbours, weights and corrections are those of the present places; what the body remembers is the state of its particles. A step is
+//! Neighbours, weights and corrections are evaluated at the current positions; the only memory of a particle is its state. A step is
 //!
 //! ```text
-//! rates     L_i = (sum_j V_0,j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_0,j w_ij x_ij (x) x_ij      with the places at mid-step
+//! rates     L_i = (sum_j V_0,j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_0,j w_ij x_ij (x) x_ij      with the positions at mid-step
 //!           F_i <- (I - dt/2 L_i)^-1 (I + dt/2 L_i) F_i
-//! stress    F_i -> P_i (any law) ,  A_i = P_i F_i^T M_i^-1                                          with the places at the end of the step
+//! stress    F_i -> P_i (any law) ,  A_i = P_i F_i^T M_i^-1                                          with the positions at the end of the step
 //! force     f_i = V_0,i sum_j V_0,j w_ij (A_i + A_j) x_ij
 //! ```
 //!
-//! The weights are those of the masses: with the present volumes L would depend on F, which is known at the ends of a step alone, and a step would not be its
-//! own way back.
+//! The weights use reference volumes: with current volumes L would depend on F, which is known only at the ends of a step, and the step would not be
+//! time-reversible.
 //!
-//! The force is the exact adjoint of the velocity gradient at the same places: its power is that of the stress, it has no resultant and no
-//! torque. The lists have a skin; what a step reads of them are the neighbours within the support, in the order of rows, so that no bit
-//! depends on when they were built.
+//! The force is the exact adjoint of the velocity gradient at the same positions: its power is the stress power, and it has no resultant and no
+//! torque. The lists have a skin; a step takes from them the neighbours within the support, in the order of rows, so that no bit
+//! depends on the age of the lists.
 
 mod artificial_stress;
 mod control;

@@ -1,4 +1,4 @@
-//! What the rest of the engine sees of the phase.
+//! The interface of the phase to the rest of the engine.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! The deformation gradient of bodies that start deformed: the fit of their places to those of the reference configuration.
+//! The deformation gradient of bodies that start deformed: the fit of their positions to those of the reference configuration.
 
 use glam::{DMat3, DVec3};
 

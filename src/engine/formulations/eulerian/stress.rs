@@ -1,4 +1,4 @@
-//! Stress at the end of the step: the neighbours that are near, the laws, the corrected stress that makes the force.
+//! Stress at the end of the step: the neighbours within the support, the laws, the corrected stress for the force.
 
 use glam::{DMat3, DVec3};
 

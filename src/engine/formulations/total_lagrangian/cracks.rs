@@ -1,10 +1,10 @@
-//! Cracks: bonds that lead from a particle that holds to one that has failed and is still there. Terms on bonds do not act along them.
+//! Cracks: bonds between an intact particle and a failed one that is still present. Terms on bonds do not act along them.
 //!
-//! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack is given the fit over the neighbours that hold (see
-//! [`edges`](super::edges)), so that its energy, and with it its force, is that of a body without those that have failed. The second pass knows one
-//! corrected stress per particle, which acts on all its neighbours: what the terms put on bonds across a crack is taken back, on both sides of the bond.
+//! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack gets the fit over the intact neighbours (see
+//! [`edges`](super::edges)), so that its energy and force are those of a body without the failed particles. The second pass knows one
+//! corrected stress per particle, which acts on all its neighbours: the contribution of the terms to bonds across a crack is subtracted, on both sides of the bond.
 //!
-//! A particle that fails in a step crosses over at the start of the next, as in a step a block of particles does not see what the others do.
+//! A particle that fails in a step changes sides at the start of the next one, because within a step the blocks of particles run independently.
 
 use glam::{DMat3, DVec3};
 

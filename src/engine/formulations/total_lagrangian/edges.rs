@@ -1,8 +1,8 @@
-//! Folded terms of particles at the edge of a crack: without the neighbours that have failed.
+//! Folded terms of particles at the edge of a crack, computed without the failed neighbours.
 //!
-//! The energy of a term is that of the error of a fit, so that the fit is made anew over the neighbours that hold: the force is then the gradient of an
-//! energy in which those that have failed do not occur. What the bonds held that a failure cuts is released: at the places where a step ends it is the
-//! difference of the energies, and the motion of the step was made by the old forces, that of the next by the new ones.
+//! The energy of a term is that of the residual of a fit, which is computed again over the intact neighbours: the force is then the gradient of an
+//! energy in which the failed particles do not occur. The energy of the bonds cut by a failure is released. At the positions at the end of a step it is the
+//! difference of the two energies; the motion of that step was computed with the old forces, that of the next step with the new ones.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! The motion of a body as a whole, which the second pass leaves out of its sums.
+//! The rigid and affine motion of a body as a whole, which the second pass leaves out of its sums.
 
 use glam::{DMat3, DVec3};
 

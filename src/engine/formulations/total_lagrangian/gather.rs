@@ -1,4 +1,4 @@
-//! The sums of the first pass over the bonds of every particle, and what they are fitted to.
+//! The sums of the first pass over the bonds of every particle, and the fits from them.
 
 use glam::{DMat3, DVec3};
 

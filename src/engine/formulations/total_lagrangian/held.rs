@@ -1,4 +1,4 @@
-//! What supports make of the particles beside them.
+//! The effect of supports on the particles beside them.
 
 use crate::plugin::SimBuilder;
 use crate::world::BodyId;

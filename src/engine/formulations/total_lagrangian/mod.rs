@@ -1,8 +1,8 @@
 //! Total-Lagrangian smoothed particle hydrodynamics of solids (Ganzenmueller 2015).
 //!
 //! Neighbours, weights and corrections belong to the reference configuration and are built once. A step is two passes
-//! over pairs: the first makes F and, block by block while the rows are in cache, the stress and the corrected stress;
-//! the second the force.
+//! over pairs. The first computes F and, block by block while the rows are in cache, the stress and the corrected stress;
+//! the second computes the force.
 
 mod bonds;
 mod cracks;

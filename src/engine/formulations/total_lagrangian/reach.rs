@@ -1,8 +1,8 @@
-//! How far a particle sees: a sphere, or an ellipsoid that is drawn out with the material.
+//! The support of a particle: a sphere, or an ellipsoid that stretches with the material.
 //!
-//! Where material is drawn out along one direction and squeezed along another, particles are far apart along the one and close together along the other. A sphere then holds
-//! neighbours in few directions only. An ellipsoid measures distances by a tensor G before they enter the kernel, `|r|^2 = r . G r`; a pair takes the mean of the
-//! tensors of both ends, and the kernel is as much denser as its ellipsoid is smaller: `w_ij = (det G)^(1/2) |W'(|r|)| / |r|`.
+//! Where material is stretched along one direction and compressed along another, particles are far apart along the one and close together along the other, and a sphere contains
+//! neighbours in few directions only. An ellipsoid measures distances by a tensor G before they enter the kernel, `|r|^2 = r . G r`. A pair uses the mean of the
+//! tensors of both particles, and the kernel is multiplied by the inverse volume ratio of its ellipsoid: `w_ij = (det G)^(1/2) |W'(|r|)| / |r|`.
 
 use glam::{DMat3, DVec3};
 

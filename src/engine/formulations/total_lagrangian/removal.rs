@@ -1,4 +1,4 @@
-//! Removed particles leave the bonds: what is left of a neighbourhood is fitted anew, and what the bonds held is booked.
+//! Removed particles leave the bonds: the remaining neighbours are fitted again, and the energy of the cut bonds is booked.
 
 use glam::DMat3;
 

@@ -1,4 +1,4 @@
-//! The removed particles that the passes know of.
+//! The removed particles, as the passes need them.
 
 use glam::DMat3;
 

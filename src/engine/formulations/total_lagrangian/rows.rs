@@ -1,4 +1,4 @@
-//! What the hot passes read per neighbour: packed rows of four lanes, derived from the columns in every step.
+//! Rows that the hot passes read per neighbour: four lanes each, packed from the columns in every step.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! A law with state sees every accepted step once, whatever else happens.
+//! A law with state sees every accepted step once, in all circumstances.
 
 use glam::DMat3;
 use schemars::JsonSchema;

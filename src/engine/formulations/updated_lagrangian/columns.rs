@@ -1,4 +1,4 @@
-//! The reference of the last update, one row a particle.
+//! The reference of the last update, one row per particle.
 
 use glam::{DMat3, DVec3};
 

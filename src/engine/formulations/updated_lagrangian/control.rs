@@ -5,15 +5,15 @@
 //! force_i = V_i sum_j V_j w_ij [(B_i + B_j) X_ij + (k_i + k_j) u_ij]
 //! ```
 //!
-//! with B and k as folded terms make them of H and of the residual `sum_j V_j w_ij |H_i X_ij - u_ij|^2`. H_i is the fit that makes the residual least,
-//! so that the force of a variational term is the exact gradient of its energy between updates, without torque on a body that moves as a whole. An
-//! increment measured from the last update would forget, with every update, what the control has resisted so far.
+//! Folded terms compute B and k from H and from the residual `sum_j V_j w_ij |H_i X_ij - u_ij|^2`. H_i is the fit that minimizes the residual.
+//! Between updates the force of a variational term is therefore the exact gradient of its energy, without torque on a body in rigid motion. With increments measured from the last update,
+//! every update would erase the residual that the control resists.
 //!
-//! The weight is that of the distance `|(F_r,i + F_r,j) X_ij| / 2`, which the deformation alone gives, and not of the distance of the particles. The latter has the
-//! hourglass motion in it: a pair that has come too near would get, at the next update, a larger weight and with it energy from nowhere (two rubber rings that collide, updates
+//! The weight is evaluated at the distance `|(F_r,i + F_r,j) X_ij| / 2`, which follows from the deformation alone, and not at the distance of the particles. The latter contains the
+//! hourglass motion: at the next update a pair that has come too close would get a larger weight, and with it energy without work (two colliding rubber rings, updates
 //! every three steps: 18 J of 36 J).
 //!
-//! A particle that has failed is in no sum.
+//! Failed particles are in no sum.
 
 use std::ops::Range;
 

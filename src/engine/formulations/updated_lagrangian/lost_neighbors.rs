@@ -1,8 +1,8 @@
-//! Particles that lose their neighbours see farther, or carry no stress.
+//! Particles that lose their neighbours get a larger support, or carry no stress.
 //!
-//! The support radius stays what it is while a body flows: it is the neighbours that change. Where the material is drawn out, the next particle along that direction may be farther away
-//! than the support radius. The fit of the deformation gradient is then singular, or so nearly that its derivative, and with it the frequency of the particle, is without bound. Such a particle gets a larger
-//! support radius, once and for all; where that does not help it carries no stress.
+//! The support radius is constant while a body flows; the neighbours change. Where the material is stretched, the next particle along that direction may be farther away
+//! than the support radius. The fit of the deformation gradient is then singular, or nearly so, and the frequency of the particle unbounded. Such a particle permanently gets a larger
+//! support radius; if that is not enough, it carries no stress.
 
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{BodyKernel, Ellipsoid};

@@ -1,4 +1,4 @@
-//! The packed rows of the phase, and what the rest of the engine sees of them.
+//! The packed rows of the phase, and its interface to the rest of the engine.
 
 use glam::{DMat3, DVec3};
 

@@ -1,16 +1,16 @@
-//! The places that become the reference: those that the deformation gradients say, near those of the particles.
+//! The positions that become the reference: close to the particles, but free of zero-energy motions.
 //!
-//! If the places themselves were the reference, zero-energy motions would get into its pair vectors, and the next increments of the deformation gradient
-//! would see a part of them. As they go up and down, the operator that sees them is another one each time: what comes in on the way up does not go out on the way down, and F
-//! drifts away from the map that the material has gone through, the more the more often the reference is updated. A body that swings then keeps a part of its
-//! energy for good, as strain that no motion takes back.
+//! If the particle positions themselves were the reference, zero-energy motions would enter its pair vectors, and the next increments of the deformation gradient
+//! would contain part of them. The operator changes with every update: what enters F as such a motion grows does not leave F as it decays. F would
+//! drift away from the deformation of the material, faster with more frequent updates, and a vibrating body would permanently keep a part of its
+//! energy as strain that no motion releases.
 //!
-//! The reference is therefore relaxed from the places towards pair vectors that follow from F and the original ones alone,
+//! The reference is therefore relaxed from the positions towards pair vectors that follow from F and the original ones alone,
 //!
 //! `x_r,i <- x_r,i + theta sum_j V_j w_ij [r_ij - (F_i + F_j) X_ij / 2] / sum_j V_j w_ij`,
 //!
-//! a few times. The bracket vanishes for affine motions, is of third order for smooth ones, and is what the gradient does not see of all others. It is measured from
-//! the start and not from the last update: what one update leaves in the reference the next one takes out. As the particles are not at its places, f is not I there; F_r = f^-1 F, so that an
+//! a few times. The bracket vanishes for affine motions and is of third order for smooth ones; for zero-energy motions it is the part that the gradient does not see. It is measured from
+//! the original configuration and not from the last update, so that the remainder of one update is removed by the next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F, so that an
 //! update does not change F.
 
 use std::ops::Range;

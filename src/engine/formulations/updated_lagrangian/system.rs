@@ -1,4 +1,4 @@
-//! The system of the first pass, and of the updates of the reference.
+//! The system of the first pass, and of updates of the reference.
 
 use glam::{DMat3, DVec3};
 

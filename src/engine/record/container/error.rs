@@ -1,4 +1,4 @@
-//! What can be wrong with a container.
+//! Errors of reading a container.
 
 use std::io;
 use std::path::PathBuf;

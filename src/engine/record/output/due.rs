@@ -1,4 +1,4 @@
-//! What is due is written: samples, frames, and the word that a checkpoint is due.
+//! Writes what is due: samples, frames, and the notice that a checkpoint is due.
 
 use std::path::PathBuf;
 

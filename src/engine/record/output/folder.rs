@@ -1,4 +1,4 @@
-//! The folder of a run: the names of its files, and what is there already.
+//! The folder of a run: the names of its files, and the files already there.
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Frames: all particles with the fields that were asked for, for recorders and for ParaView.
+//! Frames: all particles with the requested fields, for recorders and for ParaView.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
-//! Everything that a run writes, by one system at the end of the step: what is due now, and only that.
+//! All output of a run, written by one system at the end of the step: whatever is due, and nothing else.
 //!
-//! The order within a step: samples, frames, then, when all systems of the step are through, the checkpoint. So the
-//! checkpoint holds the state of the output itself after this step, and files go on from there as if nothing had been.
+//! The order within a step is samples, frames and, after all systems of the step, the checkpoint. The
+//! checkpoint therefore contains the state of the output after this step, and files continue from there without a trace of the interruption.
 
 mod due;
 mod folder;

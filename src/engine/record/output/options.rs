@@ -1,4 +1,4 @@
-//! Where a run writes.
+//! The output folder of a run.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What a scene wants to be written, found among bodies, fields and recorders; checked even where nothing is written.
+//! The output that a scene asks for, resolved to bodies, fields and recorders; checked even if nothing is written.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Frames show the particles that are still in the run.
+//! Frames contain the particles that are still in the run.
 
 use crate::world::{BodyId, MissingColumn, Removed, World};
 

@@ -1,4 +1,4 @@
-//! A probe on its way: when it is due, what it measures, where that goes.
+//! A probe during a run: when it is due, its value, its file.
 
 use std::sync::Arc;
 

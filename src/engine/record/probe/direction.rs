@@ -1,4 +1,4 @@
-//! Directions that quantities of probes are given.
+//! Directions for quantities of probes.
 
 use glam::DVec3;
 

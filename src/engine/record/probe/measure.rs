@@ -1,4 +1,4 @@
-//! What a probe measures that is neither a field of particles nor an energy.
+//! Measurements of probes that are neither a field of particles nor an energy.
 
 use crate::schedule::Resources;
 use crate::world::{MissingColumn, World};

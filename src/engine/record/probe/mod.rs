@@ -1,4 +1,4 @@
-//! Probes: what the particles of a selection do, or a field at a point, as functions of time.
+//! Probes: the motion of the particles of a selection, or a field at a point, as functions of time.
 
 mod body_points;
 mod direction;

@@ -1,4 +1,4 @@
-//! What is measured at one place, less the same at another.
+//! The value at one place minus the value at another.
 
 use super::measure::Measure;
 use super::resolve::Gauge;

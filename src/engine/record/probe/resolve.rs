@@ -1,4 +1,4 @@
-//! Probes of a scene: what each measures, found among bodies, fields and accounts.
+//! Probes of a scene, resolved to bodies, fields and accounts.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Gauges of solids against the fields that they are given.
+//! Gauges of solids against prescribed fields.
 
 use crate::assembly::{BuildOptions, build, build_with};
 use crate::plugin::Registry;

@@ -1,4 +1,4 @@
-//! Energy from nowhere: the sign of an unstable integration, long before numbers overflow.
+//! Energy growth without a source: the sign of an unstable integration, long before numbers overflow.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Too much hourglass energy: the control carries load that stress should carry, and the result is too stiff.
+//! Too much hourglass energy: the control carries load in place of the stress, and the result is too stiff.
 
 use serde::{Deserialize, Serialize};
 

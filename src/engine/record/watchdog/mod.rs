@@ -1,4 +1,4 @@
-//! The watchdog: looks at every step for what makes results worthless, and stops the run or warns.
+//! The watchdog: examines every step for conditions that invalidate results, and stops the run or warns.
 
 mod domain;
 mod energy_growth;

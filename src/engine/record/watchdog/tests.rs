@@ -1,4 +1,4 @@
-//! Scenes that go wrong, and what the watchdog says.
+//! Scenes that fail, and the messages of the watchdog.
 
 use crate::assembly::build;
 use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};

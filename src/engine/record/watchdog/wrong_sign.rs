@@ -1,4 +1,4 @@
-//! Energy from what can only take it: friction, diffusion, shifting, walls.
+//! Energy from terms that can only dissipate: friction, diffusion, shifting, walls.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What serde says is wrong, until the place is known at which it is.
+//! Errors of serde until their position is known.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Vertices that are taken out where triangles of a flat part are needlessly small: fans of long triangles leave slivers when their edges are cut.
+//! Removes vertices where triangles of a flat part are needlessly small: cut edges of long fans of triangles leave slivers.
 
 use glam::DVec3;
 

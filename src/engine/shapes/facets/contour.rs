@@ -1,8 +1,8 @@
-//! Triangles on the surface of any region of space, combinations whose parts cut each other included: dual contouring (Ju, Losasso, Schaefer and
+//! Triangles on the surface of any region of space, including combinations whose parts intersect: dual contouring (Ju, Losasso, Schaefer and
 //! Warren, ACM Trans. Graph. 21, 2002).
 //!
-//! Every cell of a grid that the surface passes holds a vertex, at the point that is nearest to the tangent planes where the surface cuts the edges of the
-//! cell: on smooth surfaces, on sharp edges and in corners alike. Every edge of the grid that the surface cuts joins the vertices of the four cells
+//! Every grid cell that the surface crosses contains a vertex, at the point nearest to the tangent planes at the intersections of the surface with the edges of the
+//! cell. This holds on smooth surfaces, on sharp edges and in corners. Every grid edge that the surface cuts joins the vertices of the four cells
 //! around it.
 
 use std::collections::BTreeMap;

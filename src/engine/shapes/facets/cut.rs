@@ -1,4 +1,4 @@
-//! The outline of a combination of shapes from the outlines of its parts: of those, what has the inside of the combination on one side and the
+//! The outline of a combination of shapes: those pieces of the outlines of its parts that have the inside of the combination on one side and the
 //! outside on the other.
 
 use std::collections::BTreeMap;

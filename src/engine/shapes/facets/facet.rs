@@ -1,4 +1,4 @@
-//! A closed surface in flat facets, and that of a shape.
+//! A closed surface of flat facets, and that of a shape.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Surfaces in flat facets: segments in two dimensions, triangles in three, with outward normals, about as long as asked for.
+//! Surfaces of flat facets with outward normals, of about the requested length: segments in two dimensions, triangles in three.
 
 mod coarse;
 mod contour;

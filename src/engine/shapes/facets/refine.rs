@@ -1,4 +1,4 @@
-//! Triangles that are cut until none of their edges is too long, and prisms over polygons.
+//! Refines triangles until all edges are short enough; prisms over polygons.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh.
+//! Defects of a mesh.
 
 use glam::DVec3;
 use thiserror::Error;

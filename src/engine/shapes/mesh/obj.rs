@@ -1,4 +1,4 @@
-//! OBJ files: corners and faces; what else they hold (normals, textures, groups) is passed over.
+//! OBJ files: vertices and faces; normals, textures and groups are skipped.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Whether triangles are the surface of a solid: closed, facing one way, not through each other.
+//! Whether triangles are the surface of a solid: closed, consistently oriented, without self-intersection.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! A tree of boxes about triangles: the nearest one, and those that a box touches, without looking at all.
+//! A bounding-volume tree of triangles: the nearest triangle, and those in a box.
 
 use glam::DVec3;
 

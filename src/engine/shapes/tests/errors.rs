@@ -1,4 +1,4 @@
-//! What is refused, where, and with which words.
+//! Rejected shapes: where, and with which message.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Damaged meshes and particle files: whatever they hold, there is an answer. `PROPTEST_CASES` sets how many are tried.
+//! Damaged meshes and particle files: any content gives a result or an error. `PROPTEST_CASES` sets the number of cases.
 
 use proptest::prelude::*;
 

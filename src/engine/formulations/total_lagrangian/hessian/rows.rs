@@ -1,4 +1,4 @@
-//! What the passes of the stabilization share.
+//! Rows shared by the passes of the stabilization.
 
 use std::ops::Range;
 

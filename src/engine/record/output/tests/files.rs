@@ -1,4 +1,4 @@
-//! Which files there are, and what is in them.
+//! The files of a run and their content.
 
 use super::*;
 use crate::assembly::build;

@@ -1,4 +1,4 @@
-//! Runs of small scenes, and what they leave on the disk.
+//! Runs of small scenes and the files they leave.
 
 mod failing;
 mod files;

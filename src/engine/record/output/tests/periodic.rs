@@ -1,4 +1,4 @@
-//! What has crossed a periodic boundary is shown inside of the domain.
+//! Particles that have crossed a periodic boundary are shown inside the domain.
 
 use super::*;
 use crate::record::read_series;

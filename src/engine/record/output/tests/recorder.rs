@@ -1,4 +1,4 @@
-//! What recorders are told, and when.
+//! Calls of recorders, and their order.
 
 use std::sync::{Arc, Mutex};
 

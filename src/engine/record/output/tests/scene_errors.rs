@@ -1,4 +1,4 @@
-//! Faults of a scene in what it wants to be written, found without anything being written.
+//! Errors of a scene in its requested output, found without writing anything.
 
 use super::*;
 use crate::assembly::build;

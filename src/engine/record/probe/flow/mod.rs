@@ -1,4 +1,4 @@
-//! Probes of flows: what gauges and sensors of an experiment show.
+//! Probes of flows: the readings of gauges and sensors of an experiment.
 
 mod flux;
 mod level;

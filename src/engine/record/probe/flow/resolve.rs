@@ -1,4 +1,4 @@
-//! Probes of flows of a scene: what each measures.
+//! Probes of flows of a scene, resolved to measurements.
 
 use glam::DVec3;
 

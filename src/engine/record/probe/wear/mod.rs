@@ -1,4 +1,4 @@
-//! Probes of wear: what has been taken off a body, and how rough it is.
+//! Probes of wear: the volume removed from a body, and the roughness of its surface.
 
 mod removed_volume;
 mod resolve;

@@ -1,4 +1,4 @@
-//! Volume of the particles that have been taken out of the run.
+//! Volume of the particles removed from the run.
 
 use crate::plugin::Selection;
 use crate::record::probe::measure::Measure;

@@ -1,4 +1,4 @@
-//! Probes of wear of a scene: what each measures.
+//! Probes of wear of a scene, resolved to measurements.
 
 use super::removed_volume::RemovedVolume;
 use super::roughness::Roughness;

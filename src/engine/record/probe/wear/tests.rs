@@ -1,4 +1,4 @@
-//! A step of known height on a floor, before and after it has been taken off.
+//! A step of known height on a floor, before and after its removal.
 
 use crate::assembly::{BuildOptions, build_with};
 use crate::plugin::Registry;
