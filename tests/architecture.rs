@@ -138,9 +138,9 @@ fn nothing_is_left_open_and_nothing_is_a_grab_bag() {
 /// Whether the line begins a function.
 fn is_function(line: &str) -> bool {
     let line = line.trim_start();
-    let public =
-        line.strip_prefix("pub").map_or(line, |rest| rest.split_once(' ').map_or("", |(_, rest)| rest));
-    public.starts_with("fn ")
+    let Some(rest) = line.strip_prefix("pub") else { return line.starts_with("fn ") };
+    let rest = rest.strip_prefix('(').and_then(|rest| rest.split_once(')')).map_or(rest, |(_, rest)| rest);
+    rest.trim_start().starts_with("fn ")
 }
 
 #[test]
@@ -153,6 +153,69 @@ fn module_files_only_list() {
         let others: Vec<&str> =
             text.lines().filter(|line| is_function(line) && !line.contains("fn register(")).collect();
         assert!(others.is_empty(), "{} holds {others:?}", shown(path));
+    }
+}
+
+/// Folders of the engine whose functions are longer still, or have more arguments.
+const WITH_LONG_FUNCTIONS: &[&str] =
+    &["formulations/fluid", "contact", "neighbors", "pair", "parallel", "skins"];
+
+/// A function of a file: its name, number of lines, and number of arguments without `self`.
+fn functions(text: &str) -> Vec<(String, usize, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (k, line) in lines.iter().enumerate().filter(|(_, line)| is_function(line)) {
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let ends = |other: &&str| other.strip_prefix(indent).is_some_and(|rest| rest.starts_with('}'));
+        let head = lines[k..].iter().position(|line| line.ends_with(['{', ';', '}'])).unwrap_or_default();
+        let length = if lines[k + head].ends_with('{') {
+            lines[k..].iter().position(ends).unwrap_or_default() + 1
+        } else {
+            head + 1
+        };
+        let signature = lines[k..=k + head].join(" ");
+        let name = signature.split("fn ").nth(1).unwrap_or_default();
+        let name = name.split(['(', '<']).next().unwrap_or_default().to_owned();
+        found.push((name, length, arguments(&signature)));
+    }
+    found
+}
+
+/// Number of arguments of a function without `self`: types before a colon at the depth of the list.
+fn arguments(signature: &str) -> usize {
+    let (mut depth, mut count, mut in_list, mut last) = (0, 0, false, ' ');
+    for c in signature[signature.find("fn ").unwrap_or_default()..].chars() {
+        match c {
+            '(' if depth == 0 && !in_list => in_list = true,
+            '(' | '[' | '{' | '<' => depth += 1,
+            ')' if depth == 0 => break,
+            ')' | ']' | '}' => depth -= 1,
+            '>' if last != '-' && last != '=' => depth -= 1,
+            // `::` is no end of a name.
+            ' ' if depth == 0 && in_list && last == ':' => count += 1,
+            _ => {}
+        }
+        last = c;
+    }
+    count
+}
+
+#[test]
+fn functions_of_the_engine_are_short_and_have_few_arguments() {
+    let read_rightly = functions("fn f(&self, a: u8, b: &dyn Fn(u8) -> u8) -> u8 {\n    a\n}\n");
+    assert_eq!(read_rightly, [("f".to_owned(), 3, 2)]);
+    let mut files = Vec::new();
+    collect_sources(&root().join("src/engine"), &mut files);
+    for path in &files {
+        let file = shown(path);
+        if WITH_LONG_FUNCTIONS.iter().any(|folder| file.contains(&format!("/{folder}/"))) {
+            continue;
+        }
+        let Some(text) = without_tests(path) else { continue };
+        for (name, length, arguments) in functions(&text) {
+            assert!(length <= 60, "{file}: `{name}` has {length} lines");
+            assert!(arguments <= 5, "{file}: `{name}` has {arguments} arguments");
+        }
     }
 }
 
@@ -182,6 +245,7 @@ fn links_between_pages_lead_somewhere() {
 
 /// The modules of the engine, each above those that it may import.
 const LAYERS: &[&str] = &[
+    "invariants",
     "assembly",
     "contact",
     "boundaries",

@@ -1,10 +1,13 @@
 //! The program as its users call it.
 
+mod program;
+
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use program::{assert_success, command, err, meshless, out};
 use tempfile::TempDir;
 
 fn scene(name: &str) -> PathBuf {
@@ -15,29 +18,8 @@ fn cantilever() -> String {
     scene("cantilever.ron").display().to_string()
 }
 
-/// Runs the program in a folder.
-fn meshless(folder: &TempDir, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meshless"))
-        .args(arguments)
-        .current_dir(folder.path())
-        .output()
-        .expect("the program starts")
-}
-
-fn out(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn err(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
 fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
-}
-
-fn assert_success(output: &Output) {
-    assert!(output.status.success(), "exit {:?}\n{}\n{}", output.status.code(), out(output), err(output));
 }
 
 /// The line of the summary that tells the state.
@@ -293,13 +275,7 @@ fn the_scene_reference_is_what_the_program_prints() {
 fn an_interrupted_run_can_go_on() {
     let folder = folder();
     let arguments = ["run", &cantilever(), "--set", "time.end=10.0", "--out", "o"];
-    let mut child = Command::new(env!("CARGO_BIN_EXE_meshless"))
-        .args(arguments)
-        .current_dir(folder.path())
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let mut child = command(&folder, &arguments).spawn().expect("the program starts");
     std::thread::sleep(std::time::Duration::from_secs(2));
     let signal = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     if !signal.is_ok_and(|status| status.success()) {
@@ -339,12 +315,10 @@ fn a_benchmark_measures_a_work_and_names_the_works_there_are() {
 fn a_recording_is_shown_in_a_browser_with_nothing_else_installed() {
     let folder = folder();
     assert_success(&meshless(&folder, &["run", &cantilever(), "--steps", "2", "--quiet"]));
-    let mut view = Command::new(env!("CARGO_BIN_EXE_meshless"))
-        .args(["view", "out/cantilever", "--web", "--no-browser"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
+    let view = command(&folder, &["view", "out/cantilever", "--web", "--no-browser"])
+        .stderr(Stdio::inherit())
+        .spawn();
+    let mut view = view.expect("the program starts");
     let mut lines = BufReader::new(view.stdout.take().expect("its output")).lines();
     let url =
         lines.by_ref().map_while(Result::ok).find_map(|line| Some(line[line.find("http://")?..].to_owned()));

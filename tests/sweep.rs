@@ -1,7 +1,8 @@
 //! A scene with parameters, run once for every combination of their values.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod program;
+
+use program::meshless;
 
 const SCENE: &str = r#"(
     dimension: Two,
@@ -17,11 +18,6 @@ const SCENE: &str = r#"(
     probes: [Probe(name: "tip", on: Select(nearest: ("length", 0.03)), quantity: Displacement, every: 0.001)],
 )
 "#;
-
-fn meshless(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_meshless"));
-    command.args(arguments).current_dir(folder).output().expect("the program starts")
-}
 
 #[test]
 fn a_sweep_is_a_run_for_every_combination_and_one_table() {

@@ -8,8 +8,8 @@ use meshless::pair::{WeightAt, add_pair_systems};
 use meshless::plugin::{BodyPlan, Setup};
 use meshless::prelude::*;
 use meshless::solids::{
-    Constitutive as Law, CorrectedStress, LocalMotion, SolidBlock, SolidBodies, SolidColumns, SolidPairs,
-    SolidPart, SolidPhase, SolidRows, SolidSum, StepEstimate,
+    BodyPass, Constitutive as Law, CorrectedStress, LocalMotion, SolidBlock, SolidBodies, SolidColumns,
+    SolidPairs, SolidPart, SolidPhase, SolidRows, SolidSum, StepEstimate,
 };
 use meshless::symmetry::{Ghosts, Repeat, repeats_of};
 use meshless::world::{
@@ -226,13 +226,14 @@ impl Run for Stress {
         let (mut fits, mut stresses) =
             (std::mem::take(&mut packed.fits), std::mem::take(&mut packed.stresses));
         let mut columns = SolidColumns::of(&view)?;
-        let part = SolidPart { dt: step.clock.dt, is_short: step.turn.is_part(), refits: None };
+        let part = SolidPart::of(step);
         let points = &*packed;
         solids.begin();
         for k in 0..solids.len() {
             let rows = step.world.body(solids.id(k)).rows.clone();
             let own = (&mut fits[rows.clone()], &mut stresses[rows.clone()]);
-            solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own: Own<'_>, block| {
+            let pass = BodyPass { body: k, view: &view, rows, part };
+            solids.run(pass, &mut columns, own, &|law, rows, own: Own<'_>, block| {
                 points.block(law, rows, own, block)
             });
         }

@@ -7,10 +7,10 @@ use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::eulerian::DilatationRate;
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{Largest, for_each_block};
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
-use meshless_engine::solids::SolidPhase;
+use meshless_engine::solids::{PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
     BodyId, BodySet, DeformationGradient, Position, ReferenceVolume, Removed, SupportRadius,
 };
@@ -32,8 +32,15 @@ pub fn add(bodies: &BodySet, model: Model, delta: f64, sim: &mut SimBuilder<'_>)
     sim.add_column_to::<DilatationRate>(bodies);
     let corrected = model == Model::Antuono;
     let axes = sim.dimension().count();
-    let diffusion =
-        Diffusion { diffusers, corrected, axes, rows: Vec::new(), gradients: Vec::new(), rates: Vec::new() };
+    let diffusion = Diffusion {
+        diffusers,
+        corrected,
+        axes,
+        volumes: PresentVolumes::default(),
+        densities: Vec::new(),
+        gradients: Vec::new(),
+        sums: Vec::new(),
+    };
     let phases = sim.phases_of(bodies);
     sim.add_system(
         System::new(Stage::PostStep, "density_diffusion", diffusion)
@@ -56,22 +63,15 @@ struct Diffuser {
     speed: f64,
 }
 
-/// Volume, m3, zero for a removed particle, and density over that of the start.
-#[derive(Clone, Copy, Default)]
-struct Row {
-    volume: f64,
-    density: f64,
-}
-
 struct Diffusion {
     diffusers: Vec<Diffuser>,
     corrected: bool,
     axes: usize,
-    /// Of all rows of the phase of a body.
-    rows: Vec<Row>,
+    volumes: PresentVolumes,
+    /// Density over that of the start, and its gradient, 1/m, of all rows of the phase of a body.
+    densities: Vec<f64>,
     gradients: Vec<DVec3>,
-    /// Rate of ln V, and the sum of the weights that limits the step, 1/s, of the rows of a body.
-    rates: Vec<(f64, f64)>,
+    sums: Vec<Largest>,
 }
 
 impl Run for Diffusion {
@@ -93,94 +93,72 @@ impl Diffusion {
         let position = view.read::<Position>()?;
         // 2 delta h c, m2/s
         let strength = speed * 0.5 * view.read::<SupportRadius>()?[rows.start].0;
-        let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
         let deformation = view.read::<DeformationGradient>()?;
-        self.rows.resize(volume.len(), Row::default());
-        self.gradients.resize(volume.len(), DVec3::ZERO);
-        self.rates.resize(rows.len(), (0.0, 0.0));
-        for row in rows.clone() {
-            let stretch = deformation[row].0.determinant();
-            let there = removed[row] == Removed::NO && stretch > 0.0;
-            self.rows[row] = if there {
-                Row { volume: volume[row].0 * stretch, density: 1.0 / stretch }
-            } else {
-                Row::default()
-            };
-        }
-        let Self { rows: all, gradients, rates, corrected, axes, .. } = self;
-        let pairs =
-            Pairs { solid: &*solid, position: bytemuck::cast_slice(&position), rows: all, axes: *axes };
-        if *corrected {
-            for_each_block(
-                &mut gradients[rows.clone()],
-                &mut Vec::new(),
-                &|first, gradients: &mut [DVec3]| {
-                    gradients
-                        .iter_mut()
-                        .zip(rows.start + first..)
-                        .for_each(|(g, row)| *g = pairs.gradient(row));
-                },
-            );
-        }
-        for_each_block(&mut rates[..], &mut Vec::new(), &|first, rates: &mut [(f64, f64)]| {
-            rates
-                .iter_mut()
-                .zip(rows.start + first..)
-                .for_each(|(rate, row)| *rate = pairs.rate(row, gradients));
+        let deformation = &deformation[..];
+        let Self { volumes, densities, gradients, sums, .. } = self;
+        let volumes = volumes.of_body(&view, &rows)?;
+        densities.resize(volumes.len(), 0.0);
+        gradients.resize(volumes.len(), DVec3::ZERO);
+        fill_rows(&mut densities[rows.clone()], rows.start, |row| {
+            if volumes[row] > 0.0 { 1.0 / deformation[row].0.determinant() } else { 0.0 }
         });
-        let mut out = view.write::<DilatationRate>()?;
-        let mut fastest = 0.0f64;
-        for (row, (rate, weight)) in rows.zip(&*rates) {
-            out[row].0 = strength * rate;
-            fastest = fastest.max(strength * weight);
+        let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
+        let field = Field { pairs, densities, axes: self.axes };
+        if self.corrected {
+            fill_rows(&mut gradients[rows.clone()], rows.start, |row| field.gradient(row));
         }
+        let mut out = view.write::<DilatationRate>()?;
+        let own = &mut out[rows.clone()];
+        let fastest = for_each_block(own, sums, &|first, own: &mut [DilatationRate]| {
+            let rates = own.iter_mut().zip(rows.start + first..).map(|(out, row)| {
+                let (rate, weight) = field.rate(row, gradients);
+                out.0 = strength * rate;
+                strength * weight
+            });
+            Largest::of(rates)
+        });
         drop((out, solid));
-        if fastest > 0.0 {
+        if fastest.0 > 0.0 {
             let name = &step.world.body(body).name;
-            step.limits.propose(SAFETY / fastest, format_args!("density diffusion in `{name}`"));
+            step.limits.propose(SAFETY / fastest.0, format_args!("density diffusion in `{name}`"));
         }
         Ok(())
     }
 }
 
-/// The pairs of a body.
-struct Pairs<'a> {
-    solid: &'a dyn SolidPhase,
-    position: &'a [DVec3],
-    rows: &'a [Row],
+/// The density of a body.
+struct Field<'a> {
+    pairs: PresentPairs<'a>,
+    /// Over that of the start.
+    densities: &'a [f64],
     axes: usize,
 }
 
-impl Pairs<'_> {
-    /// Calls `f` with the row of every neighbour, the signs of the axes of its mirror image, the pair vector and V_j w_ij.
-    fn of(&self, row: usize, mut f: impl FnMut(usize, DVec3, DVec3, f64)) {
-        let ghosts = self.solid.ghosts();
-        if self.rows[row].volume > 0.0 {
-            self.solid.neighbors(row, &mut |j, weight| {
-                let source = ghosts.source(j);
-                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                f(source, signs, ghosts.pair(self.position, row, j), self.rows[source].volume * weight);
-            });
+impl Field<'_> {
+    /// Calls `f` with every neighbour of a row that is there.
+    fn of(&self, row: usize, f: impl FnMut(PresentPair)) {
+        if self.pairs.volumes[row] > 0.0 {
+            self.pairs.of(row, f);
         }
     }
 
     /// The renormalised gradient of the density, 1/m; zero where the neighbours have none.
     fn gradient(&self, row: usize) -> DVec3 {
         let (mut moment, mut sum) = (MomentMatrix::new(self.axes), DVec3::ZERO);
-        self.of(row, |j, _, x, weight| {
-            moment.add(weight, x);
-            sum += weight * (self.rows[j].density - self.rows[row].density) * x;
+        self.of(row, |PresentPair { row: j, x_ij, weight, .. }| {
+            moment.add(weight, x_ij);
+            sum += weight * (self.densities[j] - self.densities[row]) * x_ij;
         });
         moment.inverse().map_or(DVec3::ZERO, |inverse| inverse * sum)
     }
 
     /// The rate of ln V over the strength, and that at which a density comes to those around it, 1/m2.
     fn rate(&self, row: usize, gradients: &[DVec3]) -> (f64, f64) {
-        let own = self.rows[row].density;
+        let own = self.densities[row];
         let (mut sum, mut weights) = (0.0, 0.0);
-        self.of(row, |j, signs, x, weight| {
-            let slope = 0.5 * (gradients[row] + gradients[j] * signs).dot(x);
-            sum += weight * (self.rows[j].density - own - slope);
+        self.of(row, |PresentPair { row: j, signs, x_ij, weight }| {
+            let slope = 0.5 * (gradients[row] + gradients[j] * signs).dot(x_ij);
+            sum += weight * (self.densities[j] - own - slope);
             weights += weight;
         });
         if own > 0.0 { (-sum / own, weights) } else { (0.0, 0.0) }

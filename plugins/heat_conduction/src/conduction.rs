@@ -11,10 +11,10 @@ use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::glam::DVec3;
 use meshless_engine::linalg::Sym3;
-use meshless_engine::parallel::for_each_block;
+use meshless_engine::parallel::{BlockSum, for_each_block};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use meshless_engine::solids::SolidPhase;
+use meshless_engine::solids::{PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
     BodyId, BodySet, DeformationGradient, Mass, Position, ReferenceVolume, Removed, Temperature,
 };
@@ -42,8 +42,14 @@ const SINGULAR: f64 = 0.02;
 pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
     let phases = sim.phases_of(&BodySet::new(conductors.iter().map(|of| of.body)));
     let axes = sim.dimension().count();
-    let conduction =
-        Conduction { conductors, axes, volumes: Vec::new(), shapes: Vec::new(), gains: Vec::new() };
+    let conduction = Conduction {
+        conductors,
+        axes,
+        volumes: PresentVolumes::default(),
+        shapes: Vec::new(),
+        gains: Vec::new(),
+        sums: Vec::new(),
+    };
     sim.add_system(
         System::new(Stage::PostStep, "heat_conduction", conduction)
             .on_phases(phases)
@@ -61,11 +67,39 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
 struct Conduction {
     conductors: Vec<Conductor>,
     axes: usize,
-    /// Of all rows of the phase of a body: present volumes, m3; of the rows of the body: inverse moment matrices, and heat gained in a second, W, with the
-    /// rate at which a particle would come to the temperature of its neighbours, W/K.
-    volumes: Vec<f64>,
+    volumes: PresentVolumes,
+    /// Inverse moment matrices of the rows of a body.
     shapes: Vec<Sym3>,
-    gains: Vec<(f64, f64)>,
+    gains: Vec<Gain>,
+    sums: Vec<Heat>,
+}
+
+/// What a particle gains.
+#[derive(Clone, Copy, Default)]
+struct Gain {
+    /// Heat in a second, W.
+    power: f64,
+    /// Rate at which it would come to the temperature of its neighbours, W/K.
+    rate: f64,
+}
+
+/// The heat of some particles.
+#[derive(Clone, Copy, Default)]
+struct Heat {
+    /// What has come from elsewhere since the last step, J.
+    come: f64,
+    /// What conduction changes in all, J: nothing but rounding.
+    conducted: f64,
+    /// Largest rate at which a particle comes to the temperature of its neighbours, 1/s.
+    fastest: f64,
+}
+
+impl BlockSum for Heat {
+    fn add(&mut self, next: &Self) {
+        self.come += next.come;
+        self.conducted += next.conducted;
+        self.fastest = self.fastest.max(next.fastest);
+    }
 }
 
 impl Run for Conduction {
@@ -87,81 +121,56 @@ impl Conduction {
         let (position, mass) = (view.read::<Position>()?, view.read::<Mass>()?);
         let mut now = view.write::<Temperature>()?;
         let mut last = view.write::<ConductedTemperature>()?;
-        let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
-        let deformation = view.read::<DeformationGradient>()?;
-        self.volumes.resize(volume.len(), 0.0);
-        for row in rows.clone() {
-            let is_there = removed[row] == Removed::NO;
-            self.volumes[row] =
-                if is_there { volume[row].0 * deformation[row].0.determinant().max(0.0) } else { 0.0 };
-        }
+        let volumes = self.volumes.of_body(&view, &rows)?;
         self.shapes.resize(rows.len(), Sym3::ZERO);
-        self.gains.resize(rows.len(), (0.0, 0.0));
-        let pairs = Pairs {
-            solid: &*solid,
-            position: bytemuck::cast_slice(&position),
-            volumes: &self.volumes,
-            first: rows.start,
-            axes: self.axes,
-        };
-        for_each_block(&mut self.shapes[..], &mut Vec::new(), &|first, shapes: &mut [Sym3]| {
-            shapes.iter_mut().zip(rows.start + first..).for_each(|(shape, row)| *shape = pairs.shape(row));
-        });
+        self.gains.resize(rows.len(), Gain::default());
+        let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
+        let field = Field { pairs, first: rows.start, axes: self.axes };
+        fill_rows(&mut self.shapes, rows.start, |row| field.shape(row));
         let (shapes, temperature) = (&self.shapes[..], &now[..]);
-        for_each_block(&mut self.gains[..], &mut Vec::new(), &|first, gains: &mut [(f64, f64)]| {
-            for (gain, row) in gains.iter_mut().zip(rows.start + first..) {
-                *gain = pairs.gain(row, shapes, temperature, of.conductivity);
-            }
-        });
-        let capacity = |row: usize| mass[row].0 * of.specific_heat;
+        fill_rows(&mut self.gains, rows.start, |row| field.gain(row, shapes, temperature, of.conductivity));
         let dt = step.clock.dt;
-        // What has come from elsewhere since the last step, and what conduction changes in all: nothing but rounding.
-        let (mut come, mut conducted, mut fastest) = (0.0, 0.0, 0.0f64);
-        for (k, row) in rows.enumerate() {
-            come += capacity(row) * (now[row].0 - last[row].0);
-            let change = dt * self.gains[k].0;
-            conducted += change;
-            now[row].0 += change / capacity(row);
-            last[row].0 = now[row].0;
-            fastest = fastest.max(self.gains[k].1 / capacity(row));
-        }
+        let own = (&mut now[rows.clone()], &mut last[rows.clone()], &self.gains[..], &mass[rows]);
+        type Rows<'a> = (&'a mut [Temperature], &'a mut [ConductedTemperature], &'a [Gain], &'a [Mass]);
+        let found = for_each_block(own, &mut self.sums, &|_, (now, last, gains, mass): Rows<'_>| {
+            let mut sum = Heat::default();
+            for (((now, last), gain), mass) in now.iter_mut().zip(last).zip(gains).zip(mass) {
+                let capacity = mass.0 * of.specific_heat;
+                sum.come += capacity * (now.0 - last.0);
+                let change = dt * gain.power;
+                sum.conducted += change;
+                now.0 += change / capacity;
+                last.0 = now.0;
+                sum.fastest = sum.fastest.max(gain.rate / capacity);
+            }
+            sum
+        });
         drop((now, last, solid));
         let heat = step.ledger.account("heat", AccountKind::Stored);
-        step.ledger.add(heat, of.body, come + conducted);
+        step.ledger.add(heat, of.body, found.come + found.conducted);
         let into_heat = step.ledger.account("into_heat", AccountKind::Dissipated);
-        step.ledger.add(into_heat, of.body, -come);
-        if fastest > 0.0 {
+        step.ledger.add(into_heat, of.body, -found.come);
+        if found.fastest > 0.0 {
             let name = &step.world.body(of.body).name;
-            step.limits.propose(SAFETY / fastest, format_args!("conduction of heat in `{name}`"));
+            step.limits.propose(SAFETY / found.fastest, format_args!("conduction of heat in `{name}`"));
         }
         Ok(())
     }
 }
 
-/// The pairs of a body.
-struct Pairs<'a> {
-    solid: &'a dyn SolidPhase,
-    position: &'a [DVec3],
-    volumes: &'a [f64],
+/// The neighbourhoods of a body.
+struct Field<'a> {
+    pairs: PresentPairs<'a>,
     /// First row of the body.
     first: usize,
     axes: usize,
 }
 
-impl Pairs<'_> {
-    /// Calls `f` with the row, the pair vector and V_j w_ij of every neighbour.
-    fn of(&self, row: usize, mut f: impl FnMut(usize, DVec3, f64)) {
-        let ghosts = self.solid.ghosts();
-        self.solid.neighbors(row, &mut |j, weight| {
-            let source = ghosts.source(j);
-            f(source, ghosts.pair(self.position, row, j), self.volumes[source] * weight);
-        });
-    }
-
+impl Field<'_> {
     /// The inverse of the moment matrix of the neighbourhood.
     fn shape(&self, row: usize) -> Sym3 {
         let mut moment = MomentMatrix::new(self.axes);
-        self.of(row, |_, x, weight| moment.add(weight, x));
+        self.pairs.of(row, |pair| moment.add(pair.weight, pair.x_ij));
         let mean = moment.matrix().trace() / self.axes as f64;
         let round = || if mean > 0.0 { Sym3::IDENTITY * (1.0 / mean) } else { Sym3::ZERO };
         moment.inverse_above(SINGULAR).unwrap_or_else(round)
@@ -179,22 +188,16 @@ impl Pairs<'_> {
         0.5 * ((axes + 2.0) * y.length_squared() / along - trace)
     }
 
-    /// Heat that a particle gains in a second, W, and its rate, W/K.
-    fn gain(
-        &self,
-        row: usize,
-        shapes: &[Sym3],
-        temperature: &[Temperature],
-        conductivity: f64,
-    ) -> (f64, f64) {
-        let (mut gain, mut rate) = (0.0, 0.0);
-        let (own, volume) = (&shapes[row - self.first], self.volumes[row]);
-        self.of(row, |j, x, weight| {
-            let shape = 0.5 * (self.weight(own, x) + self.weight(&shapes[j - self.first], x));
+    /// What a particle gains.
+    fn gain(&self, row: usize, shapes: &[Sym3], temperature: &[Temperature], conductivity: f64) -> Gain {
+        let mut gain = Gain::default();
+        let (own, volume) = (&shapes[row - self.first], self.pairs.volumes[row]);
+        self.pairs.of(row, |PresentPair { row: j, x_ij, weight, .. }| {
+            let shape = 0.5 * (self.weight(own, x_ij) + self.weight(&shapes[j - self.first], x_ij));
             let share = 2.0 * conductivity * (volume * weight) * shape.max(0.0);
-            gain += share * (temperature[j].0 - temperature[row].0);
-            rate += share;
+            gain.power += share * (temperature[j].0 - temperature[row].0);
+            gain.rate += share;
         });
-        (gain, rate)
+        gain
     }
 }

@@ -1,29 +1,22 @@
 //! Scene to simulation: materials, particles, plugins, systems, columns.
 
 use std::any::Any;
-use std::path::Path;
 
-use glam::DVec3;
-
-use super::memory;
 use super::names;
 use super::options::BuildOptions;
 use super::overlap;
 use super::placement;
+use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
 use super::{clamps, supports};
-use crate::materials::{Law, Material};
-use crate::plugin::{
-    BodyKind, BodyPlan, Formulation, FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder,
-};
-use crate::record::{OutputPlan, Recorder};
-use crate::rigid::Rigid;
-use crate::scene::{Body, Domain, Item, Place, Problem, Scene, SceneError, Source};
+use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
+use crate::record::probe::Probe;
+use crate::record::{OutputHandle, OutputPlan, Recorder};
+use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
 use crate::schedule::{Resources, Schedule};
-use crate::shapes::{self, Site};
 use crate::simulation::{Simulation, SimulationParts};
-use crate::world::{BodyId, BodySet, ColumnSet, PhaseId};
+use crate::world::{BodyId, BodySet};
 
 /// Makes a simulation that writes nothing out of a scene: [`build_with`] and no options.
 ///
@@ -47,8 +40,6 @@ pub fn build_with(
         .map_err(|problems| SceneError { source: source.clone(), problems })
 }
 
-type Parsed<'r> = (&'r FormulationEntry, Box<dyn Any>);
-
 fn build_in(
     scene: &Scene,
     source: &Source,
@@ -59,7 +50,7 @@ fn build_in(
     if !misspelt.is_empty() {
         return Err(misspelt);
     }
-    let (mut bodies, phases, parsed) = place_bodies(scene, source, registry)?;
+    let Placed { mut bodies, phases, formulations, .. } = place_bodies(scene, source, registry)?;
     let misplaced = placement::problems(&bodies, scene);
     if !misplaced.is_empty() {
         return Err(misplaced);
@@ -76,7 +67,7 @@ fn build_in(
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);
     crate::solids::add_fields(&mut sim);
-    assemble(scene, parsed, &mut sim)?;
+    assemble(scene, formulations, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);
     for contact in &scene.contacts {
@@ -89,6 +80,23 @@ fn build_in(
     let probes = plan.probes();
     let output = options.output.as_ref().map(|options| plan.attach(&mut sim, source, options));
     sim.refuse_leftovers()?;
+    start(scene, source, sim, Outputs { output, probes })
+}
+
+/// What a simulation writes.
+struct Outputs {
+    output: Option<OutputHandle>,
+    probes: Vec<Probe>,
+}
+
+/// Spawns the particles, runs what belongs between that and the first step, and orders the systems.
+fn start(
+    scene: &Scene,
+    source: &Source,
+    mut sim: SimBuilder<'_>,
+    outputs: Outputs,
+) -> Result<Simulation, Vec<Problem>> {
+    let Outputs { output, probes } = outputs;
     let world = spawn::spawn(&sim);
     let mut resources = Resources::default();
     let held = BodySet::new(sim.held.take());
@@ -129,122 +137,6 @@ fn at_scene(scene: &Scene, error: SetupError) -> Vec<Problem> {
             vec![Problem { at: if place.is_empty() { Place::Scene } else { Place::Path(place) }, ..problem }]
         }
     }
-}
-
-type Placed<'r> = (Vec<BodyPlan>, Vec<(&'static str, ColumnSet)>, Vec<Parsed<'r>>);
-
-fn place_bodies<'r>(
-    scene: &Scene,
-    source: &Source,
-    registry: &'r Registry,
-) -> Result<Placed<'r>, Vec<Problem>> {
-    let mut problems = Vec::new();
-    let mut materials = Vec::new();
-    for (name, item) in &scene.materials {
-        match registry.build_material(item) {
-            Ok(material) => materials.push((name.as_str(), material)),
-            Err(found) => problems.extend(found),
-        }
-    }
-    let folder = source.folder();
-    let mut room = memory::particle_limit();
-    let mut bodies: Vec<BodyPlan> = Vec::new();
-    let mut phases: Vec<(&'static str, ColumnSet)> = Vec::new();
-    let mut lens: Vec<usize> = Vec::new();
-    let mut parsed = Vec::new();
-    for (k, body) in scene.bodies.iter().enumerate() {
-        let formulation = match parse_formulation(registry, &body.formulation) {
-            Ok(formulation) => formulation,
-            Err(found) => {
-                problems.extend(found);
-                continue;
-            }
-        };
-        let filled = match endless_tool(body, formulation.0.name, scene, folder) {
-            Some(sites) => Ok(sites),
-            None => {
-                let fill =
-                    if formulation.0.kind == BodyKind::Boundary { shapes::fill_wall } else { shapes::fill };
-                fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, room)
-            }
-        };
-        let region = body.shape.region(scene.dimension, folder, "shape");
-        let (sites, bounds) = match (filled, region) {
-            (Ok(sites), Ok(region)) => (sites, region.bounds()),
-            (Ok(sites), Err(_)) => {
-                let bounds = shapes::Aabb::around(sites.iter().map(|site| site.position));
-                (sites, bounds)
-            }
-            (Err(error), _) => {
-                let path = format!("bodies[{k}].{}", error.path);
-                problems.push(Problem::at_path(path, error.kind.to_string()).helps(error.kind.help()));
-                continue;
-            }
-        };
-        let material = match materials.iter().find(|(name, _)| *name == body.material) {
-            Some((_, material)) => material.clone(),
-            None if scene.materials.contains_key(&body.material) => continue,
-            None => Material::nothing(),
-        };
-        room = room.saturating_sub(sites.len());
-        let name = formulation.0.name;
-        let phase = phases.iter().position(|(known, _)| *known == name).unwrap_or_else(|| {
-            let mut columns = ColumnSet::default();
-            spawn::standard_columns(&mut columns);
-            (formulation.0.columns)(&mut columns);
-            phases.push((name, columns));
-            lens.push(0);
-            phases.len() - 1
-        });
-        if let Law::Solid(law) = &material.law {
-            law.state(&mut phases[phase].1);
-        }
-        let start = lens[phase];
-        lens[phase] += sites.len();
-        let mut plan = BodyPlan {
-            id: BodyId(k),
-            name: body.name.clone(),
-            phase: PhaseId(phase),
-            formulation: name,
-            kind: formulation.0.kind,
-            offers: formulation.0.offers,
-            support: None,
-            rows: start..lens[phase],
-            spacing: body.spacing,
-            material_name: body.material.clone(),
-            material,
-            sites,
-            carried: Vec::new(),
-            hidden: Vec::new(),
-            bounds,
-            velocity: body.velocity,
-        };
-        plan.support = (formulation.0.support)(&*formulation.1, &plan);
-        bodies.push(plan);
-        parsed.push(formulation);
-    }
-    if problems.is_empty() { Ok((bodies, phases, parsed)) } else { Err(problems) }
-}
-
-/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is a tool.
-fn endless_tool(body: &Body, formulation: &str, scene: &Scene, folder: &Path) -> Option<Vec<Site>> {
-    if formulation != Rigid::NAME || !(body.spacing > 0.0 && body.spacing.is_finite()) {
-        return None;
-    }
-    let region = body.shape.region(scene.dimension, folder, "shape").ok()?;
-    if region.bounds().is_bounded() {
-        return None;
-    }
-    let surface = body.shape.surface(scene.dimension, folder, "shape").ok()?;
-    let middle = |domain: &Domain| 0.5 * (domain.min.0 + domain.max.0);
-    let nearest = surface.closest(scene.domain.as_ref().map_or(DVec3::ZERO, middle));
-    let position = nearest.point - 0.5 * body.spacing * nearest.normal;
-    Some(vec![Site { position, volume: body.spacing.powi(scene.dimension.count() as i32) }])
-}
-
-fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {
-    let entry = registry.find_formulation(item)?;
-    Ok((entry, (entry.parse)(item)?))
 }
 
 /// Builds the plugins of bodies and of the scene, then the conditions; collects what is wrong with any of them.

@@ -10,6 +10,7 @@ mod names;
 mod options;
 mod overlap;
 mod placement;
+mod placing;
 mod plausibility;
 mod spawn;
 mod standard;

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::boundaries::Symmetry;
 use crate::plugin::{BodyKind, Offer, Plugin, Registry, SimBuilder};
 use crate::scene::{Edge, Face, Scene};
-use crate::shapes::Region;
+use crate::shapes::{Aabb, Region};
 
 /// How far the surface of a body may be from its side, over the spacing.
 const ON_SIDE: f64 = 1e-3;
@@ -35,7 +35,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                 let body = &sim.bodies[id.0];
                 let shape = &scene.bodies[id.0].shape;
                 let region = shape.region(scene.dimension, sim.folder, "shape");
-                let at = side_of(face, (body.bounds.min, body.bounds.max));
+                let at = side_of(face, &body.bounds);
                 let (Ok(region), false) = (region, is_mirrored(scene, face, at, body.spacing)) else {
                     continue;
                 };
@@ -54,10 +54,10 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
     }
 }
 
-/// Coordinate of a side of a body whose box has these corners, m.
-fn side_of(face: Face, (min, max): (DVec3, DVec3)) -> f64 {
+/// Coordinate of a side of a box, m.
+fn side_of(face: Face, bounds: &Aabb) -> f64 {
     let (axis, sign) = face.outward();
-    if sign < 0.0 { min[axis] } else { max[axis] }
+    if sign < 0.0 { bounds.min[axis] } else { bounds.max[axis] }
 }
 
 /// Whether the body goes on behind a side.

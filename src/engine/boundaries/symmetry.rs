@@ -66,21 +66,35 @@ impl Plugin for Symmetry {
             }
         }
         if cut.is_empty() {
-            let extent = |body: &BodyPlan| {
-                format!(
-                    "`{}` extends from {} to {}",
-                    body.name,
-                    number(body.bounds.min[axis]),
-                    number(body.bounds.max[axis])
-                )
-            };
-            let extents: Vec<String> = sim.bodies().iter().map(extent).collect();
-            return Err(SetupError::parameter(
-                "at",
-                format!("no body ends at the symmetry plane {:?} = {}", self.plane, self.at),
-                format!("along {:?}, {}", self.plane, extents.join("; ")),
-            ));
+            return Err(self.no_body(sim));
         }
+        let mirrored = self.mirrored(&cut, sim)?;
+        for body in halved {
+            sim.extend(HalvedBody { body, axis });
+        }
+        sim.extend(MirrorPlane { axis, at: self.at, bodies: BodySet::new(mirrored) });
+        Ok(())
+    }
+}
+
+impl Symmetry {
+    /// That no body ends at the plane.
+    fn no_body(&self, sim: &SimBuilder<'_>) -> SetupError {
+        let axis = self.plane.index();
+        let extent = |body: &BodyPlan| {
+            let (min, max) = (number(body.bounds.min[axis]), number(body.bounds.max[axis]));
+            format!("`{}` extends from {min} to {max}", body.name)
+        };
+        let extents: Vec<String> = sim.bodies().iter().map(extent).collect();
+        SetupError::parameter(
+            "at",
+            format!("no body ends at the symmetry plane {:?} = {}", self.plane, self.at),
+            format!("along {:?}, {}", self.plane, extents.join("; ")),
+        )
+    }
+
+    /// Those of the bodies that end at the plane which get an image; a fluid that a wall holds beside them needs none.
+    fn mirrored(&self, cut: &[BodyId], sim: &SimBuilder<'_>) -> Result<Vec<BodyId>, SetupError> {
         let mirrored = cut.iter().copied().filter(|id| sim.body(*id).offers(Offer::MirrorImages));
         let mirrored: Vec<BodyId> = mirrored.collect();
         for body in cut.iter().filter(|id| !mirrored.contains(id)).map(|id| sim.body(*id)) {
@@ -88,8 +102,7 @@ impl Plugin for Symmetry {
             if fluid && !mirrored.is_empty() && self.is_held(body, sim) {
                 continue;
             }
-            let name = &body.name;
-            let formulation = body.formulation;
+            let BodyPlan { name, formulation, .. } = body;
             let message = format!(
                 "body `{name}` ends at a symmetry plane, and bodies with the formulation `{formulation}` have no mirror images"
             );
@@ -100,16 +113,9 @@ impl Plugin for Symmetry {
             };
             return Err(SetupError::parameter("plane", message, help));
         }
-        for body in halved {
-            sim.extend(HalvedBody { body, axis });
-        }
-        let cut = mirrored;
-        sim.extend(MirrorPlane { axis, at: self.at, bodies: BodySet::new(cut) });
-        Ok(())
+        Ok(mirrored)
     }
-}
 
-impl Symmetry {
     /// Whether the body ends at the plane.
     fn cuts(&self, body: &BodyPlan) -> Result<bool, SetupError> {
         let axis = self.plane.index();

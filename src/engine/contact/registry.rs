@@ -13,7 +13,7 @@ impl Registry {
             let law: L = item.parse()?;
             law.build(pair).map_err(|error| SetupError::from(error).into_problems(item))
         };
-        self.add_builder::<L, _>(Kind::ContactLaw, (L::NAME, L::REFERENCE), build)
+        self.add_builder::<L, _>(Kind::ContactLaw, L::NAME, L::REFERENCE, build)
     }
 
     pub(crate) fn build_contact_law(

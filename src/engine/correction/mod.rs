@@ -5,10 +5,12 @@
 //! every linear f for any arrangement of particles (Bonet & Lok 1999, Computer Methods in Applied Mechanics and
 //! Engineering 180, 97-115; Ganzenmueller 2015, eq. 9-11, where both signs are the opposite and cancel).
 
+mod affine;
 mod moment;
 mod moments;
 #[cfg(test)]
 mod tests;
 
+pub use affine::AffineFit;
 pub use moment::{MomentMatrix, SINGULAR};
 pub use moments::FourMoments;

@@ -15,26 +15,15 @@ pub(super) struct BodyField(pub usize);
 /// A field, or one component of it, found in every body that has it.
 #[derive(Clone)]
 pub struct ChosenField {
-    table: Arc<FieldTable>,
-    name: String,
-    unit: &'static str,
-    components: &'static [&'static str],
-    pick: Option<usize>,
-    bodies: Vec<Option<BodyField>>,
+    pub(super) table: Arc<FieldTable>,
+    pub(super) name: String,
+    pub(super) unit: &'static str,
+    pub(super) components: &'static [&'static str],
+    pub(super) pick: Option<usize>,
+    pub(super) bodies: Vec<Option<BodyField>>,
 }
 
 impl ChosenField {
-    pub(super) fn new(
-        table: Arc<FieldTable>,
-        name: String,
-        unit: &'static str,
-        components: &'static [&'static str],
-        pick: Option<usize>,
-        bodies: Vec<Option<BodyField>>,
-    ) -> Self {
-        Self { table, name, unit, components, pick, bodies }
-    }
-
     /// Name as it was asked for, with the component if one was named.
     pub fn name(&self) -> &str {
         &self.name

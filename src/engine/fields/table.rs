@@ -81,7 +81,7 @@ impl FieldTable {
         }
         let (_, unit, components) = first;
         let pick = component.map(|component| component_index(base, component, components)).transpose()?;
-        Ok(ChosenField::new(Arc::clone(self), name.to_owned(), unit, components, pick, bodies))
+        Ok(ChosenField { table: Arc::clone(self), name: name.to_owned(), unit, components, pick, bodies })
     }
 
     /// Names of the fields that at least one of the bodies has.

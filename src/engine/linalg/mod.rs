@@ -1,5 +1,6 @@
 //! Small symmetric matrices, eigenvalues and polar decomposition, which glam does not provide.
 
+mod dyad;
 mod eigen;
 mod near_identity;
 mod polar;
@@ -8,6 +9,7 @@ mod sym3;
 #[cfg(test)]
 mod tests;
 
+pub use dyad::dyad;
 pub use eigen::Eigen;
 pub use polar::polar;
 pub use stretch::smallest_and_largest_stretch;

@@ -150,7 +150,8 @@ impl Registry {
     pub(crate) fn add_builder<T: schemars::JsonSchema + DeserializeOwned, B: Any + Send + Sync>(
         &mut self,
         kind: Kind,
-        (name, reference): (&'static str, &'static str),
+        name: &'static str,
+        reference: &'static str,
         build: B,
     ) -> &mut Self {
         self.builders.insert((kind, name), Arc::new(build));

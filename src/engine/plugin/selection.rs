@@ -8,6 +8,7 @@ use super::error::SetupError;
 use super::plan::BodyPlan;
 use crate::notation::place;
 use crate::scene::{Dimension, Face, Select, unknown};
+use crate::shapes::Aabb;
 use crate::world::BodyId;
 
 /// The rows that a [`Select`] means, body by body in scene order; rows are rows of the body's phase.
@@ -38,21 +39,7 @@ pub(super) fn resolve(
     folder: &Path,
 ) -> Result<Selection, SetupError> {
     let path = |name: &str| if field.is_empty() { name.to_owned() } else { format!("{field}.{name}") };
-    if let Some(name) = &select.body
-        && !bodies.iter().any(|body| select.means(&body.name))
-    {
-        let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-        let (message, helps) = unknown("body", name, &known);
-        return Err(SetupError::parameter(path("body"), message, helps.join("; ")));
-    }
-    if dimension == Dimension::Two && matches!(select.face, Some(Face::MinZ | Face::MaxZ)) {
-        let help = "the faces are MinX, MaxX, MinY and MaxY";
-        return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
-    }
-    if select.surface.is_some() {
-        let help = "select particles by `within`, `face` or `nearest`; `surface` is for `Traction`, `Pressure` and probes of fields";
-        return Err(SetupError::parameter(path("surface"), "a surface has no particles of its own", help));
-    }
+    check(select, &path, bodies, dimension)?;
     let within = match &select.within {
         Some(shape) => Some(shape.region(dimension, folder, &path("within")).map_err(|error| {
             SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")
@@ -78,20 +65,40 @@ pub(super) fn resolve(
         parts = nearest(parts, bodies, point.0);
     }
     if parts.is_empty() {
-        let extents = bodies.iter().filter(|body| select.means(&body.name));
-        let extents: Vec<String> = extents
-            .map(|body| {
-                format!(
-                    "`{}` extends from {} to {}",
-                    body.name,
-                    place(body.bounds.min),
-                    place(body.bounds.max)
-                )
-            })
-            .collect();
+        let extent = |body: &BodyPlan| {
+            let Aabb { min, max } = body.bounds;
+            format!("`{}` extends from {} to {}", body.name, place(min), place(max))
+        };
+        let extents: Vec<String> =
+            bodies.iter().filter(|body| select.means(&body.name)).map(extent).collect();
         return Err(SetupError::parameter(field, "the selection is empty", extents.join("; ")));
     }
     Ok(Selection { parts })
+}
+
+/// Whether a selection can mean particles at all; `path` gives the path of one of its fields.
+fn check(
+    select: &Select,
+    path: &impl Fn(&str) -> String,
+    bodies: &[BodyPlan],
+    dimension: Dimension,
+) -> Result<(), SetupError> {
+    if let Some(name) = &select.body
+        && !bodies.iter().any(|body| select.means(&body.name))
+    {
+        let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+        let (message, helps) = unknown("body", name, &known);
+        return Err(SetupError::parameter(path("body"), message, helps.join("; ")));
+    }
+    if dimension == Dimension::Two && matches!(select.face, Some(Face::MinZ | Face::MaxZ)) {
+        let help = "the faces are MinX, MaxX, MinY and MaxY";
+        return Err(SetupError::parameter(path("face"), "a two-dimensional body has no face along z", help));
+    }
+    if select.surface.is_some() {
+        let help = "select particles by `within`, `face` or `nearest`; `surface` is for `Traction`, `Pressure` and probes of fields";
+        return Err(SetupError::parameter(path("surface"), "a surface has no particles of its own", help));
+    }
+    Ok(())
 }
 
 /// Whether a particle belongs to the outermost layer: closer to the face of the body's box than one spacing.

@@ -11,7 +11,7 @@ use super::nodes::Nodes;
 use super::rotation::Inertia;
 use super::systems;
 use crate::integrate::OwnMotion;
-use crate::plugin::{BodyKind, Formulation, Offer, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::{Dimension, Vec3};
 use crate::world::{BodyId, ColumnSet, Mass, Mobility, Position, Velocity};
 
@@ -147,36 +147,7 @@ impl Rigid {
         let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
         let of_shape = MassProperties::new(plan, &*surface, sim.dimension());
         let mass = self.mass.unwrap_or(of_shape.mass);
-        let has_mass = mass > 0.0 && mass.is_finite();
-        let place = format!("bodies[{}].formulation{}", id.0, if self.mass.is_some() { ".mass" } else { "" });
-        if mass < 0.0 || mass.is_nan() {
-            let message = format!("`mass` must be positive, found {mass} kg");
-            return Err(SetupError::parameter(
-                place,
-                message,
-                "leave it out: it follows from density and shape",
-            ));
-        }
-        if !has_mass && !constraint.is_complete() {
-            return Err(SetupError::parameter(
-                place,
-                format!(
-                    "a rigid body that moves freely must have a positive mass, found {mass} kg for `{}`",
-                    plan.name
-                ),
-                "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`",
-            ));
-        }
-        let is_held = constraint.free_axes() == DVec3::ZERO && constraint.is_held_from_turning();
-        if !plan.bounds.is_bounded() && !is_held {
-            let message =
-                format!("rigid body `{}` is unbounded, and its motion must be prescribed", plan.name);
-            return Err(SetupError::parameter(
-                format!("bodies[{}].shape", id.0),
-                message,
-                "prescribe its translation by `Fix`, `Velocity` or `Displacement`, and let it not turn",
-            ));
-        }
+        self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing);
         let reach =
@@ -201,12 +172,47 @@ impl Rigid {
             force: DVec3::ZERO,
             torque: DVec3::ZERO,
         };
-        if sim.dimension() == Dimension::Two && (self.spin.0.x != 0.0 || self.spin.0.y != 0.0) {
+        Ok(RigidBody::new(parts, state))
+    }
+}
+
+impl Rigid {
+    /// Whether a body of this mass, kg, can move as its constraint lets it.
+    fn check(
+        &self,
+        plan: &BodyPlan,
+        mass: f64,
+        constraint: &Constraint,
+        dimension: Dimension,
+    ) -> Result<(), SetupError> {
+        let (id, name) = (plan.id, &plan.name);
+        let place = format!("bodies[{}].formulation{}", id.0, if self.mass.is_some() { ".mass" } else { "" });
+        if mass < 0.0 || mass.is_nan() {
+            let message = format!("`mass` must be positive, found {mass} kg");
+            let help = "leave it out: it follows from density and shape";
+            return Err(SetupError::parameter(place, message, help));
+        }
+        let has_mass = mass > 0.0 && mass.is_finite();
+        if !has_mass && !constraint.is_complete() {
+            let message = format!(
+                "a rigid body that moves freely must have a positive mass, found {mass} kg for `{name}`"
+            );
+            let help = "give it a positive `mass`, or prescribe its whole motion by `Fix`, `Velocity` or `Displacement`";
+            return Err(SetupError::parameter(place, message, help));
+        }
+        let is_held = constraint.free_axes() == DVec3::ZERO && constraint.is_held_from_turning();
+        if !plan.bounds.is_bounded() && !is_held {
+            let message = format!("rigid body `{name}` is unbounded, and its motion must be prescribed");
+            let help =
+                "prescribe its translation by `Fix`, `Velocity` or `Displacement`, and let it not turn";
+            return Err(SetupError::parameter(format!("bodies[{}].shape", id.0), message, help));
+        }
+        if dimension == Dimension::Two && (self.spin.0.x != 0.0 || self.spin.0.y != 0.0) {
             let message = "a two-dimensional body turns about z alone";
             let help = "give `spin: (0.0, 0.0, rate)`";
             return Err(SetupError::parameter(format!("bodies[{}].formulation.spin", id.0), message, help));
         }
-        Ok(RigidBody::new(parts, state))
+        Ok(())
     }
 }
 

@@ -50,16 +50,27 @@ impl Check<'_> {
                 };
                 Box::new(HalfSpace { point, normal, axes })
             }
-            Shape::Cylinder { from, to, radius } => {
-                self.exists("Cylinder", Dimension::Three, "`Sphere` (a disc) or `Box`")?;
-                let (from, to) = self.axis(*from, *to)?;
-                Box::new(Cylinder { from, to, inner: 0.0, outer: self.positive("radius", *radius)? })
-            }
             Shape::Ring { center, inner, outer } => {
                 self.exists("Ring", Dimension::Two, "`Tube`")?;
                 let center = self.point("center", *center)?;
                 let (inner, outer) = self.radii(*inner, *outer)?;
                 Box::new(Ring { center, inner, outer })
+            }
+            Shape::Polygon { points } => {
+                self.exists("Polygon", Dimension::Two, "`Extrusion`")?;
+                Box::new(self.polygon("points", points)?)
+            }
+            _ => self.in_space(shape)?,
+        })
+    }
+
+    /// The geometry of a shape that three dimensions alone have.
+    fn in_space(&self, shape: &Shape) -> Checked<Box<dyn Surface>> {
+        Ok(match shape {
+            Shape::Cylinder { from, to, radius } => {
+                self.exists("Cylinder", Dimension::Three, "`Sphere` (a disc) or `Box`")?;
+                let (from, to) = self.axis(*from, *to)?;
+                Box::new(Cylinder { from, to, inner: 0.0, outer: self.positive("radius", *radius)? })
             }
             Shape::Tube { from, to, inner, outer } => {
                 self.exists("Tube", Dimension::Three, "`Ring`")?;
@@ -72,10 +83,6 @@ impl Check<'_> {
                 let center = self.point("center", *center)?;
                 let (inner, outer) = self.radii(*inner, *outer)?;
                 Box::new(Shell { center, inner, outer })
-            }
-            Shape::Polygon { points } => {
-                self.exists("Polygon", Dimension::Two, "`Extrusion`")?;
-                Box::new(self.polygon("points", points)?)
             }
             Shape::Extrusion { polygon, from, to } => {
                 self.exists("Extrusion", Dimension::Three, "`Polygon`")?;

@@ -29,52 +29,44 @@ pub struct Site {
 }
 
 /// How a shape is filled.
-struct Filling<'a> {
-    lattice: Lattice,
-    dimension: Dimension,
-    folder: &'a Path,
-    limit: usize,
-    /// Whether cells end at the cavity of the shape.
-    is_wall: bool,
+#[derive(Clone, Copy, Debug)]
+pub struct Filling<'a> {
+    /// Arrangement of the particles.
+    pub lattice: Lattice,
+    /// Distance of the particles, m.
+    pub spacing: f64,
+    /// Dimension of the scene.
+    pub dimension: Dimension,
+    /// Where particle files and meshes are looked for.
+    pub folder: &'a Path,
+    /// Largest number of particles.
+    pub limit: usize,
+    /// Whether the shape is the wall of a flow: where a box is cut out of it, cells end at the cavity, and volumes are those of cells.
+    pub is_wall: bool,
+}
+
+/// A region that gets particles.
+#[derive(Clone, Copy)]
+pub(super) struct Content<'a> {
+    pub region: &'a dyn Region,
+    /// Volume of all particles, m3.
+    pub volume: f64,
+    pub spacing: f64,
+    /// Number of axes of the scene.
+    pub axes: usize,
 }
 
 /// The particles that fill `shape`, in the order of a Morton curve.
 ///
 /// The volumes add up to that of the shape: the closed form, or for combinations without one a numerical value good to 0.1 %. A regular
 /// or hexagonal lattice divides the box about the shape evenly (that about the first shape of a combination): a side that is no
-/// multiple of `spacing` \[m\] gets the nearest number of particles. Translations and rotations take the lattice with them. Particle files
-/// are looked for in `folder`. At most `limit` particles are made.
+/// multiple of the spacing gets the nearest number of particles. Translations and rotations take the lattice with them.
 ///
 /// # Errors
-/// `spacing` is not positive; the shape is not valid in this dimension, is empty, is thinner than two particles, or does not fit the
-/// lattice; it takes more than `limit` particles; the particle file is missing or wrong.
-pub fn fill(
-    shape: &Shape,
-    lattice: Lattice,
-    spacing: f64,
-    dimension: Dimension,
-    folder: &Path,
-    limit: usize,
-) -> Result<Vec<Site>, FillError> {
-    fill_with(shape, spacing, Filling { lattice, dimension, folder, limit, is_wall: false })
-}
-
-/// The same for the wall of a flow: where a box is cut out of the shape, cells end at it, and volumes are those of cells.
-///
-/// # Errors
-/// As [`fill`].
-pub fn fill_wall(
-    shape: &Shape,
-    lattice: Lattice,
-    spacing: f64,
-    dimension: Dimension,
-    folder: &Path,
-    limit: usize,
-) -> Result<Vec<Site>, FillError> {
-    fill_with(shape, spacing, Filling { lattice, dimension, folder, limit, is_wall: true })
-}
-
-fn fill_with(shape: &Shape, spacing: f64, filling: Filling<'_>) -> Result<Vec<Site>, FillError> {
+/// The spacing is not positive; the shape is not valid in this dimension, is empty, is thinner than two particles, or does not fit the
+/// lattice; it takes more particles than the limit; the particle file is missing or wrong.
+pub fn fill(shape: &Shape, filling: Filling<'_>) -> Result<Vec<Site>, FillError> {
+    let spacing = filling.spacing;
     if !spacing.is_finite() {
         return Err(FillError::new("spacing", FillErrorKind::NotFinite(spacing)));
     }
@@ -82,7 +74,7 @@ fn fill_with(shape: &Shape, spacing: f64, filling: Filling<'_>) -> Result<Vec<Si
         return Err(FillError::new("spacing", FillErrorKind::NotPositive(spacing)));
     }
     let filling = Filling { limit: filling.limit.min(u32::MAX as usize), ..filling };
-    let sites = filling.sites(shape, spacing, "shape")?;
+    let sites = filling.sites(shape, "shape")?;
     let positions: Vec<DVec3> = sites.iter().map(|site| site.position).collect();
     // A turn or a shift of what is very far away may leave the range of numbers.
     if let Some(lost) = positions.iter().find(|position| !position.is_finite()) {
@@ -93,33 +85,34 @@ fn fill_with(shape: &Shape, spacing: f64, filling: Filling<'_>) -> Result<Vec<Si
 }
 
 impl Filling<'_> {
-    fn sites(&self, shape: &Shape, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
+    fn sites(&self, shape: &Shape, path: &str) -> Result<Vec<Site>, FillError> {
         let check = Check { dimension: self.dimension, folder: self.folder, path };
         match shape {
             Shape::Points { file } => {
                 let sites = points::read(self.folder, file, self.dimension, self.limit, path)?;
-                points::check(&sites, spacing, self.dimension, &self.folder.join(file), path)?;
+                points::check(&sites, self.spacing, self.dimension, &self.folder.join(file), path)?;
                 Ok(sites)
             }
             Shape::Translate { shape, by } => {
                 let by = check.point("by", *by)?;
-                self.moved(shape, spacing, &check, 1.0, |position| position + by)
+                self.moved(shape, &check, 1.0, |position| position + by)
             }
             Shape::Rotate { shape, axis, angle_degrees, about } => {
                 let (turn, about) = check.turn(*axis, *angle_degrees, *about)?;
-                self.moved(shape, spacing, &check, 1.0, |position| turned(turn, about, position))
+                self.moved(shape, &check, 1.0, |position| turned(turn, about, position))
             }
             Shape::Scale { shape, by, about } if is_uniform(shape, by.0, self.dimension) => {
                 let (by, about) = check.scale(*by, *about)?;
                 let growth = by.element_product();
-                self.moved(shape, spacing / by.x, &check, growth, |position| about + by * (position - about))
+                let inner = Filling { spacing: self.spacing / by.x, ..*self };
+                inner.moved(shape, &check, growth, |position| about + by * (position - about))
             }
             Shape::Mesh { .. } => {
                 let region = check.single(shape)?;
-                self.check_size(region.as_ref(), spacing, &check)?;
-                self.of_region(region.as_ref(), spacing, path)
+                self.check_size(region.as_ref(), &check)?;
+                self.of_region(region.as_ref(), path)
             }
-            _ => self.of_region(shape.region(self.dimension, self.folder, path)?.as_ref(), spacing, path),
+            _ => self.of_region(shape.region(self.dimension, self.folder, path)?.as_ref(), path),
         }
     }
 
@@ -127,18 +120,18 @@ impl Filling<'_> {
     fn moved(
         &self,
         shape: &Shape,
-        spacing: f64,
         check: &Check,
         growth: f64,
         to: impl Fn(DVec3) -> DVec3,
     ) -> Result<Vec<Site>, FillError> {
-        let sites = self.sites(shape, spacing, &check.field("shape"))?;
+        let sites = self.sites(shape, &check.field("shape"))?;
         let moved = |site: Site| Site { position: to(site.position), volume: growth * site.volume };
         Ok(sites.into_iter().map(moved).collect())
     }
 
     /// A mesh that is too small or too large for the spacing is in another unit, more often than not.
-    fn check_size(&self, mesh: &dyn Surface, spacing: f64, check: &Check) -> Result<(), FillError> {
+    fn check_size(&self, mesh: &dyn Surface, check: &Check) -> Result<(), FillError> {
+        let spacing = self.spacing;
         let extent = mesh.bounds().extent();
         let estimate = mesh.volume().unwrap_or(0.0) / spacing.powi(3);
         if extent.max_element() < 2.0 * spacing || estimate > self.limit as f64 {
@@ -147,11 +140,23 @@ impl Filling<'_> {
         Ok(())
     }
 
-    fn of_region(&self, region: &dyn Region, spacing: f64, path: &str) -> Result<Vec<Site>, FillError> {
-        let axes = self.dimension.count();
+    fn of_region(&self, region: &dyn Region, path: &str) -> Result<Vec<Site>, FillError> {
         if !region.bounds().is_bounded() {
             return Err(FillError::new(path, FillErrorKind::Unbounded));
         }
+        let content = self.measured(region, path)?;
+        let at = |kind: FillErrorKind| match kind {
+            FillErrorKind::Thin { .. } => FillError::new("spacing", kind),
+            FillErrorKind::NotConcentric => FillError::new("lattice", kind),
+            FillErrorKind::Iterations { .. } => FillError::new("lattice.iterations", kind),
+            _ => FillError::new(path, kind),
+        };
+        self.of_content(content).map_err(at)
+    }
+
+    /// The region with its volume, which must not be too large for the spacing.
+    fn measured<'r>(&self, region: &'r dyn Region, path: &str) -> Result<Content<'r>, FillError> {
+        let (axes, spacing) = (self.dimension.count(), self.spacing);
         let within_limit = |volume: f64, factor: f64| {
             let estimate = volume / spacing.powi(axes as i32);
             if estimate <= factor * self.limit as f64 {
@@ -166,41 +171,40 @@ impl Filling<'_> {
         if volume <= 0.0 {
             return Err(FillError::new(path, FillErrorKind::NoParticle(spacing)));
         }
-        let at = |kind: FillErrorKind| match kind {
-            FillErrorKind::Thin { .. } => FillError::new("spacing", kind),
-            FillErrorKind::NotConcentric => FillError::new("lattice", kind),
-            _ => FillError::new(path, kind),
-        };
+        Ok(Content { region, volume, spacing, axes })
+    }
+
+    fn of_content(&self, content: Content<'_>) -> Result<Vec<Site>, FillErrorKind> {
+        let Content { region, volume, spacing, axes } = content;
         if self.lattice == Lattice::Concentric {
-            let rings = region.rings().ok_or_else(|| at(FillErrorKind::NotConcentric))?;
-            return concentric::sites(&rings, spacing).map_err(at);
+            let rings = region.rings().ok_or(FillErrorKind::NotConcentric)?;
+            return concentric::sites(&rings, spacing);
         }
         let packing = if self.lattice == Lattice::Hexagonal { Packing::Hexagonal } else { Packing::Centered };
         let cavity =
             if self.is_wall && self.lattice == Lattice::Regular { region.wall_frame(spacing) } else { None };
         let frame = cavity.unwrap_or_else(|| region.frame());
-        let positions = cells::points(region, &frame, packing, spacing, axes).map_err(at)?;
+        let positions = cells::points(region, &frame, packing, spacing, axes)?;
+        let alike = |positions: Vec<DVec3>, volume: f64| {
+            positions.into_iter().map(|position| Site { position, volume }).collect()
+        };
         if cavity.is_some() {
             let cell = Tiling::new(&frame, &frame, packing.cell(spacing, axes), axes).cell_volume();
-            return Ok(positions.into_iter().map(|position| Site { position, volume: cell }).collect());
+            return Ok(alike(positions, cell));
         }
-        match self.lattice {
+        Ok(match self.lattice {
             Lattice::Relaxed { iterations: found, .. } | Lattice::BodyFitted { iterations: found }
                 if found > MAX_ITERATIONS =>
             {
-                let kind = FillErrorKind::Iterations { found, limit: MAX_ITERATIONS };
-                return Err(FillError::new("lattice.iterations", kind));
+                return Err(FillErrorKind::Iterations { found, limit: MAX_ITERATIONS });
             }
-            Lattice::Relaxed { seed, iterations } => {
-                return Ok(relaxed::sites(region, volume, spacing, axes, seed, iterations));
+            Lattice::Relaxed { seed, iterations } => relaxed::sites(content, seed, iterations),
+            Lattice::BodyFitted { iterations } => fitted::sites(content, positions, iterations),
+            _ => {
+                let share = volume / positions.len() as f64;
+                alike(positions, share)
             }
-            Lattice::BodyFitted { iterations } => {
-                return Ok(fitted::sites(region, positions, volume, spacing, axes, iterations));
-            }
-            _ => {}
-        }
-        let share = volume / positions.len() as f64;
-        Ok(positions.into_iter().map(|position| Site { position, volume: share }).collect())
+        })
     }
 }
 

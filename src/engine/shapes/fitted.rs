@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cells::Packing;
-use super::fill::Site;
+use super::fill::{Content, Site};
 use super::region::{Aabb, Region};
 use super::tiling::Tiling;
 use super::voronoi;
@@ -45,14 +45,8 @@ impl Region for Band<'_> {
 /// The lattice points in `region` with those near its boundary moved: after `iterations` steps of Lloyd's method they have about even
 /// cells, and the outermost ones are half a spacing from the boundary. Inside, particles have the volume of a cell of the lattice; all
 /// together have `volume`.
-pub(super) fn sites(
-    region: &dyn Region,
-    mut points: Vec<DVec3>,
-    volume: f64,
-    spacing: f64,
-    axes: usize,
-    iterations: u32,
-) -> Vec<Site> {
+pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u32) -> Vec<Site> {
+    let Content { region, volume, spacing, axes } = content;
     let frame = region.frame();
     let lattice = Tiling::new(&frame, &region.bounds(), Packing::Centered.cell(spacing, axes), axes);
     let cell_volume = lattice.cell_volume();

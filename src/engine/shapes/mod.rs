@@ -34,7 +34,7 @@ mod voronoi;
 pub use concentric::Rings;
 pub use error::{FillError, FillErrorKind};
 pub use facets::{Facets, directed_area};
-pub use fill::{Site, fill, fill_wall};
+pub use fill::{Filling, Site, fill};
 pub use lattice::Lattice;
 pub use mesh::MeshFault;
 pub use moments::Moments;

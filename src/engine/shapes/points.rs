@@ -55,30 +55,11 @@ pub(super) fn read(
     };
     let (x, y, volume) = (required("x")?, required("y")?, required("volume")?);
     let z = if dimension == Dimension::Three { Some(required("z")?) } else { column("z") };
+    let columns = Columns { names: &names, x, y, z, volume };
     let mut sites = Vec::new();
     for (content, line) in lines {
         let row: Vec<&str> = values(content).collect();
-        if row.len() != names.len() {
-            let message = format!("expected {} values as in the header, found {}", names.len(), row.len());
-            return Err(wrong(line, message));
-        }
-        let value = |column: usize| match row[column].parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(wrong(
-                line,
-                format!("expected a number for `{}`, found `{}`", names[column], row[column]),
-            )),
-        };
-        let site = Site {
-            position: DVec3::new(value(x)?, value(y)?, z.map_or(Ok(0.0), value)?),
-            volume: value(volume)?,
-        };
-        if site.volume <= 0.0 {
-            return Err(wrong(line, format!("the volume must be greater than 0, found {}", site.volume)));
-        }
-        if dimension == Dimension::Two && site.position.z != 0.0 {
-            return Err(wrong(line, format!("z must be 0 in two dimensions, found {}", site.position.z)));
-        }
+        let site = columns.site(&row, dimension).map_err(|message| wrong(line, message))?;
         if sites.len() == limit {
             return Err(error(FillErrorKind::TooMany { estimate: (limit + 1) as f64, limit }));
         }
@@ -88,6 +69,40 @@ pub(super) fn read(
         return Err(wrong(header_line, "the file has no particle".to_owned()));
     }
     Ok(sites)
+}
+
+/// The columns of a file, and where those stand that are read.
+struct Columns<'a> {
+    names: &'a [&'a str],
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+    volume: usize,
+}
+
+impl Columns<'_> {
+    /// The particle of a line; the error says what is wrong with it.
+    fn site(&self, row: &[&str], dimension: Dimension) -> Result<Site, String> {
+        let Self { names, x, y, z, volume } = *self;
+        if row.len() != names.len() {
+            return Err(format!("expected {} values as in the header, found {}", names.len(), row.len()));
+        }
+        let value = |column: usize| match row[column].parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(format!("expected a number for `{}`, found `{}`", names[column], row[column])),
+        };
+        let site = Site {
+            position: DVec3::new(value(x)?, value(y)?, z.map_or(Ok(0.0), value)?),
+            volume: value(volume)?,
+        };
+        if site.volume <= 0.0 {
+            return Err(format!("the volume must be greater than 0, found {}", site.volume));
+        }
+        if dimension == Dimension::Two && site.position.z != 0.0 {
+            return Err(format!("z must be 0 in two dimensions, found {}", site.position.z));
+        }
+        Ok(site)
+    }
 }
 
 /// Factor between the volume of a particle and that of its spacing which is most likely a slip of units.

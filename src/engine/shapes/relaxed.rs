@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::fill::Site;
+use super::fill::{Content, Site};
 use super::region::Region;
 use super::tiling::{Block, Tiling};
 use super::voronoi::{self, Moments};
@@ -20,14 +20,8 @@ const VOLUME_SAMPLES: [usize; 2] = [12, 6];
 /// About `volume / spacing^d` irregular particles in `region`: random points with a least distance, moved `iterations` times to the centroids of their
 /// Voronoi cells (Lloyd, IEEE Trans. Inf. Theory 28, 1982). Each has the volume of its cell; together they have `volume`. The cost is
 /// proportional to the number of particles.
-pub(super) fn sites(
-    region: &dyn Region,
-    volume: f64,
-    spacing: f64,
-    axes: usize,
-    seed: u64,
-    iterations: u32,
-) -> Vec<Site> {
+pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Site> {
+    let Content { region, volume, spacing, axes } = content;
     let bounds = region.bounds();
     let tiling = Tiling::new(&bounds, &bounds, DVec3::splat(spacing), axes);
     let count = (volume / spacing.powi(axes as i32)).round().max(1.0) as usize;

@@ -74,45 +74,48 @@ impl Tiling {
     /// as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each other.
     pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<Block> {
         let side = self.counts.iter().copied().max().unwrap_or(1).next_power_of_two();
-        let mut blocks = Vec::new();
-        self.split(region, [0; 3], side, leaf, inside_leaf, false, &mut blocks);
-        blocks
+        let mut splitting = Splitting { tiling: self, region, leaf, inside_leaf, blocks: Vec::new() };
+        splitting.split([0; 3], side, false);
+        splitting.blocks
     }
+}
 
-    #[allow(clippy::too_many_arguments)] // the state of a recursion, private to this file
-    fn split(
-        &self,
-        region: &dyn Region,
-        low: [usize; 3],
-        side: usize,
-        leaf: usize,
-        inside_leaf: usize,
-        known_inside: bool,
-        blocks: &mut Vec<Block>,
-    ) {
-        if (0..3).any(|k| low[k] >= self.counts[k]) {
+/// The recursion that finds blocks.
+struct Splitting<'a> {
+    tiling: &'a Tiling,
+    region: &'a dyn Region,
+    /// Largest number of cells along a side: of all blocks, and of those inside.
+    leaf: usize,
+    inside_leaf: usize,
+    blocks: Vec<Block>,
+}
+
+impl Splitting<'_> {
+    fn split(&mut self, low: [usize; 3], side: usize, known_inside: bool) {
+        let tiling = self.tiling;
+        if (0..3).any(|k| low[k] >= tiling.counts[k]) {
             return;
         }
-        let high = [0, 1, 2].map(|k| (low[k] + side).min(self.counts[k]));
+        let high = [0, 1, 2].map(|k| (low[k] + side).min(tiling.counts[k]));
         let mut inside = known_inside;
         if !inside {
-            let (start, end) = (self.point(low, DVec3::ZERO), self.point(high, DVec3::ZERO));
+            let (start, end) = (tiling.point(low, DVec3::ZERO), tiling.point(high, DVec3::ZERO));
             let reach = 0.5 * (end - start).length();
             let center = 0.5 * (start + end);
-            let distance = region.distance(center);
-            if distance > reach * (1.0 + 1e-9) + region.tolerance() {
+            let distance = self.region.distance(center);
+            if distance > reach * (1.0 + 1e-9) + self.region.tolerance() {
                 return;
             }
             inside = distance < -reach;
         }
-        if side <= if inside { inside_leaf.max(leaf) } else { leaf } {
-            blocks.push(Block { low, high, inside });
+        if side <= if inside { self.inside_leaf.max(self.leaf) } else { self.leaf } {
+            self.blocks.push(Block { low, high, inside });
             return;
         }
         let half = side / 2;
-        for child in 0..1 << self.axes {
+        for child in 0..1 << tiling.axes {
             let start = [0, 1, 2].map(|k| low[k] + half * (child >> k & 1));
-            self.split(region, start, half, leaf, inside_leaf, inside, blocks);
+            self.split(start, half, inside);
         }
     }
 }

@@ -54,13 +54,12 @@ pub(super) fn moments(
     samples: usize,
 ) -> Vec<Moments> {
     let buckets = Buckets::new(tiling, points);
+    let sampling = Sampling { region, buckets: &buckets, points, samples };
     let leaf = if tiling.axes == 2 { 8 } else { 4 };
     let blocks = tiling.blocks(region, leaf, leaf);
     let of_block = |block: &Block| {
         let mut found = Vec::new();
-        block
-            .cells()
-            .for_each(|cell| of_cell(region, &buckets, points, samples, cell, block.inside, &mut found));
+        block.cells().for_each(|cell| sampling.add_cell(cell, block.inside, &mut found));
         found
     };
     let found: Vec<Vec<(u32, Moments)>> = blocks.par_iter().map(of_block).collect();
@@ -73,69 +72,89 @@ pub(super) fn moments(
     moments
 }
 
-fn of_cell(
-    region: &dyn Region,
-    buckets: &Buckets,
-    points: &[DVec3],
+/// What the cells are cut out of, and how they are sampled.
+struct Sampling<'a> {
+    region: &'a dyn Region,
+    buckets: &'a Buckets<'a>,
+    points: &'a [DVec3],
+    /// Samples of a cell of the tiling along each axis.
     samples: usize,
-    cell: [usize; 3],
-    inside: bool,
-    found: &mut Vec<(u32, Moments)>,
-) {
-    let tiling = buckets.tiling;
-    let step = 1.0 / samples as f64;
-    let width = tiling.cell.max_element() * step;
-    let volume = tiling.cell_volume() * step.powi(tiling.axes as i32);
-    let safe = (0..tiling.axes).map(|k| tiling.cell[k]).fold(f64::INFINITY, f64::min);
-    let near: Vec<(DVec3, u32)> = buckets.around(cell, 1).map(|n| (points[n as usize], n)).collect();
-    let mut sums = vec![Moments::default(); near.len()];
-    let layers = if tiling.axes == 3 { samples } else { 1 };
-    for z in 0..layers {
-        for y in 0..samples {
-            for x in 0..samples {
-                let point = tiling.point(cell, step * (DVec3::new(x as f64, y as f64, z as f64) + 0.5));
-                let part = if inside { 1.0 } else { (0.5 - region.distance(point) / width).clamp(0.0, 1.0) };
-                if part == 0.0 {
-                    continue;
-                }
-                let (mut nearest, mut second) = ((f64::INFINITY, 0), (f64::INFINITY, 0));
-                for (n, &(other, _)) in near.iter().enumerate() {
-                    let distance = other.distance_squared(point);
-                    if distance < nearest.0 {
-                        second = nearest;
-                        nearest = (distance, n);
-                    } else if distance < second.0 {
-                        second = (distance, n);
-                    }
-                }
-                let weight = part * volume;
-                // Every point within one cell's side is in the cells around.
-                if nearest.0 > safe * safe {
-                    let far = nearest_far(buckets, points, cell, point, safe);
-                    found.push((far, Moments { volume: weight, first: weight * point }));
-                    continue;
-                }
-                let mut add = |n: usize, weight: f64| {
-                    sums[n].volume += weight;
-                    sums[n].first += weight * point;
-                };
-                // A sample that the plane between the two nearest points cuts is shared, as if the plane were along a face of it:
-                // the error falls with the square of the sample's size.
-                let share = if second.0.is_finite() {
-                    let apart = near[nearest.1].0.distance(near[second.1].0);
-                    let to_plane = (second.0 - nearest.0) / (2.0 * apart);
-                    (0.5 + to_plane / width).min(1.0)
-                } else {
-                    1.0
-                };
-                add(nearest.1, share * weight);
-                if share < 1.0 {
-                    add(second.1, (1.0 - share) * weight);
-                }
+}
+
+/// The two points that are nearest to a sample: distance squared, and number among those near.
+#[derive(Clone, Copy)]
+struct Nearest {
+    first: (f64, usize),
+    second: (f64, usize),
+}
+
+impl Nearest {
+    fn of(near: &[(DVec3, u32)], point: DVec3) -> Self {
+        let mut found = Self { first: (f64::INFINITY, 0), second: (f64::INFINITY, 0) };
+        for (n, &(other, _)) in near.iter().enumerate() {
+            let distance = other.distance_squared(point);
+            if distance < found.first.0 {
+                found = Self { first: (distance, n), second: found.first };
+            } else if distance < found.second.0 {
+                found.second = (distance, n);
             }
         }
+        found
     }
-    found.extend(near.iter().zip(sums).filter(|(_, sum)| sum.volume > 0.0).map(|(&(_, n), sum)| (n, sum)));
+
+    /// The part of a sample of this width that belongs to the nearest point. One that the plane between the two points cuts is shared, as if the plane
+    /// were along a face of it: the error falls with the square of the sample's size.
+    fn share(&self, near: &[(DVec3, u32)], width: f64) -> f64 {
+        if !self.second.0.is_finite() {
+            return 1.0;
+        }
+        let apart = near[self.first.1].0.distance(near[self.second.1].0);
+        let to_plane = (self.second.0 - self.first.0) / (2.0 * apart);
+        (0.5 + to_plane / width).min(1.0)
+    }
+}
+
+impl Sampling<'_> {
+    /// Adds the moments of what is in a cell of the tiling, point by point.
+    fn add_cell(&self, cell: [usize; 3], inside: bool, found: &mut Vec<(u32, Moments)>) {
+        let Self { region, buckets, points, samples } = *self;
+        let tiling = buckets.tiling;
+        let step = 1.0 / samples as f64;
+        let width = tiling.cell.max_element() * step;
+        let volume = tiling.cell_volume() * step.powi(tiling.axes as i32);
+        let safe = (0..tiling.axes).map(|k| tiling.cell[k]).fold(f64::INFINITY, f64::min);
+        let near: Vec<(DVec3, u32)> = buckets.around(cell, 1).map(|n| (points[n as usize], n)).collect();
+        let mut sums = vec![Moments::default(); near.len()];
+        let layers = if tiling.axes == 3 { samples } else { 1 };
+        let places =
+            (0..layers).flat_map(|z| (0..samples).flat_map(move |y| (0..samples).map(move |x| [x, y, z])));
+        for place in places {
+            let point = tiling.point(cell, step * (DVec3::from_array(place.map(|n| n as f64)) + 0.5));
+            let part = if inside { 1.0 } else { (0.5 - region.distance(point) / width).clamp(0.0, 1.0) };
+            if part == 0.0 {
+                continue;
+            }
+            let nearest = Nearest::of(&near, point);
+            let weight = part * volume;
+            // Every point within one cell's side is in the cells around.
+            if nearest.first.0 > safe * safe {
+                let far = nearest_far(buckets, points, cell, point, safe);
+                found.push((far, Moments { volume: weight, first: weight * point }));
+                continue;
+            }
+            let mut add = |n: usize, weight: f64| {
+                sums[n].volume += weight;
+                sums[n].first += weight * point;
+            };
+            let share = nearest.share(&near, width);
+            add(nearest.first.1, share * weight);
+            if share < 1.0 {
+                add(nearest.second.1, (1.0 - share) * weight);
+            }
+        }
+        found
+            .extend(near.iter().zip(sums).filter(|(_, sum)| sum.volume > 0.0).map(|(&(_, n), sum)| (n, sum)));
+    }
 }
 
 /// The nearest of `points`, in rings of cells that widen until none outside can be nearer.

@@ -26,11 +26,22 @@ fn simulation(dimension: &str, shape: &str) -> Simulation {
 pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -> Skin {
     use crate::plugin::BodyPlan;
     use crate::scene::Dimension;
-    use crate::shapes::{Lattice, Shape, fill};
+    use crate::shapes::{Filling, Lattice, Shape, fill};
     let axes = if dimension == "Two" { Dimension::Two } else { Dimension::Three };
     let shape: Shape = ron::from_str(shape).unwrap();
     let folder = std::path::Path::new(".");
-    let sites = fill(&shape, Lattice::default(), 0.01, axes, folder, 1_000_000).unwrap();
+    let sites = fill(
+        &shape,
+        Filling {
+            lattice: Lattice::default(),
+            spacing: 0.01,
+            dimension: axes,
+            folder,
+            limit: 1_000_000,
+            is_wall: false,
+        },
+    )
+    .unwrap();
     let body = sim.world().body(id);
     let plan = BodyPlan {
         id,

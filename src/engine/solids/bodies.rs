@@ -71,6 +71,29 @@ pub struct SolidPart<'a> {
     pub refits: Option<&'a Refits>,
 }
 
+impl SolidPart<'_> {
+    /// A pass that is repeated: states of laws stay.
+    pub const REPEATED: Self = Self { dt: 0.0, is_short: false, refits: None };
+
+    /// That of a step.
+    pub fn of(step: &Step<'_>) -> Self {
+        Self { dt: step.clock.dt, is_short: step.turn.is_part(), refits: None }
+    }
+}
+
+/// The pass over one body.
+#[derive(Clone)]
+pub struct BodyPass<'a> {
+    /// Number of the body among those of the formulation.
+    pub body: usize,
+    /// Columns of the phase.
+    pub view: &'a PhaseView<'a>,
+    /// Rows of the body.
+    pub rows: Range<usize>,
+    /// The part of the step.
+    pub part: SolidPart<'a>,
+}
+
 /// Fills an unused slot of the list of terms.
 struct NoTerm;
 
@@ -200,19 +223,18 @@ impl SolidBodies {
         self.found.clear();
     }
 
-    /// Runs the pass over body `k`, block by block: `block` is called with the rows of the block, those
+    /// Runs the pass over a body, block by block: `block` is called with the rows of the block, those
     /// of `own`, which the formulation writes itself, and memory for a block, which holds what the last one has left.
     pub fn run<O: Split>(
         &mut self,
-        k: usize,
-        (view, rows): (&PhaseView<'_>, Range<usize>),
+        pass: BodyPass<'_>,
         columns: &mut SolidColumns<'_>,
         own: O,
-        part: SolidPart<'_>,
         block: &(impl Fn(&Constitutive<'_>, SolidRows<'_>, O, &mut SolidBlock) -> SolidSum + Sync),
     ) {
         let Self { bodies, terms: all, found, sums, .. } = self;
-        let body = &bodies[k];
+        let BodyPass { body, view, rows, part } = pass;
+        let body = &bodies[body];
         let mut terms: [&dyn FoldedTerm; MAX_TERMS] = [&NoTerm; MAX_TERMS];
         for (slot, &k) in terms.iter_mut().zip(&body.terms) {
             *slot = &*all[k].term;

@@ -2,9 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::correction::MomentMatrix;
+use crate::correction::AffineFit;
 use crate::fields::{Field, FieldInput};
-use crate::linalg::Sym3;
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::world::{
     Column, Damage, DeformationGradient, MissingColumn, Position, ReferencePosition, ReferenceVolume,
@@ -34,7 +33,7 @@ fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), Mis
     let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
     let volume = view.read::<ReferenceVolume>()?;
     let damage = view.read::<Damage>().ok();
-    let ghosts = solid.ghosts();
+    let (ghosts, dimension) = (solid.ghosts(), input.world.dimension().count());
     let holds = |row: usize| damage.as_ref().is_none_or(|damage| damage[ghosts.source(row)].0 < 1.0);
     let (position, reference) = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
     let mut bonds = Vec::new();
@@ -53,7 +52,12 @@ fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), Mis
                 is_edge = true;
             }
         });
-        let f = if is_edge { fit(&bonds) } else { Some(gradient[i].0) };
+        let fit = || {
+            let mut fit = AffineFit::new(dimension);
+            bonds.iter().for_each(|bond| fit.add(bond.weight, bond.arm, bond.change - bond.arm));
+            Some(DMat3::IDENTITY + fit.gradient()?)
+        };
+        let f = if is_edge { fit() } else { Some(gradient[i].0) };
         let square =
             |f: DMat3, bond: &Bond| (f * bond.arm - bond.change).length_squared() / bond.arm.length_squared();
         let sum = f.map_or(0.0, |f| bonds.iter().map(|bond| square(f, bond)).sum::<f64>());
@@ -67,19 +71,6 @@ struct Bond {
     weight: f64,
     arm: DVec3,
     change: DVec3,
-}
-
-/// The deformation gradient that fits some bonds; none where they are too few.
-fn fit(bonds: &[Bond]) -> Option<DMat3> {
-    let sum = bonds.iter().fold(Sym3::ZERO, |sum, bond| sum + Sym3::dyad(bond.arm) * bond.weight);
-    let axes = if sum.zz == 0.0 { 2 } else { 3 };
-    let inverse = MomentMatrix::of(sum, axes).inverse()?.to_matrix();
-    let columns = |bond: &Bond| {
-        let (u, x) = (bond.change - bond.arm, bond.weight * bond.arm);
-        DMat3::from_cols(u * x.x, u * x.y, u * x.z)
-    };
-    let moment = bonds.iter().fold(DMat3::ZERO, |sum, bond| sum + columns(bond));
-    Some(DMat3::IDENTITY + moment * inverse)
 }
 
 /// Number of neighbours that have not been removed.

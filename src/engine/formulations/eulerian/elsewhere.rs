@@ -16,7 +16,8 @@ impl Lists {
     /// Leaves pairs in contact out of the rows of bodies that touch themselves. The result depends on the current state alone, not on the age of the lists.
     pub fn leave_out_elsewhere(
         &mut self,
-        (position, reference): (&[DVec3], &[DVec3]),
+        position: &[DVec3],
+        reference: &[DVec3],
         deformation: &[DeformationGradient],
     ) {
         let Self { bodies, ghosts, offsets, neighbors, uncut, .. } = self;

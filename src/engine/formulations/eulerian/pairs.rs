@@ -66,28 +66,32 @@ impl HotLoop for Fill<'_> {
             let mut room = batch.add_row(points[i].velocity.0[3], neighbors.len());
             let (fours, rest) = neighbors.as_chunks::<4>();
             for n in 0..fours.len() {
-                put(a, packed, (i, fours[n], 4), part.start + 4 * n, n, &mut room);
+                let four = Four { i, neighbors: fours[n], count: 4, first: part.start + 4 * n };
+                put(a, packed, four, n, &mut room);
             }
             if !rest.is_empty() {
                 let mut four = [i as u32; 4];
                 four[..rest.len()].copy_from_slice(rest);
                 let n = fours.len();
-                put(a, packed, (i, four, rest.len()), part.start + 4 * n, n, &mut room);
+                let four = Four { i, neighbors: four, count: rest.len(), first: part.start + 4 * n };
+                put(a, packed, four, n, &mut room);
             }
         }
     }
 }
 
-/// Puts the first `count` of four neighbours of row `i`, whose weights begin at `at`, into place `n` of the room.
+/// Four neighbours of row `i`, of which `count` are there; their weights begin at `first`.
+struct Four {
+    i: usize,
+    neighbors: [u32; 4],
+    count: usize,
+    first: usize,
+}
+
+/// Puts four neighbours into place `n` of the room.
 #[inline(always)]
-fn put<A: Arithmetic>(
-    a: A,
-    packed: &EulerianRows,
-    (i, four, count): (usize, [u32; 4], usize),
-    at: usize,
-    n: usize,
-    room: &mut Room<'_>,
-) {
+fn put<A: Arithmetic>(a: A, packed: &EulerianRows, four: Four, n: usize, room: &mut Room<'_>) {
+    let Four { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);
     let of: [&Point; 4] = [&points[j], &points[k], &points[l], &points[m]];

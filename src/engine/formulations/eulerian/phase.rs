@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::rows::EulerianRows;
+use crate::linalg::dyad;
 use crate::solids::{LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
@@ -38,7 +39,7 @@ impl SolidPhase for EulerianRows {
                 let v_ij = velocity[ghosts.source(j)].0 * signs - velocity[row].0;
                 let other = self.points[j].place;
                 let arm = (other.xyz() - own.xyz()) * (weight * other.0[3]);
-                sum += DMat3::from_cols(v_ij * arm.x, v_ij * arm.y, v_ij * arm.z);
+                sum += dyad(v_ij, arm);
             });
         }
         // A point A of the reference configuration lies at F A from the particle.

@@ -29,14 +29,14 @@ impl Run for Rates {
         let view = step.world.phase(self.phase);
         let position = view.read::<Position>()?;
         let reference = view.read::<ReferencePosition>()?;
+        let (place, start): (&[DVec3], &[DVec3]) =
+            (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
         let mut deformation = view.write::<DeformationGradient>()?;
         if step.clock.step == 0 && step.clock.dt == 0.0 {
             let volume = view.read::<ReferenceVolume>()?;
-            let places = (bytemuck::cast_slice(&reference), bytemuck::cast_slice(&position));
-            start::fit_gradients(&packed, places, bytemuck::cast_slice(&volume), &mut deformation);
+            start::fit_gradients(&packed, start, place, bytemuck::cast_slice(&volume), &mut deformation);
         }
-        let places = (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
-        update_lists(&mut packed, places, step.world)?;
+        update_lists(&mut packed, place, start, step.world)?;
         if step.clock.dt > 0.0 {
             let (velocity, volume) = (view.read::<Velocity>()?, view.read::<ReferenceVolume>()?);
             let columns = PointColumns {
@@ -48,12 +48,12 @@ impl Run for Rates {
             let removed = view.read::<Removed>()?;
             let gone = (0..removed.len()).filter(|&row| removed[row] != Removed::NO);
             packed.pack(&columns, 0.5 * step.clock.dt, gone);
-            packed.lists.leave_out_elsewhere(places, &deformation);
+            packed.lists.leave_out_elsewhere(place, start, &deformation);
             let dilatation =
                 if view.has::<DilatationRate>() { Some(view.read::<DilatationRate>()?) } else { None };
             advance(&packed, &mut deformation, dilatation.as_deref(), step.clock.dt);
         }
-        packed.lists.leave_out_elsewhere(places, &deformation);
+        packed.lists.leave_out_elsewhere(place, start, &deformation);
         Ok(())
     }
 }
@@ -61,7 +61,8 @@ impl Run for Rates {
 /// Brings the lists up to date.
 fn update_lists(
     packed: &mut EulerianRows,
-    (position, reference): (&[DVec3], &[DVec3]),
+    position: &[DVec3],
+    reference: &[DVec3],
     world: &World,
 ) -> Result<(), StepError> {
     packed.update_lists(position, reference).map_err(|(body, error)| {

@@ -3,13 +3,14 @@
 use glam::{DMat3, DVec3};
 
 use super::rows::EulerianRows;
-use crate::correction::MomentMatrix;
+use crate::correction::AffineFit;
 use crate::world::DeformationGradient;
 
 /// Fits F to the places of all particles; the lists are those of the reference configuration. Bodies that start undeformed keep F = I, to the bit.
 pub(super) fn fit_gradients(
     packed: &EulerianRows,
-    (reference, position): (&[DVec3], &[DVec3]),
+    reference: &[DVec3],
+    position: &[DVec3],
     volume: &[f64],
     deformation: &mut [DeformationGradient],
 ) {
@@ -21,18 +22,14 @@ pub(super) fn fit_gradients(
         }
         let h = of.kernel.smoothing_length(body.support);
         for i in body.rows.clone() {
-            let (mut moment, mut spread) = (MomentMatrix::new(if *plane { 2 } else { 3 }), DMat3::ZERO);
+            let mut fit = AffineFit::new(if *plane { 2 } else { 3 });
             for &j in &lists.neighbors[lists.of_rows(i..i + 1)] {
                 let j = j as usize;
                 let x_ij = ghosts.pair(reference, i, j);
                 let weight = volume[ghosts.source(j)] * of.kernel.pair_weight(x_ij.length(), h);
-                let change = ghosts.pair(position, i, j) - x_ij;
-                moment.add(weight, x_ij);
-                let arm = x_ij * weight;
-                spread += DMat3::from_cols(change * arm.x, change * arm.y, change * arm.z);
+                fit.add(weight, x_ij, ghosts.pair(position, i, j) - x_ij);
             }
-            let inverse = moment.inverse().unwrap_or_default();
-            deformation[i].0 = DMat3::IDENTITY + spread * inverse.to_matrix();
+            deformation[i].0 = DMat3::IDENTITY + fit.gradient().unwrap_or(DMat3::ZERO);
         }
     }
 }

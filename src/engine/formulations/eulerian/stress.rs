@@ -14,7 +14,8 @@ use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
-    Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows, SolidSum,
+    BodyPass, Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows,
+    SolidSum,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
@@ -33,7 +34,7 @@ impl Run for Stress {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
         self.pack(step.world, &mut packed)?;
-        self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+        self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
         let bodies = self.solids.iter().map(|own| own.id);
         self.dilatation.book(self.phase, &packed, bodies, step)?;
@@ -77,25 +78,21 @@ impl Stress {
         Ok(())
     }
 
-    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    /// Runs the pass over all bodies.
     fn pass(
         &mut self,
         world: &World,
         packed: &mut EulerianRows,
-        (dt, is_short): (f64, bool),
+        part: SolidPart<'_>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
         let (volume, mass) = (view.read::<ReferenceVolume>()?, view.read::<Mass>()?);
         let mut columns = SolidColumns::of(&view)?;
         self.solids.begin();
         for k in 0..self.solids.len() {
-            self.of_body(
-                k,
-                (&view, &volume, &mass),
-                &mut columns,
-                packed,
-                SolidPart { dt, is_short, refits: None },
-            );
+            let rows = packed.lists.bodies[k].rows.clone();
+            let of_body = BodyPass { body: k, view: &view, rows, part };
+            self.of_body(of_body, &volume, &mass, &mut columns, packed);
         }
         self.resist(&view, &mass, packed)?;
         packed.fill_ghost_stresses();
@@ -126,15 +123,16 @@ impl Stress {
 
     fn of_body(
         &mut self,
-        k: usize,
-        (view, volume, mass): (&PhaseView<'_>, &[ReferenceVolume], &[Mass]),
+        of_body: BodyPass<'_>,
+        volume: &[ReferenceVolume],
+        mass: &[Mass],
         columns: &mut SolidColumns<'_>,
         packed: &mut EulerianRows,
-        part: SolidPart<'_>,
     ) {
+        let BodyPass { body: k, ref rows, part, .. } = of_body;
         let EulerianRows { lists, kernels, points, near, deformation, carried, stresses, plane, .. } = packed;
         let (body, kernel) = (&lists.bodies[k], kernels[k]);
-        let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
+        let of_lists = lists.of_rows(rows.clone());
         let own = OwnRows {
             near: NearRows {
                 offsets: &lists.offsets[rows.start..=rows.end],
@@ -158,9 +156,7 @@ impl Stress {
             plane: *plane,
             starts: part.dt == 0.0,
         };
-        self.solids.run(k, (view, rows), columns, own, part, &|law, rows, own, block| {
-            pass.block(law, rows, own, block)
-        });
+        self.solids.run(of_body, columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
     }
 
     /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same places: what the removed particles held
@@ -177,7 +173,7 @@ impl Stress {
         self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
         self.pack(step.world, packed)?;
         // States of laws have advanced by this step already.
-        self.pass(step.world, packed, (0.0, false))?;
+        self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         let after = self.forces(step.world, packed)?;
         let velocity = view.read::<Velocity>()?;

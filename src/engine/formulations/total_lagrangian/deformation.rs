@@ -86,7 +86,7 @@ impl DeformationPass<'_> {
         };
         run_hot_in(self.plane, gather);
         let DeformationRows { stresses, self_force, edges, mut hessian } = own;
-        hessian.after_fit((bonds, sites), first, &mut block.gradient[..n]);
+        hessian.after_fit(bonds, sites, first, &mut block.gradient[..n]);
         for (f, h) in rows.deformation.iter_mut().zip(&block.gradient) {
             *f = DMat3::IDENTITY + *h;
         }

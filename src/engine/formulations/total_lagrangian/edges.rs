@@ -9,6 +9,7 @@ use glam::{DMat3, DVec3};
 use super::cracks::{Edge, EdgeRows, Mark};
 use super::deformation::DeformationPass;
 use crate::correction::MomentMatrix;
+use crate::linalg::dyad;
 use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum};
 
 /// The displacement gradient that fits the neighbours which count, and its error.
@@ -107,7 +108,7 @@ impl DeformationPass<'_> {
             let mut rest = DMat3::ZERO;
             for bond in self.bonds_of(i, &counts) {
                 let (arm, error) = (bond.arm * bond.weight, bond.change - gradient * bond.arm);
-                rest += DMat3::from_cols(error * arm.x, error * arm.y, error * arm.z);
+                rest += dyad(error, arm);
             }
             gradient += rest * inverse.to_matrix();
         }

@@ -4,27 +4,23 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::bonds::{BodyBonds, Bonds};
-use super::cracks::Cracks;
 use super::held::Held;
-use super::hessian::HessianRows;
 use super::internal_force;
-use super::pairs::{BodyKernel, BondPairs};
+use super::pairs::BondPairs;
 use super::phase::PackedRows;
-use super::rows::Site;
+use super::set_up::{BodySetUp, SetUp};
 use super::support::choose_support;
 use super::system::Deformation;
-use crate::kernels::{Kernel, KernelName};
-use crate::neighbors::NeighborSearch;
+use crate::kernels::KernelName;
 use crate::notation::{number, quantity};
 use crate::pair::add_pair_systems;
-use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
-use crate::solids::{CorrectedStress, HessianDifference, SolidBodies, StepEstimate};
-use crate::symmetry::{Ghosts, Repeat, repeats_of};
+use crate::solids::SolidBodies;
+use crate::symmetry::repeats_of;
 use crate::world::{
-    BodyId, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position, ReferencePosition,
+    BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
     ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
@@ -99,11 +95,19 @@ impl Formulation for TotalLagrangian {
         }
         let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         let solids = SolidBodies::new(&ids, sim)?;
-        let estimates: Vec<StepEstimate> = solids.iter().map(|body| body.estimate).collect();
         let plane = sim.dimension() == Dimension::Two;
-        let terms: Vec<Option<HessianDifference>> = solids.iter().map(|body| body.hessian).collect();
-        let held = Held::of(&ids, sim);
-        sim.add_setup(move |setup| set_up(&bodies, &estimates, &terms, &repeats, (phase, held), setup));
+        let parts = bodies.into_iter().zip(solids.iter()).zip(repeats);
+        let bodies = parts.map(|(((id, parameters), solid), repeats)| BodySetUp {
+            id,
+            kernel: parameters.kernel,
+            support: parameters.support * sim.body(id).spacing,
+            neighbors: parameters.neighbors,
+            estimate: solid.estimate,
+            hessian: solid.hessian,
+            repeats,
+        });
+        let first_lists = SetUp { phase, bodies: bodies.collect(), held: Held::of(&ids, sim) };
+        sim.add_setup(move |setup| first_lists.run(setup));
         let state = solids.access();
         let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
@@ -182,108 +186,4 @@ impl TotalLagrangian {
         }
         Ok(())
     }
-}
-
-fn set_up(
-    bodies: &[(BodyId, TotalLagrangian)],
-    estimates: &[StepEstimate],
-    terms: &[Option<HessianDifference>],
-    repeats: &[Vec<Repeat>],
-    (phase, held): (PhaseId, Held),
-    setup: &mut Setup<'_>,
-) -> Result<(), SetupError> {
-    let view = setup.world.phase(phase);
-    let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
-    let reference = view.read::<ReferencePosition>().map_err(missing)?;
-    let volume = view.read::<ReferenceVolume>().map_err(missing)?;
-    let mut support = view.write::<SupportRadius>().map_err(missing)?;
-    let mut gradient = view.write::<DeformationGradient>().map_err(missing)?;
-    gradient.fill(DeformationGradient(glam::DMat3::IDENTITY));
-    for (id, parameters) in bodies {
-        let body = setup.world.body(*id);
-        let usual = parameters.support * body.spacing;
-        let support = &mut support[body.rows.clone()];
-        match parameters.neighbors {
-            None => support.fill(SupportRadius(usual)),
-            Some(neighbors) => {
-                let position = bytemuck::cast_slice(&reference[body.rows.clone()]);
-                choose_support(position, usual, neighbors as usize, bytemuck::cast_slice_mut(support))
-                    .map_err(|error| SetupError::internal(&error))?;
-            }
-        }
-    }
-    let position: &[DVec3] = bytemuck::cast_slice(&reference);
-    let volume: &[f64] = bytemuck::cast_slice(&volume);
-    let support: &[f64] = bytemuck::cast_slice(&support);
-    let dimension = setup.world.dimension().count();
-    let mut bonds = Bonds::default();
-    let mut ghosts = Ghosts::new(view.len());
-    let mut search = NeighborSearch::default();
-    let mut stable_step = Vec::new();
-    let mut kernels = Vec::new();
-    for (((id, parameters), estimate), repeats) in bodies.iter().zip(estimates).zip(repeats) {
-        let body = setup.world.body(*id);
-        let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
-            unreachable!("every kernel has a two- and a three-dimensional form");
-        };
-        let uniform = parameters.neighbors.is_none().then_some(parameters.support * body.spacing);
-        kernels.push(BodyKernel { body: *id, kernel, support: uniform });
-        let rows = body.rows.clone();
-        let ghost_rows = ghosts.add(rows.clone(), position, parameters.support * body.spacing, repeats);
-        let hidden = held.hidden_of(*id);
-        let body_bonds = BodyBonds {
-            rows: rows.clone(),
-            position,
-            volume,
-            support,
-            ellipsoids: None,
-            kernel,
-            ghosts: &ghosts,
-            ghost_rows,
-            hidden,
-        };
-        bonds.append(&body_bonds, &mut search).map_err(|error| {
-            let help = "use a larger `support`, or more particles across the body";
-            SetupError::parameter(format!("bodies[{}].formulation", id.0), error.to_string(), help)
-        })?;
-        let free = bonds.free.iter().filter(|&&row| rows.contains(&(row as usize))).count() - hidden.len();
-        if free > 0 {
-            let text = format!(
-                "{free} particles of body `{}` have too few neighbours and carry no stress",
-                body.name
-            );
-            setup.warnings.push(text);
-        }
-        stable_step.push(bonds.stable_step(rows, dimension, estimate, support, None));
-    }
-    let stresses = vec![CorrectedStress::default(); view.len() + ghosts.len()];
-    let self_force = vec![DVec3::ZERO; view.len()];
-    let (low, high) = position
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-    let origin = 0.5 * (low + high);
-    let mut sites = vec![Site::default(); view.len() + ghosts.len()];
-    for (site, (x, v)) in sites.iter_mut().zip(position.iter().zip(volume)) {
-        *site = Site::new(*x - origin, DVec3::ZERO, *v);
-    }
-    bonds.carried = held.carried;
-    let terms = bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term));
-    let mut hessian = HessianRows::new(terms);
-    hessian.resize(view.len(), ghosts.len());
-    let mut packed = PackedRows {
-        bonds,
-        ghosts,
-        origin,
-        sites,
-        stresses,
-        self_force,
-        frames: Vec::with_capacity(bodies.len()),
-        cracks: Cracks::default(),
-        hessian,
-        kernels,
-        stable_step,
-    };
-    packed.fill_ghost_sites();
-    setup.resources.insert_solid(phase, packed);
-    Ok(())
 }

@@ -62,7 +62,8 @@ impl PlaneOrSolid for Gather<'_> {
 
 /// Fits the displacement gradients of the rows from `first` on.
 pub(in crate::formulations) fn fit_gradients(
-    (bonds, sites): (&Bonds, &[Site]),
+    bonds: &Bonds,
+    sites: &[Site],
     plane: bool,
     first: usize,
     gradient: &mut [DMat3],

@@ -147,6 +147,6 @@ pub(in crate::formulations) fn run(
     let mass = view.read::<Mass>()?;
     let mut force = view.write::<Force>()?;
     InternalForce::of(&packed, &mass, gravity, plane).run(&mut force);
-    packed.hessian.add_vidal_force((&packed.bonds, &packed.sites), &mut force);
+    packed.hessian.add_vidal_force(&packed.bonds, &packed.sites, &mut force);
     Ok(())
 }

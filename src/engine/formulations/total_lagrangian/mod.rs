@@ -20,6 +20,7 @@ mod reach;
 mod removal;
 mod removed;
 mod rows;
+mod set_up;
 mod spread;
 #[cfg(test)]
 mod state_tests;
@@ -33,7 +34,7 @@ pub use formulation::TotalLagrangian;
 pub(super) use frame::Frame;
 pub(super) use gather::{CorrectStress, Gather, fit_gradients};
 pub(super) use held::Held;
-pub(super) use hessian::{FrameIndifferent, HessianBlock, HessianRows};
+pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};
 pub(super) use internal_force::InternalForce;
 pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
 pub(super) use reach::{Ellipsoid, Ellipsoids};

@@ -131,6 +131,12 @@ impl HotLoop for Fill<'_> {
     }
 }
 
+/// Four bonds of a row.
+struct FourBonds {
+    neighbors: [u32; 4],
+    weights: [f32; 4],
+}
+
 /// The particle of a row in every lane.
 struct Own<A> {
     reference: Vector<A>,
@@ -158,13 +164,15 @@ impl BodyPairs<'_> {
         let (fours, rest) = neighbors.as_chunks();
         let (weights, rest_weights) = weights.as_chunks();
         for n in 0..fours.len() {
-            self.put::<A, GHOSTS>(a, &own, (fours[n], weights[n]), n, &mut room);
+            let four = FourBonds { neighbors: fours[n], weights: weights[n] };
+            self.put::<A, GHOSTS>(a, &own, four, n, &mut room);
         }
         if !rest.is_empty() {
             let (mut four, mut weight) = ([i as u32; 4], [0.0; 4]);
             four[..rest.len()].copy_from_slice(rest);
             weight[..rest.len()].copy_from_slice(rest_weights);
-            self.put::<A, GHOSTS>(a, &own, (four, weight), fours.len(), &mut room);
+            let four = FourBonds { neighbors: four, weights: weight };
+            self.put::<A, GHOSTS>(a, &own, four, fours.len(), &mut room);
         }
         if let Some(kernel) = self.kernel {
             put_kernel(kernel, self.uniform, room);
@@ -177,10 +185,11 @@ impl BodyPairs<'_> {
         &self,
         a: A,
         own: &Own<A>,
-        (four, weight): ([u32; 4], [f32; 4]),
+        four: FourBonds,
         n: usize,
         room: &mut Room<'_>,
     ) {
+        let FourBonds { neighbors: four, weights: weight } = four;
         let Self { ghosts, sites, support, uniform, velocity, .. } = *self;
         let mut rows = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let [j, k, l, m] = rows;

@@ -7,8 +7,10 @@ use super::internal_force::InternalForce;
 use super::phase::PackedRows;
 use super::rows::Site;
 use super::system::Deformation;
+use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
+use crate::solids::SolidPart;
 use crate::solids::SolidSum;
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
@@ -43,7 +45,7 @@ impl Deformation {
         if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
             return Ok(false);
         }
-        self.pass(step.world, packed, (step.clock.dt, step.turn.is_part()))?;
+        self.pass(step.world, packed, SolidPart::of(step))?;
         self.solids.book(step)?;
         let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
         let before = self.forces(step, packed)?;
@@ -52,7 +54,7 @@ impl Deformation {
         self.cut(step.world, packed)?;
         self.refit(step.world, packed, &known)?;
         // States of laws have advanced by this step already.
-        self.pass(step.world, packed, (0.0, false))?;
+        self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         let after = self.forces(step, packed)?;
         let velocity = view.read::<Velocity>()?;
@@ -95,7 +97,7 @@ impl Deformation {
         let mut force = vec![Force::default(); view.len()];
         let mass = view.read::<Mass>()?;
         InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane).run(&mut force);
-        packed.hessian.add_vidal_force((&packed.bonds, &packed.sites), &mut force);
+        packed.hessian.add_vidal_force(&packed.bonds, &packed.sites, &mut force);
         Ok(force)
     }
 
@@ -134,7 +136,7 @@ fn fit_of(row: usize, bonds: &Bonds, sites: &[Site]) -> DMat3 {
         let other = &sites[j as usize];
         let arm = (other.reference.xyz() - x) * (f64::from(weight) * other.reference.0[3]);
         let change = other.displacement.xyz() - u;
-        spread += DMat3::from_cols(change * arm.x, change * arm.y, change * arm.z);
+        spread += dyad(change, arm);
     }
     DMat3::IDENTITY + spread * bonds.inverse_moment[row].to_matrix()
 }

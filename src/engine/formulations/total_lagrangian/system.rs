@@ -3,12 +3,12 @@
 use super::cracks::EdgeRows;
 use super::deformation::{DeformationPass, DeformationRows};
 use super::frame::Frame;
-use super::hessian::FrameIndifferent;
+use super::hessian::{BondedSites, FrameIndifferent};
 use super::phase::PackedRows;
 use super::removed::RemovedRows;
 use super::rows::pack;
 use crate::schedule::{Run, Step, StepError};
-use crate::solids::{SolidBodies, SolidColumns, SolidPart};
+use crate::solids::{BodyPass, SolidBodies, SolidColumns, SolidPart};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.
@@ -38,12 +38,12 @@ impl Deformation {
         Ok(())
     }
 
-    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    /// Runs the pass over all bodies.
     pub(super) fn pass(
         &mut self,
         world: &World,
         packed: &mut PackedRows,
-        (dt, is_short): (f64, bool),
+        part: SolidPart<'_>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
         pack(&view, packed.origin, self.removed.rows(), &mut packed.sites[..view.len()])?;
@@ -54,7 +54,12 @@ impl Deformation {
         let PackedRows {
             bonds, ghosts, sites, stresses, self_force, frames, cracks, hessian, kernels, ..
         } = &mut *packed;
-        hessian.begin((bonds, ghosts, sites), kernels, bytemuck::cast_slice(&support), self.plane);
+        hessian.begin(
+            BondedSites { bonds, ghosts, sites },
+            kernels,
+            bytemuck::cast_slice(&support),
+            self.plane,
+        );
         frames.clear();
         self.solids.begin();
         for k in 0..self.solids.len() {
@@ -71,14 +76,15 @@ impl Deformation {
                 edges: EdgeRows::of(&mut cracks.edges, rows.start, rows.len()),
                 hessian: hessian.block(k, &rows),
             };
-            let part = SolidPart { dt, is_short, refits: Some(self.removed.refits()) };
-            self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
+            let part = SolidPart { refits: Some(self.removed.refits()), ..part };
+            let pass_of_body = BodyPass { body: k, view: &view, rows, part };
+            self.solids.run(pass_of_body, &mut columns, own, &|law, rows, own, block| {
                 pass.run(law, rows, own, block)
             });
         }
         let difference = FrameIndifferent { bonds, ghosts, sites, stresses, self_force, hessian };
-        difference.run(&view, &mut self.solids, dt)?;
-        hessian.add_vidal_stress((bonds, ghosts, sites), stresses, self_force);
+        difference.run(&view, &mut self.solids, part.dt)?;
+        hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
         packed.fill_ghost_stresses();
         packed.cracks.settle();
         Ok(())
@@ -92,7 +98,7 @@ impl Run for Deformation {
         self.take_up_restored(step.world, &mut packed)?;
         self.take_up_failed(step.world, &mut packed)?;
         if !self.take_up_removed(step, &mut packed)? {
-            self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+            self.pass(step.world, &mut packed, SolidPart::of(step))?;
             self.solids.book(step)?;
         }
         self.solids.limit(step, &packed.stable_step)

@@ -48,7 +48,7 @@ pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bo
     let mass = bytemuck::cast_slice(mass);
     StressForce { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
         .run(force);
-    hessian.add_vidal_force((bonds, sites), force);
+    hessian.add_vidal_force(bonds, sites, force);
     if rows.has_control {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
             run_hot_in(

@@ -34,6 +34,12 @@ pub(super) struct GradientPass<'a> {
     pub plane: bool,
 }
 
+/// What the folded terms of a block write.
+struct ControlRows<'a> {
+    control: &'a mut [CorrectedStress],
+    hessian: HessianBlock<'a>,
+}
+
 impl GradientPass<'_> {
     /// Runs the pass over a block of rows.
     pub fn block(
@@ -58,7 +64,7 @@ impl GradientPass<'_> {
         };
         run_hot_in(self.plane, gather);
         let GradientRows { stresses, control, self_force, mut hessian } = own;
-        hessian.after_fit((self.bonds, self.sites), first, &mut block.gradient[..n]);
+        hessian.after_fit(self.bonds, self.sites, first, &mut block.gradient[..n]);
         let f_r = &self.gradient[first..first + n];
         for (k, f_r) in f_r.iter().enumerate() {
             // F = f F_r; H = F - I keeps the digits of small strains where the reference is still the original one.
@@ -91,7 +97,7 @@ impl GradientPass<'_> {
         }
         sum.close(&rows, block);
         if !constitutive.terms.is_empty() || hessian.needs_gradient() {
-            self.add_control(constitutive, (&mut rows, block), (control, hessian), &mut sum);
+            self.add_control(constitutive, &mut rows, block, ControlRows { control, hessian }, &mut sum);
         }
         sum
     }
@@ -100,10 +106,12 @@ impl GradientPass<'_> {
     fn add_control(
         &self,
         constitutive: &Constitutive<'_>,
-        (rows, block): (&mut SolidRows<'_>, &mut SolidBlock),
-        (control, mut hessian): (&mut [CorrectedStress], HessianBlock<'_>),
+        rows: &mut SolidRows<'_>,
+        block: &mut SolidBlock,
+        own: ControlRows<'_>,
         sum: &mut SolidSum,
     ) {
+        let ControlRows { control, mut hessian } = own;
         let (n, first) = (rows.deformation.len(), block.first);
         let mut fitted = [false; BLOCK];
         let fit = ControlFit {

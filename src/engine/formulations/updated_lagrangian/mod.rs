@@ -21,6 +21,7 @@ mod lost_neighbors;
 mod parameters;
 mod phase;
 mod reference;
+mod set_up;
 mod smoothed_reference;
 mod system;
 

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::force::InternalForce;
 use super::phase::UpdatedRows;
-use super::reference::set_up;
+use super::set_up::{BodySetUp, SetUp};
 use super::system::UpdatedSolids;
 use crate::formulations::total_lagrangian::{BondPairs, Held};
 use crate::kernels::KernelName;
@@ -100,12 +100,19 @@ impl Formulation for UpdatedLagrangian {
         let plane = sim.dimension() == Dimension::Two;
         let solids = SolidBodies::new(&ids, sim)?;
         let state = solids.access();
-        let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
-        let (estimates, terms, has_control) = (system.estimates(), system.terms(), system.has_control());
-        let held = Held::of(&ids, sim);
-        sim.add_setup(move |setup| {
-            set_up(&bodies, &estimates, &terms, (repeats, held), phase, has_control, setup)
+        let parts = bodies.iter().zip(solids.iter()).zip(repeats);
+        let first = parts.map(|(((id, parameters), solid), repeats)| BodySetUp {
+            id: *id,
+            kernel: parameters.kernel,
+            support: parameters.support * sim.body(*id).spacing,
+            estimate: solid.estimate,
+            hessian: solid.hessian,
+            repeats,
         });
+        let (first, held) = (first.collect(), Held::of(&ids, sim));
+        let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
+        let first_lists = SetUp { phase, bodies: first, held, has_control: system.has_control() };
+        sim.add_setup(move |setup| first_lists.run(setup));
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])
             .reads::<Position>()

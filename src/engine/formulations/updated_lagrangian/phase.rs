@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::formulations::total_lagrangian::{
     BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site,
 };
+use crate::linalg::dyad;
 use crate::neighbors::NeighborSearch;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghost, Ghosts, Repeat};
@@ -132,7 +133,7 @@ impl SolidPhase for UpdatedRows {
                 let v_ij = velocity[self.ghosts.source(j)].0 * signs - velocity[row].0;
                 let (own, other) = (&self.sites[row].reference, &self.sites[j].reference);
                 let r_ij = (other.xyz() - own.xyz()) * (f64::from(weight) * other.0[3]);
-                sum += DMat3::from_cols(v_ij * r_ij.x, v_ij * r_ij.y, v_ij * r_ij.z);
+                sum += dyad(v_ij, r_ij);
             }
         }
         // A point A of the original configuration lies at F_r A in the reference.

@@ -1,100 +1,18 @@
 //! The reference: neighbours, weights and moments at the positions of the last update.
 
-use std::ops::Range;
-
 use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
-use super::parameters::UpdatedLagrangian;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
-    BodyBonds, BodyKernel, BondError, Bonds, Cracks, Ellipsoid, Ellipsoids, Held, HessianRows, Site,
+    BodyBonds, BodyKernel, BondError, Bonds, Ellipsoid, Ellipsoids, Site,
 };
-use crate::kernels::Kernel;
-use crate::linalg::Sym3;
-use crate::neighbors::NeighborSearch;
-use crate::plugin::{Setup, SetupError};
 use crate::schedule::StepError;
-use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
+use crate::solids::{CorrectedStress, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{
-    BodyId, Damage, DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume,
-    SupportRadius, World,
+    BodyId, Damage, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
 };
-
-/// Fills the columns of the reference with those of the start, and makes its lists.
-pub(super) fn set_up(
-    bodies: &[(BodyId, UpdatedLagrangian)],
-    estimates: &[StepEstimate],
-    terms: &[Option<HessianDifference>],
-    (repeats, mut held): (Vec<Vec<Repeat>>, Held),
-    phase: PhaseId,
-    has_control: bool,
-    setup: &mut Setup<'_>,
-) -> Result<(), SetupError> {
-    let view = setup.world.phase(phase);
-    let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
-    let dimension = setup.world.dimension().count();
-    let mut kernels = Vec::with_capacity(bodies.len());
-    {
-        let original = view.read::<ReferencePosition>().map_err(missing)?;
-        let mut reference = view.write::<UpdatedReference>().map_err(missing)?;
-        let mut support = view.write::<SupportRadius>().map_err(missing)?;
-        reference.iter_mut().zip(original.iter()).for_each(|(now, start)| now.0 = start.0);
-        let start = view.read::<ReferenceVolume>().map_err(missing)?;
-        let mut volume = view.write::<UpdatedVolume>().map_err(missing)?;
-        volume.iter_mut().zip(start.iter()).for_each(|(now, start)| now.0 = start.0);
-        view.write::<UpdatedGradient>().map_err(missing)?.fill(UpdatedGradient(DMat3::IDENTITY));
-        view.write::<UpdatedMetric>().map_err(missing)?.fill(UpdatedMetric(Sym3::IDENTITY));
-        view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
-        for (id, parameters) in bodies {
-            let body = setup.world.body(*id);
-            let radius = parameters.support * body.spacing;
-            support[body.rows.clone()].fill(SupportRadius(radius));
-            let Some(kernel) = Kernel::new(parameters.kernel, dimension) else {
-                unreachable!("every kernel has a two- and a three-dimensional form");
-            };
-            kernels.push(BodyKernel { body: *id, kernel, support: Some(radius) });
-        }
-    }
-    let carried = std::mem::take(&mut held.carried);
-    let mut rows = UpdatedRows {
-        bonds: Bonds { carried, ..Bonds::default() },
-        held,
-        ghosts: Ghosts::default(),
-        repeats,
-        origin: DVec3::ZERO,
-        sites: Vec::new(),
-        originals: Vec::new(),
-        pair_sites: Vec::new(),
-        gradient: Vec::new(),
-        ellipsoids: Vec::new(),
-        volume: Vec::new(),
-        stresses: Vec::new(),
-        control: Vec::new(),
-        control_bonds: Bonds::default(),
-        control_self_force: vec![DVec3::ZERO; view.len()],
-        self_force: vec![DVec3::ZERO; view.len()],
-        frames: Vec::with_capacity(bodies.len()),
-        cracks: Cracks::default(),
-        hessian: HessianRows::new(
-            bodies.iter().zip(terms).map(|((id, _), term)| (setup.world.body(*id).rows.clone(), *term)),
-        ),
-        kernels,
-        stable_step: Vec::with_capacity(bodies.len()),
-        follows: Vec::with_capacity(bodies.len()),
-        has_control,
-        released_at_start: Vec::new(),
-        search: NeighborSearch::default(),
-    };
-    rows.renew(setup.world, phase, estimates, &[]).map_err(|RenewError { body, error }| {
-        let help = "use a larger `support`, or more particles across the body";
-        SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
-    })?;
-    rows.warn_of_released_at_start(setup);
-    setup.resources.insert_solid(phase, rows);
-    Ok(())
-}
 
 /// Why the lists of a body cannot be made.
 pub(super) struct RenewError {
@@ -133,52 +51,56 @@ impl UpdatedRows {
         self.volume.clear();
         self.volume.extend(volume.iter().map(|volume| volume.0));
         removed.iter().for_each(|&row| self.volume[row as usize] = 0.0);
-        let position: &[DVec3] = bytemuck::cast_slice(&reference);
         let support: &[f64] = bytemuck::cast_slice(&support);
-        let bounds = |rows: Range<usize>| {
-            let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            position[rows].iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
-        };
-        let (low, high) = bounds(0..position.len());
+        self.renew_bonds(world, bytemuck::cast_slice(&reference), support)?;
+        self.release_lost();
+        let start: &[f64] = bytemuck::cast_slice(&start);
+        self.find_stable_steps(world, estimates, support, start);
+        self.resize();
+        self.take_gradients(world, phase).map_err(internal)
+    }
+
+    /// Makes the bonds and ghosts of the reference at these positions, m, with these support radii, m.
+    fn renew_bonds(&mut self, world: &World, position: &[DVec3], support: &[f64]) -> Result<(), RenewError> {
+        let (low, high) = bounds(position);
         self.origin = 0.5 * (low + high);
         self.bonds = Bonds { carried: std::mem::take(&mut self.bonds.carried), ..Bonds::default() };
-        self.ghosts = Ghosts::new(view.len());
+        self.ghosts = Ghosts::new(position.len());
         for (kernel, repeats) in self.kernels.iter().zip(&self.repeats) {
             let rows = world.body(kernel.body).rows.clone();
-            let (low, high) = bounds(rows.clone());
+            let (low, high) = bounds(&position[rows.clone()]);
             let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
             let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
             let (repeats, reach) = follow(repeats, low, high, widest);
             let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
-            let ghosts = &self.ghosts;
-            let volume = &self.volume[..];
             let body = BodyBonds {
-                rows: rows.clone(),
+                rows,
                 position,
-                volume,
+                volume: &self.volume,
                 support,
                 ellipsoids: Some(Ellipsoids(&self.ellipsoids)),
                 kernel: kernel.kernel,
-                ghosts,
+                ghosts: &self.ghosts,
                 ghost_rows,
                 hidden: self.held.hidden_of(kernel.body),
             };
             let made = self.bonds.append(&body, &mut self.search);
             made.map_err(|error| RenewError { body: kernel.body, error })?;
         }
-        self.release_lost();
-        let start: &[f64] = bytemuck::cast_slice(&start);
-        self.find_stable_steps(world, estimates, support, start);
-        let all = view.len() + self.ghosts.len();
+        Ok(())
+    }
+
+    /// Gives all rows and their ghosts a place.
+    fn resize(&mut self) {
+        let (real, all) = (self.volume.len(), self.volume.len() + self.ghosts.len());
         self.sites.resize(all, Site::default());
         self.stresses.resize(all, CorrectedStress::default());
         self.pair_sites.resize(all, Site::default());
-        self.hessian.resize(view.len(), self.ghosts.len());
+        self.hessian.resize(real, self.ghosts.len());
         if self.has_control {
             self.originals.resize(all, Site::default());
             self.control.resize(all, CorrectedStress::default());
         }
-        self.take_gradients(world, phase).map_err(internal)
     }
 
     /// Finds the stable step of each body in the reference, s, from support radii, m, and the volumes of the start, m3.
@@ -256,6 +178,12 @@ impl UpdatedRows {
             control_bonds.correct(rows, kernel.dimension(), original, &held, ghosts);
         }
     }
+}
+
+/// The corners of the box around some points.
+fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    points.iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
 }
 
 /// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their sources: a body that fills a period goes along

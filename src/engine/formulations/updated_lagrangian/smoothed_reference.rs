@@ -34,20 +34,23 @@ const FARTHEST: f64 = 0.25;
 pub(super) fn increments(packed: &UpdatedRows, plane: bool) -> Vec<DMat3> {
     let UpdatedRows { bonds, ghosts, sites, volume, .. } = packed;
     let mut gradient = vec![DMat3::ZERO; sites.len()];
-    fit_gradients((bonds, sites), plane, 0, &mut gradient[..volume.len()]);
+    fit_gradients(bonds, sites, plane, 0, &mut gradient[..volume.len()]);
     ghosts.fill(&mut gradient, |ghost, h| ghost.map.tensor(*h));
     gradient
 }
 
-/// Moves the reference places of a body, which are those of its particles, to where the reference is to be; `h` is the smoothing length, m. What has failed stays,
-/// and moves nothing.
-pub(super) fn smooth(
-    packed: &UpdatedRows,
-    deformation: &[DeformationGradient],
-    damage: Option<&[Damage]>,
-    (rows, h): (Range<usize>, f64),
-    places: &mut [UpdatedReference],
-) {
+/// What the reference places of a body are smoothed by.
+pub(super) struct Smoothing<'a> {
+    pub packed: &'a UpdatedRows,
+    pub deformation: &'a [DeformationGradient],
+    pub damage: Option<&'a [Damage]>,
+    /// Smoothing length, m.
+    pub h: f64,
+}
+
+/// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
+pub(super) fn smooth(by: &Smoothing<'_>, rows: Range<usize>, places: &mut [UpdatedReference]) {
+    let Smoothing { packed, deformation, damage, h } = *by;
     let UpdatedRows { bonds, ghosts, pair_sites, volume, .. } = packed;
     let original: Vec<DVec3> = pair_sites[..volume.len()].iter().map(|site| site.reference.xyz()).collect();
     let holds = |row: usize| volume[row] > 0.0 && damage.is_none_or(|damage| damage[row].0 < 1.0);

@@ -8,16 +8,18 @@ use super::gradient::{GradientPass, GradientRows};
 use super::lost_neighbors::widen;
 use super::parameters::{Update, UpdatedLagrangian};
 use super::phase::UpdatedRows;
-use super::smoothed_reference::{increments, smooth};
-use crate::formulations::total_lagrangian::{Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site};
+use super::smoothed_reference::{Smoothing, increments, smooth};
+use crate::formulations::total_lagrangian::{
+    BondedSites, Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site,
+};
 use crate::parallel::{Largest, for_each_block, sum_over_blocks};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
-    HessianDifference, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
+    BodyPass, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
 };
 use crate::world::{
-    BodyId, Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, Position, ReferencePosition,
-    ReferenceVolume, Removed, SupportRadius, Velocity, World,
+    BodyId, Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position,
+    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity, World,
 };
 
 /// Account of what an update of the reference changes of the stored energies.
@@ -70,22 +72,17 @@ impl UpdatedSolids {
         self.solids.iter().map(|body| body.estimate).collect()
     }
 
-    /// The stabilization of each body by differences of second derivatives.
-    pub fn terms(&self) -> Vec<Option<HessianDifference>> {
-        self.solids.iter().map(|body| body.hessian).collect()
-    }
-
     /// Whether plugins have handed in folded terms.
     pub fn has_control(&self) -> bool {
         self.solids.has_terms() || self.solids.iter().any(SolidBody::has_hessian_residual)
     }
 
-    /// Runs the pass over all bodies; states of laws advance by `dt`, s.
+    /// Runs the pass over all bodies.
     fn pass(
         &mut self,
         world: &World,
         packed: &mut UpdatedRows,
-        (dt, is_short): (f64, bool),
+        part: SolidPart<'_>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
         pack(world, self.phase, packed)?;
@@ -103,12 +100,12 @@ impl UpdatedSolids {
             stresses,
             control,
             control_bonds,
-            control_self_force,
             self_force,
             frames,
             ..
         } = &mut *packed;
-        hessian.begin((bonds, ghosts, sites), kernels, bytemuck::cast_slice(&support), self.plane);
+        let (support, plane) = (bytemuck::cast_slice(&support), self.plane);
+        hessian.begin(BondedSites { bonds, ghosts, sites }, kernels, support, plane);
         frames.clear();
         self.solids.begin();
         for k in 0..self.solids.len() {
@@ -116,7 +113,7 @@ impl UpdatedSolids {
             let frame = Frame::at_rest(rows.end);
             frames.push(frame);
             let reference_volume = bytemuck::cast_slice(&reference_volume);
-            let plane = self.plane;
+            let (bonds, control_bonds, frame) = (&*bonds, &*control_bonds, &frame);
             let pass = GradientPass {
                 bonds,
                 control_bonds,
@@ -124,7 +121,7 @@ impl UpdatedSolids {
                 originals,
                 gradient,
                 reference_volume,
-                frame: &frame,
+                frame,
                 plane,
             };
             let own = GradientRows {
@@ -133,22 +130,33 @@ impl UpdatedSolids {
                 self_force: &mut self_force[rows.clone()],
                 hessian: hessian.block(k, &rows),
             };
-            let part = SolidPart { dt, is_short, refits: None };
-            self.solids.run(k, (&view, rows), &mut columns, own, part, &|law, rows, own, block| {
-                pass.block(law, rows, own, block)
-            });
+            let of_body = BodyPass { body: k, view: &view, rows, part };
+            self.solids
+                .run(of_body, &mut columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
         }
+        self.add_differences(&view, packed, part.dt)?;
+        packed.fill_ghost_stresses();
+        Ok(())
+    }
+
+    /// Adds what differences of second derivatives put into the corrected stresses, after the stress of all bodies.
+    fn add_differences(
+        &mut self,
+        view: &PhaseView<'_>,
+        packed: &mut UpdatedRows,
+        dt: f64,
+    ) -> Result<(), StepError> {
+        let UpdatedRows { bonds, ghosts, sites, stresses, self_force, hessian, .. } = packed;
         let difference = FrameIndifferent {
-            bonds: control_bonds,
+            bonds: &packed.control_bonds,
             ghosts,
-            sites: originals,
-            stresses: control,
-            self_force: control_self_force,
+            sites: &packed.originals,
+            stresses: &mut packed.control,
+            self_force: &mut packed.control_self_force,
             hessian,
         };
-        difference.run(&view, &mut self.solids, dt)?;
-        hessian.add_vidal_stress((bonds, ghosts, sites), stresses, self_force);
-        packed.fill_ghost_stresses();
+        difference.run(view, &mut self.solids, dt)?;
+        hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
         Ok(())
     }
 
@@ -181,7 +189,7 @@ impl UpdatedSolids {
         let before = self.forces(step.world, packed)?;
         self.move_reference(step.world, packed, is_due)?;
         // States of laws have advanced by this step already.
-        self.pass(step.world, packed, (0.0, false))?;
+        self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         packed.warn_of_released(step);
         let after = self.forces(step.world, packed)?;
@@ -220,8 +228,8 @@ impl UpdatedSolids {
                     volume[row].0 = start[row].0 * deformation[row].0.determinant();
                 }
                 if self.is_smoothed(k) {
-                    let body = (rows.clone(), self.updates[k].1);
-                    smooth(packed, &deformation, damage.as_deref(), body, &mut reference);
+                    let (damage, h) = (damage.as_deref(), self.updates[k].1);
+                    smooth(&Smoothing { packed, deformation: &deformation, damage, h }, rows, &mut reference);
                 }
             }
         }
@@ -293,7 +301,7 @@ impl Run for UpdatedSolids {
             let renewed = packed.renew(step.world, self.phase, &self.estimates(), &self.removed);
             renewed.map_err(|error| error.in_step(step.world))?;
         }
-        self.pass(step.world, &mut packed, (step.clock.dt, step.turn.is_part()))?;
+        self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
         // From the first step on, so that it has its place among the energies.
         step.ledger.account(ACCOUNT, AccountKind::Dissipated);

@@ -47,6 +47,19 @@ pub struct Output {
     progress: Progress,
 }
 
+/// What an output is made of.
+pub(super) struct OutputParts {
+    pub scene: SceneInfo,
+    pub folder: OutputFolder,
+    pub tracks: Vec<Track>,
+    pub frames: Frames,
+    pub recorders: Vec<Box<dyn Recorder>>,
+    /// End of the run, s.
+    pub end: f64,
+    /// Interval of checkpoints, s.
+    pub checkpoint_every: Option<f64>,
+}
+
 /// What a checkpoint keeps of the output.
 #[derive(Serialize, Deserialize)]
 struct OutputState {
@@ -56,15 +69,8 @@ struct OutputState {
 }
 
 impl Output {
-    /// `times` are the end of the run and the interval of checkpoints, s.
-    pub(super) fn new(
-        scene: SceneInfo,
-        folder: OutputFolder,
-        tracks: Vec<Track>,
-        frames: Frames,
-        recorders: Vec<Box<dyn Recorder>>,
-        times: (f64, Option<f64>),
-    ) -> Self {
+    pub(super) fn new(parts: OutputParts) -> Self {
+        let OutputParts { scene, folder, tracks, frames, recorders, end, checkpoint_every } = parts;
         Self {
             scene,
             folder,
@@ -72,8 +78,8 @@ impl Output {
             tracks,
             frames,
             recorders,
-            end: times.0,
-            checkpoint: times.1.map(Trigger::after_interval),
+            end,
+            checkpoint: checkpoint_every.map(Trigger::after_interval),
             checkpoint_due: false,
             progress: Progress::Closed,
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::due::{Output, SceneInfo};
+use super::due::{Output, OutputParts, SceneInfo};
 use super::folder::{ENERGY, OutputFolder};
 use super::frames::Frames;
 use super::options::OutputOptions;
@@ -106,8 +106,15 @@ impl OutputPlan {
         needs.sort_unstable();
         needs.dedup();
         let info = SceneInfo { title: scene.title.clone(), name: scene_name, text: source.text.clone() };
-        let times = (scene.time.end, scene.record.checkpoint_every);
-        let output = Output::new(info, folder, tracks, frames, self.recorders, times);
+        let output = Output::new(OutputParts {
+            scene: info,
+            folder,
+            tracks,
+            frames,
+            recorders: self.recorders,
+            end: scene.time.end,
+            checkpoint_every: scene.record.checkpoint_every,
+        });
         let handle = OutputHandle::new(output);
         sim.add_system(output_system(&handle, &needs));
         handle

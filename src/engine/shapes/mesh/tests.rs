@@ -13,7 +13,7 @@ use crate::scene::Dimension::{Three, Two};
 use crate::shapes::error::FillErrorKind;
 use crate::shapes::region::Region;
 use crate::shapes::surface::Surface;
-use crate::shapes::{Lattice, Shape, fill};
+use crate::shapes::{Filling, Lattice, Shape, fill};
 
 mod moments;
 
@@ -278,7 +278,19 @@ fn particles_fill_the_volume_of_the_mesh() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("ring.STL"), binary_stl(&torus(48, 24, 40.0, 12.0))).unwrap();
     let shape: Shape = ron::from_str("Mesh(file: \"ring.STL\", scale: 0.001)").unwrap();
-    let fill = |shape: &Shape, spacing| fill(shape, Lattice::Regular, spacing, Three, folder.path(), 100_000);
+    let fill = |shape: &Shape, spacing| {
+        fill(
+            shape,
+            Filling {
+                lattice: Lattice::Regular,
+                spacing,
+                dimension: Three,
+                folder: folder.path(),
+                limit: 100_000,
+                is_wall: false,
+            },
+        )
+    };
     let sites = fill(&shape, 0.003).unwrap();
     let volume: f64 = sites.iter().map(|site| site.volume).sum();
     let polyhedron = solid(&torus(48, 24, 0.04, 0.012)).volume().unwrap();

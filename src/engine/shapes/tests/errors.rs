@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{kind, shape, try_fill};
 use crate::scene::Dimension::{self, Three, Two};
-use crate::shapes::{FillErrorKind, Lattice, fill};
+use crate::shapes::{FillErrorKind, Filling, Lattice, fill};
 
 #[test]
 fn numbers_that_cannot_be() {
@@ -270,8 +270,34 @@ fn nothing_left() {
 #[test]
 fn the_limit_is_kept() {
     let cube = shape("Box(min: (0, 0, 0), max: (1, 1, 1))");
-    assert_eq!(fill(&cube, Lattice::Regular, 0.1, Three, Path::new("."), 1000).unwrap().len(), 1000);
-    let error = fill(&cube, Lattice::Regular, 0.1, Three, Path::new("."), 999).unwrap_err();
+    assert_eq!(
+        fill(
+            &cube,
+            Filling {
+                lattice: Lattice::Regular,
+                spacing: 0.1,
+                dimension: Three,
+                folder: Path::new("."),
+                limit: 1000,
+                is_wall: false
+            }
+        )
+        .unwrap()
+        .len(),
+        1000
+    );
+    let error = fill(
+        &cube,
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 0.1,
+            dimension: Three,
+            folder: Path::new("."),
+            limit: 999,
+            is_wall: false,
+        },
+    )
+    .unwrap_err();
     assert!(matches!(error.kind, FillErrorKind::TooMany { limit: 999, .. }));
 }
 
@@ -285,7 +311,20 @@ fn endless_relaxation_is_refused() {
 #[test]
 fn a_turn_that_leaves_the_range_of_numbers_is_an_error() {
     let text = "Rotate(shape: Sphere(center: (1.7976931348623157e308, 1.7976931348623157e308, 0.0), radius: 1e16), axis: (0, 0, -1), angle_degrees: -1)";
-    assert!(fill(&shape(text), Lattice::Concentric, 1e16, Three, Path::new("."), 300).is_err());
+    assert!(
+        fill(
+            &shape(text),
+            Filling {
+                lattice: Lattice::Concentric,
+                spacing: 1e16,
+                dimension: Three,
+                folder: Path::new("."),
+                limit: 300,
+                is_wall: false
+            }
+        )
+        .is_err()
+    );
 }
 
 /// Numbers that a slip of the finger or a wrong unit makes.
@@ -322,7 +361,7 @@ proptest::proptest! {
                     format!("Scale(shape: {simple}, by: {})", three(5, 6, 7)),
                 ] {
                     for lattice in [Lattice::Regular, Lattice::Hexagonal, Lattice::Concentric, Lattice::BodyFitted { iterations: 2 }, Lattice::Relaxed { seed: 0, iterations: 1 }] {
-                        let filled = fill(&shape(&text), lattice, ODD[s], dimension, Path::new("."), 300);
+                        let filled = fill(&shape(&text), Filling { lattice, spacing: ODD[s], dimension, folder: Path::new("."), limit: 300, is_wall: false });
                         for site in filled.unwrap_or_default() {
                             assert!(site.position.is_finite() && site.volume > 0.0, "{text} {lattice:?} {}", ODD[s]);
                         }

@@ -16,7 +16,7 @@ mod walls;
 
 use std::path::Path;
 
-use super::{FillError, FillErrorKind, Lattice, Shape, Site, fill};
+use super::{FillError, FillErrorKind, Filling, Lattice, Shape, Site, fill};
 use crate::scene::Dimension;
 
 fn shape(text: &str) -> Shape {
@@ -29,7 +29,10 @@ fn try_fill(
     spacing: f64,
     dimension: Dimension,
 ) -> Result<Vec<Site>, FillError> {
-    fill(&shape(text), lattice, spacing, dimension, Path::new("."), 1_000_000)
+    fill(
+        &shape(text),
+        Filling { lattice, spacing, dimension, folder: Path::new("."), limit: 1_000_000, is_wall: false },
+    )
 }
 
 fn filled(text: &str, lattice: Lattice, spacing: f64, dimension: Dimension) -> Vec<Site> {

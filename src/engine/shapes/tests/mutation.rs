@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use crate::scene::Dimension::{Three, Two};
-use crate::shapes::{Lattice, Shape, fill};
+use crate::shapes::{Filling, Lattice, Shape, fill};
 
 const POINTS: &str =
     "x[m],y[m],volume[m^2],color\n# two\n0,0,0.01,red\n0.1,0,0.01,blue\n\"0.2\",1e-1,0.01,green\n";
@@ -39,7 +39,17 @@ fn survives(name: &str, content: &[u8]) {
         "p.csv" => (Shape::Points { file: name.into() }, Two),
         _ => (super::shape(&format!("Mesh(file: \"{name}\", scale: 1.0)")), Three),
     };
-    let _ = fill(&shape, Lattice::Regular, 0.1, dimension, folder.path(), 10_000);
+    let _ = fill(
+        &shape,
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 0.1,
+            dimension,
+            folder: folder.path(),
+            limit: 10_000,
+            is_wall: false,
+        },
+    );
 }
 
 const PIECES: [&str; 12] =
@@ -93,10 +103,35 @@ fn the_files_are_good_before_they_are_damaged() {
     {
         std::fs::write(folder.path().join(name), content).unwrap();
         let shape = super::shape(&format!("Mesh(file: \"{name}\", scale: 1.0)"));
-        let filled = fill(&shape, Lattice::Regular, 0.1, Three, folder.path(), 10_000);
+        let filled = fill(
+            &shape,
+            Filling {
+                lattice: Lattice::Regular,
+                spacing: 0.1,
+                dimension: Three,
+                folder: folder.path(),
+                limit: 10_000,
+                is_wall: false,
+            },
+        );
         assert!(filled.is_ok_and(|sites| !sites.is_empty()), "{name}");
     }
     std::fs::write(folder.path().join("p.csv"), POINTS).unwrap();
     let shape = Shape::Points { file: "p.csv".into() };
-    assert_eq!(fill(&shape, Lattice::Regular, 0.1, Two, folder.path(), 10).unwrap().len(), 3);
+    assert_eq!(
+        fill(
+            &shape,
+            Filling {
+                lattice: Lattice::Regular,
+                spacing: 0.1,
+                dimension: Two,
+                folder: folder.path(),
+                limit: 10,
+                is_wall: false
+            }
+        )
+        .unwrap()
+        .len(),
+        3
+    );
 }

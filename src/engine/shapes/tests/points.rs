@@ -5,12 +5,22 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::scene::Dimension::{self, Three, Two};
-use crate::shapes::{FillError, Lattice, Shape, Site, fill};
+use crate::shapes::{FillError, Filling, Lattice, Shape, Site, fill};
 
 fn read(content: &str, dimension: Dimension) -> Result<Vec<Site>, FillError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cloud.csv"), content).unwrap();
-    fill(&Shape::Points { file: "cloud.csv".into() }, Lattice::Regular, 1.0, dimension, folder.path(), 5)
+    fill(
+        &Shape::Points { file: "cloud.csv".into() },
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 1.0,
+            dimension,
+            folder: folder.path(),
+            limit: 5,
+            is_wall: false,
+        },
+    )
 }
 
 #[test]
@@ -62,7 +72,18 @@ fn mistakes_are_shown_with_their_line() {
 #[test]
 fn missing_file() {
     let shape = Shape::Points { file: "missing.csv".into() };
-    let error = fill(&shape, Lattice::Regular, 0.1, Two, Path::new("nowhere"), 5).unwrap_err();
+    let error = fill(
+        &shape,
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 0.1,
+            dimension: Two,
+            folder: Path::new("nowhere"),
+            limit: 5,
+            is_wall: false,
+        },
+    )
+    .unwrap_err();
     assert_eq!(error.path, "shape.file");
     assert!(error.to_string().starts_with("shape.file: cannot read `nowhere/missing.csv`: "), "{error}");
 }
@@ -72,7 +93,18 @@ fn transforms_apply() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cloud.csv"), "x,y,volume\n1,0,2\n").unwrap();
     let text = "Translate(shape: Rotate(shape: Scale(shape: Points(file: \"cloud.csv\"), by: (2, 3)), angle_degrees: 90), by: (5, 0))";
-    let sites = fill(&super::shape(text), Lattice::Regular, 1.0, Two, folder.path(), 5).unwrap();
+    let sites = fill(
+        &super::shape(text),
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 1.0,
+            dimension: Two,
+            folder: folder.path(),
+            limit: 5,
+            is_wall: false,
+        },
+    )
+    .unwrap();
     assert!(sites[0].position.distance(DVec3::new(5.0, 2.0, 0.0)) < 1e-12);
     assert!((sites[0].volume - 12.0).abs() < 1e-12);
 }

@@ -97,9 +97,18 @@ fn errors_point_at_the_text_of_the_scene() {
         let (scene, source) = parse(Source::new("test.ron", text)).unwrap();
         let body = &scene.bodies[0];
         let folder = std::path::Path::new(".");
-        let error =
-            crate::shapes::fill(&body.shape, body.lattice, body.spacing, scene.dimension, folder, 1000)
-                .unwrap_err();
+        let error = crate::shapes::fill(
+            &body.shape,
+            crate::shapes::Filling {
+                lattice: body.lattice,
+                spacing: body.spacing,
+                dimension: scene.dimension,
+                folder,
+                limit: 1000,
+                is_wall: false,
+            },
+        )
+        .unwrap_err();
         let problem = Problem::at_path(format!("bodies[0].{}", error.path), error.kind.to_string());
         assert_eq!(&source.text[problem.span(&source).unwrap()], wrong, "{}", error.path);
     }

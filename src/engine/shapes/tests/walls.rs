@@ -6,10 +6,21 @@ use glam::DVec3;
 
 use super::shape;
 use crate::scene::Dimension;
-use crate::shapes::{Lattice, Site, fill, fill_wall};
+use crate::shapes::{Filling, Lattice, Site, fill};
 
 fn wall(text: &str, dimension: Dimension) -> Vec<Site> {
-    fill_wall(&shape(text), Lattice::Regular, 0.02, dimension, Path::new("."), 1_000_000).unwrap()
+    fill(
+        &shape(text),
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 0.02,
+            dimension,
+            folder: Path::new("."),
+            limit: 1_000_000,
+            is_wall: true,
+        },
+    )
+    .unwrap()
 }
 
 /// Distance of the particle that is nearest to a place of the surface, along an axis.
@@ -42,7 +53,17 @@ fn cells_end_at_the_cavity_whatever_is_outside() {
 #[test]
 fn a_cavity_that_fits_the_outer_box_changes_nothing() {
     let text = "Difference(Box(min: (-0.06, -0.06), max: (0.66, 0.6)), Box(min: (0, 0), max: (0.6, 1)))";
-    let as_any_shape =
-        fill(&shape(text), Lattice::Regular, 0.02, Dimension::Two, Path::new("."), 1_000_000).unwrap();
+    let as_any_shape = fill(
+        &shape(text),
+        Filling {
+            lattice: Lattice::Regular,
+            spacing: 0.02,
+            dimension: Dimension::Two,
+            folder: Path::new("."),
+            limit: 1_000_000,
+            is_wall: false,
+        },
+    )
+    .unwrap();
     assert_eq!(wall(text, Dimension::Two), as_any_shape);
 }

@@ -8,4 +8,4 @@ mod rows;
 mod vidal_2007;
 
 pub(in crate::formulations) use frame_indifferent::FrameIndifferent;
-pub(in crate::formulations) use rows::{HessianBlock, HessianRows};
+pub(in crate::formulations) use rows::{BondedSites, HessianBlock, HessianRows};

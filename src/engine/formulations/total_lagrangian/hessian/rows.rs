@@ -6,8 +6,8 @@ use glam::{DMat3, DVec3};
 
 use super::super::bonds::Bonds;
 use super::super::rows::Site;
-use super::vidal_2007::VidalRows;
-use crate::parallel::split_by_rows;
+use super::vidal_2007::{Difference, VidalRows};
+use crate::parallel::{run_hot, split_by_rows};
 use crate::solids::{FoldedRows, HessianDifference, HessianForm};
 use crate::symmetry::Ghosts;
 
@@ -104,6 +104,14 @@ impl HessianRows {
     }
 }
 
+/// Bonds, and what lies at their ends.
+#[derive(Clone, Copy)]
+pub(in crate::formulations) struct BondedSites<'a> {
+    pub bonds: &'a Bonds,
+    pub ghosts: &'a Ghosts,
+    pub sites: &'a [Site],
+}
+
 /// What the first pass reads and writes of a block.
 #[derive(Default)]
 pub(in crate::formulations) struct HessianBlock<'a> {
@@ -119,10 +127,11 @@ split_by_rows!(HessianBlock { gradient, stiffness, stress } and { eta, fitted, v
 
 impl HessianBlock<'_> {
     /// Takes the gradients of the displacements since the reference, Q - I, of the block that begins at row `first`; the form of the paper adds its difference to them.
-    pub fn after_fit(&mut self, (bonds, sites): (&Bonds, &[Site]), first: usize, gradient: &mut [DMat3]) {
+    pub fn after_fit(&mut self, bonds: &Bonds, sites: &[Site], first: usize, gradient: &mut [DMat3]) {
         self.take_gradient(gradient);
         if let Some(vidal) = self.vidal {
-            vidal.add_difference((bonds, sites), self.fitted, self.eta, first, gradient);
+            let (rows, eta) = (vidal, self.eta);
+            run_hot(Difference { rows, bonds, sites, gradient: self.fitted, eta, first, block: gradient });
         }
     }
 

@@ -22,10 +22,10 @@ use super::super::bonds::Bonds;
 use super::super::gather::fit_gradients;
 use super::super::pairs::BodyKernel;
 use super::super::rows::Site;
-use super::rows::{HessianBody, HessianRows};
+use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
-use crate::linalg::Sym3;
+use crate::linalg::{Sym3, dyad};
 use crate::parallel::{Arithmetic, HotLoop, for_each_block, run_hot};
 use crate::solids::{CorrectedStress, HessianForm};
 use crate::symmetry::Ghosts;
@@ -97,18 +97,6 @@ impl VidalRows {
         ghosts.fill(&mut self.shift, |ghost, shift| ghost.map.vector(*shift));
         ghosts.fill(&mut self.correction, |ghost, correction| ghost.map.tensor(*correction));
     }
-
-    /// D_i times eta for the rows of a block, added to their displacement gradients.
-    pub fn add_difference(
-        &self,
-        (bonds, sites): (&Bonds, &[Site]),
-        gradient: &[DMat3],
-        eta: f64,
-        first: usize,
-        block: &mut [DMat3],
-    ) {
-        run_hot(Difference { rows: self, bonds, sites, gradient, eta, first, block });
-    }
 }
 
 /// K_ij.
@@ -117,20 +105,17 @@ fn along(curvature: f64, weight: f64, arm: DVec3, step: DVec3) -> DVec3 {
     arm * (curvature * arm.dot(step)) - step * weight
 }
 
-/// a (x) b.
-#[inline(always)]
-fn dyad(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
-}
-
-struct Difference<'a> {
-    rows: &'a VidalRows,
-    bonds: &'a Bonds,
-    sites: &'a [Site],
-    gradient: &'a [DMat3],
-    eta: f64,
-    first: usize,
-    block: &'a mut [DMat3],
+/// D_i times eta for the rows of a block, added to their displacement gradients.
+pub(super) struct Difference<'a> {
+    pub rows: &'a VidalRows,
+    pub bonds: &'a Bonds,
+    pub sites: &'a [Site],
+    /// Displacement gradients of all rows.
+    pub gradient: &'a [DMat3],
+    pub eta: f64,
+    /// First row of the block.
+    pub first: usize,
+    pub block: &'a mut [DMat3],
 }
 
 impl HotLoop for Difference<'_> {
@@ -164,13 +149,8 @@ impl HotLoop for Difference<'_> {
 
 impl HessianRows {
     /// Before the stress: takes in a new reference, and fits the gradients that the difference needs of all rows.
-    pub fn begin(
-        &mut self,
-        (bonds, ghosts, sites): (&Bonds, &Ghosts, &[Site]),
-        kernels: &[BodyKernel],
-        support: &[f64],
-        plane: bool,
-    ) {
+    pub fn begin(&mut self, bonded: BondedSites<'_>, kernels: &[BodyKernel], support: &[f64], plane: bool) {
+        let BondedSites { bonds, ghosts, sites } = bonded;
         let is_stale = std::mem::take(&mut self.is_stale);
         if !self.has(HessianForm::Vidal2007) {
             return;
@@ -186,7 +166,7 @@ impl HessianRows {
             vidal.renew_ghosts(ghosts);
         }
         for HessianBody { rows, .. } in own {
-            fit_gradients((bonds, sites), plane, rows.start, &mut gradient[rows.clone()]);
+            fit_gradients(bonds, sites, plane, rows.start, &mut gradient[rows.clone()]);
         }
         self.fill_ghost_gradients(ghosts);
     }
@@ -194,10 +174,11 @@ impl HessianRows {
     /// Adds to the corrected stresses what the form puts into their particles, after the stress of all bodies.
     pub fn add_vidal_stress(
         &mut self,
-        (bonds, ghosts, sites): (&Bonds, &Ghosts, &[Site]),
+        bonded: BondedSites<'_>,
         stresses: &mut [CorrectedStress],
         self_force: &mut [DVec3],
     ) {
+        let BondedSites { bonds, ghosts, sites } = bonded;
         if !self.has(HessianForm::Vidal2007) {
             return;
         }
@@ -214,7 +195,7 @@ impl HessianRows {
     }
 
     /// Adds the forces that act along the second derivatives.
-    pub fn add_vidal_force(&self, (bonds, sites): (&Bonds, &[Site]), force: &mut [Force]) {
+    pub fn add_vidal_force(&self, bonds: &Bonds, sites: &[Site], force: &mut [Force]) {
         for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
             let force = &mut force[rows.clone()];
             for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {

@@ -1,0 +1,165 @@
+//! Bodies of a scene: material, formulation, particles, and the rows of the phase that they get.
+
+use std::any::Any;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::{memory, spawn};
+use crate::materials::{Law, Material};
+use crate::plugin::{BodyKind, BodyPlan, Formulation, FormulationEntry, Registry};
+use crate::rigid::Rigid;
+use crate::scene::{Body, Domain, Item, Problem, Scene, Source};
+use crate::shapes::{self, Aabb, Filling, Site};
+use crate::world::{BodyId, ColumnSet, PhaseId};
+
+/// A formulation with the parameters that a scene gives it.
+pub(super) type Parsed<'r> = (&'r FormulationEntry, Box<dyn Any>);
+
+/// The bodies of a scene, in its order.
+#[derive(Default)]
+pub(super) struct Placed<'r> {
+    pub bodies: Vec<BodyPlan>,
+    /// Formulation and columns of each phase.
+    pub phases: Vec<(&'static str, ColumnSet)>,
+    /// Formulation of each body.
+    pub formulations: Vec<Parsed<'r>>,
+    /// Number of particles of each phase.
+    lens: Vec<usize>,
+}
+
+/// Places all bodies; collects what is wrong with any of them.
+pub(super) fn place_bodies<'r>(
+    scene: &Scene,
+    source: &Source,
+    registry: &'r Registry,
+) -> Result<Placed<'r>, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let mut materials = Vec::new();
+    for (name, item) in &scene.materials {
+        match registry.build_material(item) {
+            Ok(material) => materials.push((name.as_str(), material)),
+            Err(found) => problems.extend(found),
+        }
+    }
+    let mut room = memory::particle_limit();
+    let mut placed = Placed::default();
+    for (k, body) in scene.bodies.iter().enumerate() {
+        let place = || {
+            let formulation = parse_formulation(registry, &body.formulation)?;
+            let (sites, bounds) =
+                fill(body, formulation.0, scene, source.folder(), room).map_err(|error| {
+                    let path = format!("bodies[{k}].{}", error.path);
+                    vec![Problem::at_path(path, error.kind.to_string()).helps(error.kind.help())]
+                })?;
+            Ok((formulation, sites, bounds))
+        };
+        let (formulation, sites, bounds) = match place() {
+            Ok(parts) => parts,
+            Err(found) => {
+                problems.extend::<Vec<Problem>>(found);
+                continue;
+            }
+        };
+        let material = match materials.iter().find(|(name, _)| *name == body.material) {
+            Some((_, material)) => material.clone(),
+            None if scene.materials.contains_key(&body.material) => continue,
+            None => Material::nothing(),
+        };
+        room = room.saturating_sub(sites.len());
+        let plan = BodyPlan {
+            id: BodyId(k),
+            name: body.name.clone(),
+            phase: PhaseId(0),
+            formulation: formulation.0.name,
+            kind: formulation.0.kind,
+            offers: formulation.0.offers,
+            support: None,
+            rows: 0..sites.len(),
+            spacing: body.spacing,
+            material_name: body.material.clone(),
+            material,
+            sites,
+            carried: Vec::new(),
+            hidden: Vec::new(),
+            bounds,
+            velocity: body.velocity,
+        };
+        placed.push(plan, formulation);
+    }
+    if problems.is_empty() { Ok(placed) } else { Err(problems) }
+}
+
+impl<'r> Placed<'r> {
+    /// Adds a body to the phase of its formulation, behind the rows that are there.
+    fn push(&mut self, mut plan: BodyPlan, formulation: Parsed<'r>) {
+        let Self { phases, lens, .. } = self;
+        let phase = phases.iter().position(|(known, _)| *known == plan.formulation).unwrap_or_else(|| {
+            let mut columns = ColumnSet::default();
+            spawn::standard_columns(&mut columns);
+            (formulation.0.columns)(&mut columns);
+            phases.push((plan.formulation, columns));
+            lens.push(0);
+            phases.len() - 1
+        });
+        if let Law::Solid(law) = &plan.material.law {
+            law.state(&mut phases[phase].1);
+        }
+        plan.phase = PhaseId(phase);
+        plan.rows = lens[phase]..lens[phase] + plan.sites.len();
+        lens[phase] = plan.rows.end;
+        plan.support = (formulation.0.support)(&*formulation.1, &plan);
+        self.bodies.push(plan);
+        self.formulations.push(formulation);
+    }
+}
+
+/// The particles of a body, and the box around its shape.
+fn fill(
+    body: &Body,
+    formulation: &FormulationEntry,
+    scene: &Scene,
+    folder: &Path,
+    limit: usize,
+) -> Result<(Vec<Site>, Aabb), shapes::FillError> {
+    let sites = match endless_tool(body, formulation.name, scene, folder) {
+        Some(sites) => sites,
+        None => {
+            let filling = Filling {
+                lattice: body.lattice,
+                spacing: body.spacing,
+                dimension: scene.dimension,
+                folder,
+                limit,
+                is_wall: formulation.kind == BodyKind::Boundary,
+            };
+            shapes::fill(&body.shape, filling)?
+        }
+    };
+    let bounds = match body.shape.region(scene.dimension, folder, "shape") {
+        Ok(region) => region.bounds(),
+        Err(_) => Aabb::around(sites.iter().map(|site| site.position)),
+    };
+    Ok((sites, bounds))
+}
+
+/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is a tool.
+fn endless_tool(body: &Body, formulation: &str, scene: &Scene, folder: &Path) -> Option<Vec<Site>> {
+    if formulation != Rigid::NAME || !(body.spacing > 0.0 && body.spacing.is_finite()) {
+        return None;
+    }
+    let region = body.shape.region(scene.dimension, folder, "shape").ok()?;
+    if region.bounds().is_bounded() {
+        return None;
+    }
+    let surface = body.shape.surface(scene.dimension, folder, "shape").ok()?;
+    let middle = |domain: &Domain| 0.5 * (domain.min.0 + domain.max.0);
+    let nearest = surface.closest(scene.domain.as_ref().map_or(DVec3::ZERO, middle));
+    let position = nearest.point - 0.5 * body.spacing * nearest.normal;
+    Some(vec![Site { position, volume: body.spacing.powi(scene.dimension.count() as i32) }])
+}
+
+fn parse_formulation<'r>(registry: &'r Registry, item: &Item) -> Result<Parsed<'r>, Vec<Problem>> {
+    let entry = registry.find_formulation(item)?;
+    Ok((entry, (entry.parse)(item)?))
+}

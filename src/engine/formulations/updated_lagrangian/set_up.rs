@@ -1,0 +1,117 @@
+//! What is made before the first step: the columns of the reference, and its lists.
+
+use glam::{DMat3, DVec3};
+
+use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
+use super::phase::UpdatedRows;
+use super::reference::RenewError;
+use crate::formulations::total_lagrangian::{BodyKernel, Bonds, Cracks, Held, HessianRows};
+use crate::kernels::{Kernel, KernelName};
+use crate::linalg::Sym3;
+use crate::neighbors::NeighborSearch;
+use crate::plugin::{Setup, SetupError};
+use crate::solids::{HessianDifference, StepEstimate};
+use crate::symmetry::{Ghosts, Repeat};
+use crate::world::{
+    BodyId, DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius,
+    World,
+};
+
+/// A body, with what its lists are made of.
+pub(super) struct BodySetUp {
+    pub id: BodyId,
+    pub kernel: KernelName,
+    /// Support radius, m.
+    pub support: f64,
+    pub estimate: StepEstimate,
+    pub hessian: Option<HessianDifference>,
+    pub repeats: Vec<Repeat>,
+}
+
+impl BodySetUp {
+    fn kernel(&self, dimension: usize) -> BodyKernel {
+        let Some(kernel) = Kernel::new(self.kernel, dimension) else {
+            unreachable!("every kernel has a two- and a three-dimensional form");
+        };
+        BodyKernel { body: self.id, kernel, support: Some(self.support) }
+    }
+}
+
+/// The bodies of a phase before the first step.
+pub(super) struct SetUp {
+    pub phase: PhaseId,
+    pub bodies: Vec<BodySetUp>,
+    pub held: Held,
+    /// Whether plugins have handed in folded terms.
+    pub has_control: bool,
+}
+
+impl SetUp {
+    /// Fills the columns of the reference with those of the start, and makes its lists.
+    pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+        self.fill_columns(setup.world).map_err(|error| SetupError::internal(&error))?;
+        let phase = self.phase;
+        let estimates: Vec<StepEstimate> = self.bodies.iter().map(|body| body.estimate).collect();
+        let mut rows = self.rows(setup.world);
+        rows.renew(setup.world, phase, &estimates, &[]).map_err(|RenewError { body, error }| {
+            let help = "use a larger `support`, or more particles across the body";
+            SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
+        })?;
+        rows.warn_of_released_at_start(setup);
+        setup.resources.insert_solid(phase, rows);
+        Ok(())
+    }
+
+    fn fill_columns(&self, world: &World) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        let original = view.read::<ReferencePosition>()?;
+        let mut reference = view.write::<UpdatedReference>()?;
+        reference.iter_mut().zip(original.iter()).for_each(|(now, start)| now.0 = start.0);
+        let start = view.read::<ReferenceVolume>()?;
+        let mut volume = view.write::<UpdatedVolume>()?;
+        volume.iter_mut().zip(start.iter()).for_each(|(now, start)| now.0 = start.0);
+        view.write::<UpdatedGradient>()?.fill(UpdatedGradient(DMat3::IDENTITY));
+        view.write::<UpdatedMetric>()?.fill(UpdatedMetric(Sym3::IDENTITY));
+        view.write::<DeformationGradient>()?.fill(DeformationGradient(DMat3::IDENTITY));
+        let mut support = view.write::<SupportRadius>()?;
+        for body in &self.bodies {
+            support[world.body(body.id).rows.clone()].fill(SupportRadius(body.support));
+        }
+        Ok(())
+    }
+
+    /// The packed rows, without lists.
+    fn rows(self, world: &World) -> UpdatedRows {
+        let Self { phase, bodies, mut held, has_control } = self;
+        let (count, dimension) = (world.phase(phase).len(), world.dimension().count());
+        let carried = std::mem::take(&mut held.carried);
+        let terms = bodies.iter().map(|body| (world.body(body.id).rows.clone(), body.hessian));
+        UpdatedRows {
+            bonds: Bonds { carried, ..Bonds::default() },
+            held,
+            ghosts: Ghosts::default(),
+            origin: DVec3::ZERO,
+            sites: Vec::new(),
+            originals: Vec::new(),
+            pair_sites: Vec::new(),
+            gradient: Vec::new(),
+            ellipsoids: Vec::new(),
+            volume: Vec::new(),
+            stresses: Vec::new(),
+            control: Vec::new(),
+            control_bonds: Bonds::default(),
+            control_self_force: vec![DVec3::ZERO; count],
+            self_force: vec![DVec3::ZERO; count],
+            frames: Vec::with_capacity(bodies.len()),
+            cracks: Cracks::default(),
+            hessian: HessianRows::new(terms),
+            kernels: bodies.iter().map(|body| body.kernel(dimension)).collect(),
+            stable_step: Vec::with_capacity(bodies.len()),
+            follows: Vec::with_capacity(bodies.len()),
+            has_control,
+            released_at_start: Vec::new(),
+            search: NeighborSearch::default(),
+            repeats: bodies.into_iter().map(|body| body.repeats).collect(),
+        }
+    }
+}
