@@ -263,7 +263,8 @@ fn everything_that_is_registered_is_listed_and_described() {
 fn the_scene_reference_is_what_the_program_prints() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scene.md");
     let page = std::fs::read_to_string(page).expect("the scene reference");
-    let printed = out(&meshless(&folder(), &["schema"]));
+    let folder = folder();
+    let printed = out(&meshless(&folder, &["schema"]));
     assert!(
         printed == page,
         "docs/scene.md is not up to date; write it with `meshless schema > docs/scene.md`"
@@ -373,6 +374,8 @@ fn a_recording_that_cannot_be_written_ends_the_run_and_leaves_the_state() {
     assert!(folder.path().join("o/failed.mlc").is_file() && folder.path().join("o/summary.json").is_file());
     // What the recording has can be looked at.
     assert_success(&meshless(&folder, &["picture", "o"]));
+    let again = meshless(&folder, &["picture", "o"]);
+    assert!(err(&again).contains("already exists; `--force` replaces it"), "{}", err(&again));
 }
 
 #[test]

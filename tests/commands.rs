@@ -252,3 +252,24 @@ fn messages_stay_short() {
     let wide = meshless(folder.path(), &["check", "beam.ron", "--set", "bodies.beam.shape.max.x=0.2"]);
     assert!(String::from_utf8_lossy(&wide.stdout).contains(" 60 "), "{}", err(&wide));
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn every_formulation_has_as_many_particles_as_fit_its_memory() {
+    let folder = folder();
+    // 100 000 particles: 0.16 GB in total-Lagrangian bodies, 0.62 GB in Eulerian ones.
+    let cube = "(dimension: Three, materials: {\"steel\": Steel()}, time: (end: 1e-5), bodies: [Body(name: \"cube\", \
+                material: \"steel\", shape: Box(min: (0, 0, 0), max: (1, 1, 1)), spacing: 0.0216, formulation: Eulerian())])";
+    std::fs::write(folder.path().join("cube.ron"), cube).expect("a scene");
+    for limit in ["-v 500000", "-d 400000"] {
+        let limited =
+            format!("ulimit {limit}; exec timeout -k 1 60 \"$0\" run --threads 1 --steps 1 cube.ron");
+        let output = Command::new("bash")
+            .args(["-c", &limited, env!("CARGO_BIN_EXE_meshless")])
+            .current_dir(folder.path())
+            .output()
+            .expect("bash starts");
+        assert_eq!(output.status.code(), Some(2), "{limit}: {}", err(&output));
+        assert!(err(&output).contains("that fit into memory"), "{limit}: {}", err(&output));
+    }
+}

@@ -247,12 +247,12 @@ fn rubble_that_flies_apart_makes_no_energy() {
 
 /// Two halves of a strip that have been drawn apart at a row of failed particles: each of them is only turned, and has no error.
 #[test]
-fn the_hourglass_error_does_not_see_the_sides_of_a_crack_part() {
+fn the_hourglass_residual_does_not_see_the_sides_of_a_crack_part() {
     let text = r#"(dimension: Two, materials: {"m": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)},
         bodies: [(name: "strip", material: "m", shape: Box(min: (0, 0), max: (0.16, 0.05)), spacing: 0.01, formulation: TotalLagrangian,
                   plugins: [hourglass_control(), failure(criterion: MaximumPrincipalStrain(limit: 0.05))])],
         time: (end: 1),
-        probes: [Probe(name: "error", on: Select(body: "strip"), take: Maximum, quantity: Field("hourglass_error"))])"#;
+        probes: [Probe(name: "error", on: Select(body: "strip"), take: Maximum, quantity: Field("hourglass_residual"))])"#;
     let (scene, source) =
         parse(Source::new("strip.ron", text.to_owned())).unwrap_or_else(|error| panic!("{error}"));
     let mut sim =

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+#[cfg(feature = "rerun")]
+use meshless_engine::record::WriteError;
 use meshless_engine::scene::SceneError;
 use thiserror::Error;
 
@@ -41,6 +43,22 @@ impl Failure {
             Self::Scene(_) | Self::Usage(_) => 2,
             Self::Run(_) => 1,
             Self::Interrupted(signal) => exit_code(*signal),
+        })
+    }
+}
+
+/// For commands with an option `--force`.
+#[cfg(feature = "rerun")]
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::Run(match error {
+            WriteError::Exists { path } => {
+                format!(
+                    "`{}` already exists; `--force` replaces it, `--out` writes another file",
+                    path.display()
+                )
+            }
+            error => error.to_string(),
         })
     }
 }

@@ -63,8 +63,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
         recording.with_file_name(format!("{stem}-{time}.png"))
     });
     let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
-    write_atomically(&file, existing, |out| out.write_all(&picture))
-        .map_err(|error| Failure::Run(error.to_string()))?;
+    write_atomically(&file, existing, |out| out.write_all(&picture))?;
     say(&format!("{}: the frame at {}", quoted(&file.to_string_lossy()), quantity(frame.time, "s")));
     Ok(())
 }

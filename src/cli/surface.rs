@@ -51,7 +51,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mesh = surface_of(&body.positions, body.radius, &body.colors).map_err(|error| failed(&error))?;
     let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
-    write_atomically(&arguments.out, existing, |out| write(&mesh, out)).map_err(|error| failed(&error))?;
+    write_atomically(&arguments.out, existing, |out| write(&mesh, out))?;
     say(&format!(
         "{}: {} triangles, the frame at {}",
         quoted(&arguments.out.to_string_lossy()),

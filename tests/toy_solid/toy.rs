@@ -200,7 +200,7 @@ impl Rows {
             fit.inverse = moment.inverse().filter(|_| block.volume[k] > 0.0).unwrap_or_default();
             let h = spread * fit.inverse.to_matrix();
             let errors = self.pairs(first + k).map(|(_, share, x, u)| share * (h * x - u).length_squared());
-            block.misfit[k] = errors.sum();
+            block.residual[k] = errors.sum();
             block.gradient[k] = h;
             rows.deformation[k] = DMat3::IDENTITY + h;
         }

@@ -21,7 +21,7 @@ use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies};
 use meshless_engine::world::{
-    BodyId, BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus,
+    BodyId, BodySet, ColumnSet, DeformationGradient, HourglassGradient, HourglassModulus, HourglassResidual,
 };
 pub use resistance::AfterYield;
 use resistance::Resistance;
@@ -229,7 +229,7 @@ impl HourglassControl {
         let mut released = None;
         if state.iter().next().is_some() {
             sim.add_column_to::<HourglassModulus>(&bodies);
-            sim.add_column_to::<HourglassMisfit>(&bodies);
+            sim.add_column_to::<HourglassResidual>(&bodies);
             released = Some("hourglass_released".to_owned());
         }
         let term: Box<dyn FoldedTerm> = Box::new(Variational { alpha, after_yield: self.after_yield });

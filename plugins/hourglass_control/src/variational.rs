@@ -25,23 +25,23 @@ impl FoldedTerm for Variational {
     fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         let factor = self.alpha / 6.0;
         let mut energy = FoldedEnergy::default();
-        let changes = !rows.memory.misfit.is_empty();
+        let changes = !rows.memory.residual.is_empty();
         for k in 0..rows.deformation.len() {
             let modulus = self.after_yield.modulus(rows, k);
             let stiffness = factor * modulus;
             rows.stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.stress.add_stiffness(k, stiffness);
-            let misfit = 0.5 * rows.volume[k] * rows.misfit[k];
-            energy.stored += stiffness * misfit;
+            let residual = 0.5 * rows.volume[k] * rows.residual[k];
+            energy.stored += stiffness * residual;
             if changes {
                 let memory = &mut rows.memory;
-                let (before, error) = (memory.modulus[k], memory.misfit[k]);
+                let (before, error) = (memory.modulus[k], memory.residual[k]);
                 if before > 0.0 {
                     // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 e_n . e_n+1 beyond the change of energy.
-                    let both = 0.5 * rows.volume[k] * (error * rows.misfit[k]).max(0.0).sqrt();
+                    let both = 0.5 * rows.volume[k] * (error * rows.residual[k]).max(0.0).sqrt();
                     energy.released += factor * (before - modulus) * both;
                 }
-                (memory.modulus[k], memory.misfit[k]) = (modulus, rows.misfit[k]);
+                (memory.modulus[k], memory.residual[k]) = (modulus, rows.residual[k]);
             }
         }
         energy

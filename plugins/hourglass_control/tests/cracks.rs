@@ -175,8 +175,8 @@ fn energy(dimension: usize, reference: &[DVec3], volume: &[f64], holds: &[bool],
             moment.z_axis.z = 1.0;
         }
         let f = spread * moment.inverse();
-        let misfit: f64 = bonds.iter().map(|(w, big, now)| w * (f * *big - *now).length_squared()).sum();
-        sum += 5.0 / 12.0 * volume[i] * misfit;
+        let residual: f64 = bonds.iter().map(|(w, big, now)| w * (f * *big - *now).length_squared()).sum();
+        sum += 5.0 / 12.0 * volume[i] * residual;
     }
     sum
 }

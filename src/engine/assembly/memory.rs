@@ -1,33 +1,31 @@
-//! The number of particles that fit into memory.
+//! The memory that is left for particles.
 
 use std::fs::read_to_string;
-
-/// What a particle takes in columns, bonds and packed rows, B: the measured figure of a three-dimensional
-/// total-Lagrangian body at 54 neighbours, with a margin for the set-up.
-const BYTES_PER_PARTICLE: u64 = 1600;
 
 /// Memory of a machine that does not say what it has, B.
 const UNKNOWN: u64 = 16 << 30;
 
-/// The largest number of particles that fit the free memory.
-pub(super) fn particle_limit() -> usize {
+/// The memory that this process can still take, B.
+pub(super) fn free() -> usize {
     let free = [of_machine(), of_process(), of_group()].into_iter().flatten().min();
-    usize::try_from(free.unwrap_or(UNKNOWN) / BYTES_PER_PARTICLE).unwrap_or(usize::MAX)
+    usize::try_from(free.unwrap_or(UNKNOWN)).unwrap_or(usize::MAX)
 }
 
-/// What Linux says is available, B.
+/// The available memory of the machine, as Linux reports it, B.
 fn of_machine() -> Option<u64> {
     kilobytes(&read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// What the limit of the address space (`ulimit -v`) leaves, B.
+/// The rest of the limits of the address space (`ulimit -v`) and of the data (`ulimit -d`), B.
 fn of_process() -> Option<u64> {
-    let limit = address_space(&read_to_string("/proc/self/limits").ok()?)?;
-    let used = kilobytes(&read_to_string("/proc/self/status").ok()?, "VmSize:")?;
-    Some(limit.saturating_sub(used))
+    let (limits, status) =
+        (read_to_string("/proc/self/limits").ok()?, read_to_string("/proc/self/status").ok()?);
+    let rest =
+        |limit: &str, used: &str| Some(soft_limit(&limits, limit)?.saturating_sub(kilobytes(&status, used)?));
+    [rest("Max address space", "VmSize:"), rest("Max data size", "VmData:")].into_iter().flatten().min()
 }
 
-/// What the control group of a container or batch job leaves, B.
+/// The rest of the limit of the control group of a container or batch job, B.
 fn of_group() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").ok()?;
     let own = group_folders(&groups).into_iter().filter_map(|folder| {
@@ -39,9 +37,9 @@ fn of_group() -> Option<u64> {
     own.min()
 }
 
-/// The soft limit of the address space; none where it is unlimited.
-fn address_space(limits: &str) -> Option<u64> {
-    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+/// The soft limit of that name, B; none where it is unlimited.
+fn soft_limit(limits: &str, name: &str) -> Option<u64> {
+    let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
     line.split_whitespace().next()?.parse().ok()
 }
 
@@ -79,9 +77,11 @@ mod tests {
     #[test]
     fn limits_are_read_as_linux_writes_them() {
         let limits = "Limit                     Soft Limit           Hard Limit           Units\n\
+                      Max data size             1073741824           unlimited            bytes\n\
                       Max address space         2147483648           unlimited            bytes\n";
-        assert_eq!(address_space(limits), Some(2 << 30));
-        assert_eq!(address_space(&limits.replace("2147483648", "unlimited ")), None);
+        assert_eq!(soft_limit(limits, "Max data size"), Some(1 << 30));
+        assert_eq!(soft_limit(limits, "Max address space"), Some(2 << 30));
+        assert_eq!(soft_limit(&limits.replace("2147483648", "unlimited "), "Max address space"), None);
         assert_eq!(kilobytes("MemAvailable:    1024 kB\n", "MemAvailable:"), Some(1 << 20));
     }
 

@@ -42,13 +42,13 @@ pub(super) fn place_bodies<'r>(
             Err(found) => problems.extend(found),
         }
     }
-    let mut room = memory::particle_limit();
+    let mut memory_left = memory::free();
     let mut placed = Placed::default();
     for (k, body) in scene.bodies.iter().enumerate() {
         let place = || {
             let formulation = parse_formulation(registry, &body.formulation)?;
             let (sites, bounds) =
-                fill(body, formulation.0, scene, source.folder(), room).map_err(|error| {
+                fill(body, formulation.0, scene, source.folder(), memory_left).map_err(|error| {
                     let path = format!("bodies[{k}].{}", error.path);
                     vec![Problem::at_path(path, error.kind.to_string()).helps(error.kind.help())]
                 })?;
@@ -66,7 +66,7 @@ pub(super) fn place_bodies<'r>(
             None if scene.materials.contains_key(&body.material) => continue,
             None => Material::nothing(),
         };
-        room = room.saturating_sub(sites.len());
+        memory_left = memory_left.saturating_sub(sites.len() * formulation.0.bytes_per_particle);
         let plan = BodyPlan {
             id: BodyId(k),
             name: body.name.clone(),
@@ -120,7 +120,7 @@ fn fill(
     formulation: &FormulationEntry,
     scene: &Scene,
     folder: &Path,
-    limit: usize,
+    memory_left: usize,
 ) -> Result<(Vec<Site>, Aabb), shapes::FillError> {
     let sites = match endless_tool(body, formulation.name, scene, folder) {
         Some(sites) => sites,
@@ -130,7 +130,7 @@ fn fill(
                 spacing: body.spacing,
                 dimension: scene.dimension,
                 folder,
-                limit,
+                limit: memory_left / formulation.bytes_per_particle,
                 is_wall: formulation.kind == BodyKind::Boundary,
             };
             shapes::fill(&body.shape, filling)?

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::part::Part;
 use crate::notation::place;
+use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
@@ -101,7 +102,8 @@ impl Field {
         }
         let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
         let message = format!(
-            "the value must be finite, found {value} at the reference position {point} and {t:.6e} s"
+            "the value must be finite, found {value} at the reference position {point} and {}",
+            quantity(t, "s")
         );
         Err(StepError::System { system: by.to_owned(), message })
     }

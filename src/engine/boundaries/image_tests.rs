@@ -26,7 +26,7 @@ impl FoldedTerm for Stiff {
             let stiffness = 0.5 * rows.modulus[k];
             rows.stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.stress.add_stiffness(k, stiffness);
-            stored += 0.5 * stiffness * rows.volume[k] * rows.misfit[k];
+            stored += 0.5 * stiffness * rows.volume[k] * rows.residual[k];
         }
         FoldedEnergy { stored, released: 0.0 }
     }

@@ -8,6 +8,7 @@ use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
 use super::skin_load::{self, Kind, skins_of};
+use crate::notation::quantity;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{Step, StepError};
@@ -91,7 +92,8 @@ impl LoadLaw for Follower {
             let pressure = self.value.eval(point, t);
             if !pressure.is_finite() {
                 let message = format!(
-                    "the pressure must be finite, found {pressure} at the reference position {point} and {t:.6e} s"
+                    "the pressure must be finite, found {pressure} at the reference position {point} and {}",
+                    quantity(t, "s")
                 );
                 return Err(StepError::System { system: Pressure::NAME.to_owned(), message });
             }

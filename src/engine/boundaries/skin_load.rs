@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use super::field::Field;
+use crate::notation::quantity;
 use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
 use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
@@ -201,7 +202,8 @@ impl SkinLoad {
                 };
             if !force.is_finite() {
                 let message = format!(
-                    "the load must be finite, found {force} N at the reference position {middle} and {t:.6e} s"
+                    "the load must be finite, found {force} N at the reference position {middle} and {}",
+                    quantity(t, "s")
                 );
                 return Err(StepError::System { system: (*label).to_owned(), message });
             }

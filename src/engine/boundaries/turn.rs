@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::rigid_part::split_rigid;
+use crate::notation::quantity;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenRotation, checked_axis};
 use crate::scene::{Expression, Select, Vec3};
@@ -66,7 +67,7 @@ impl Drive for Rate {
         if rate.is_finite() {
             return Ok(DVec3::new(rate, 0.0, 0.0));
         }
-        let message = format!("the rate must be finite, found {rate} at {t:.6e} s");
+        let message = format!("the rate must be finite, found {rate} at {}", quantity(t, "s"));
         Err(StepError::System { system: Turn::NAME.to_owned(), message })
     }
 }

@@ -87,7 +87,7 @@ fn homogeneous_deformation_gives_the_closed_forms() {
         "min_principal_stress",
         "max_principal_stretch",
         "min_principal_stretch",
-        "hourglass_error",
+        "hourglass_residual",
         "kinetic_energy",
         "velocity.y",
         "deformation_gradient.xy",
@@ -145,13 +145,13 @@ fn homogeneous_deformation_gives_the_closed_forms() {
     assert_close(of("velocity.y")[0], 4.0, 5.0, "velocity.y");
     assert_close(of("kinetic_energy")[0], 0.5 * 1000.0 * 1e-4 * 25.0, 1.0, "kinetic_energy");
     // An affine motion has no hourglass error.
-    assert!(of("hourglass_error")[0] < 1e-13, "{:?}", of("hourglass_error"));
+    assert!(of("hourglass_residual")[0] < 1e-13, "{:?}", of("hourglass_residual"));
 }
 
 #[test]
-fn the_hourglass_error_is_that_of_a_naive_sum() {
+fn the_hourglass_residual_is_that_of_a_naive_sum() {
     let place = |x: DVec3| x + 1e-3 * DVec3::new((500.0 * x.y).sin(), (700.0 * x.x).cos(), 0.0);
-    let (values, sim) = report(place, &["hourglass_error", "neighbors"]);
+    let (values, sim) = report(place, &["hourglass_residual", "neighbors"]);
     let (view, rows) = sim.world().body_view(BodyId(0));
     let x = view.read::<Position>().unwrap();
     let reference = view.read::<ReferencePosition>().unwrap();
@@ -168,6 +168,6 @@ fn the_hourglass_error_is_that_of_a_naive_sum() {
     }
     let expected = (sum / count).sqrt();
     assert!(expected > 0.01);
-    assert_close(values[0][0], expected, expected, "hourglass_error");
+    assert_close(values[0][0], expected, expected, "hourglass_residual");
     assert_eq!(values[1][0], count);
 }

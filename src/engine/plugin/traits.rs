@@ -54,6 +54,10 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     /// What it takes for its bodies from plugins, conditions and contacts. All else that is asked of them is an error of the scene.
     const OFFERS: &'static [Offer];
 
+    /// Memory of a particle in columns, neighbours and packed rows while a run starts, B: more particles than fit are an error of the scene. The default is
+    /// that of a total-Lagrangian body in three dimensions.
+    const BYTES_PER_PARTICLE: usize = 1600;
+
     /// Mean support radius of the particles of a body, m; none where these have no neighbours of their own.
     fn support(&self, _body: &BodyPlan) -> Option<f64> {
         None

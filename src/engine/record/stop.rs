@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::probe::{EnergyColumns, Gauge, Probe};
 use crate::fields::FieldTable;
-use crate::notation::{number, quantity};
+use crate::notation::{quantity, quantity_to};
 use crate::plugin::SimBuilder;
 use crate::scene::{Problem, StopWhen};
 use crate::schedule::Trigger;
@@ -86,7 +86,8 @@ impl Condition {
         Ok(passed.filter(|_| before == Some(false)).map(|(side, limit)| {
             let column = self.when.column.as_ref().map(|column| format!(".{column}")).unwrap_or_default();
             let name = &self.when.probe;
-            format!("probe `{name}{column}` is {side} {}: {}", number(limit), quantity(value, unit))
+            let (limit, value) = (quantity(limit, unit), quantity_to(value, unit, 6));
+            format!("probe `{name}{column}` is {side} {limit}: {value}")
         }))
     }
 }

@@ -13,6 +13,7 @@ pub struct Contact {
     /// with `grain`: `("grain*", "floor")` is each of them with the floor, `("grain*", "grain*")` each with each other.
     pub between: (String, String),
     /// How the force follows from the overlap of the surfaces: `Penalty`, `Hertz`.
+    #[serde(default = "penalty")]
     pub law: Item,
     /// Coulomb's coefficient of friction \[-\].
     #[serde(default)]
@@ -40,6 +41,10 @@ pub enum ContactSurface {
     Skin,
     /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.
     Particles,
+}
+
+fn penalty() -> Item {
+    Item::bare("Penalty")
 }
 
 impl Contact {

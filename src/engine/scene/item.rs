@@ -39,6 +39,11 @@ impl Item {
         }
     }
 
+    /// A name without parameters that stands in no file: a default.
+    pub(super) fn bare(name: &str) -> Self {
+        Self { name: name.to_owned(), text: name.to_owned(), start: 0, symbols: Arc::default() }
+    }
+
     /// The name by which a registry knows the thing.
     pub fn name(&self) -> &str {
         &self.name

@@ -1,6 +1,7 @@
 //! The literals of RON: numbers, quoted and raw texts, characters.
 
 use super::Problem;
+use super::slips::attached_unit;
 use super::syntax::Reader;
 use super::tree::Kind;
 
@@ -20,8 +21,8 @@ impl Reader<'_> {
         }
         let text = &self.text[start..self.at];
         parse_number(text).ok_or_else(|| {
-            self.problem(start..self.at, format!("`{text}` is not a number"))
-                .help("numbers are written 1, -2.5, 3.0e6")
+            let help = attached_unit(text).unwrap_or_else(|| "numbers are written 1, -2.5, 3.0e6".into());
+            self.problem(start..self.at, format!("`{text}` is not a number")).help(help)
         })
     }
 

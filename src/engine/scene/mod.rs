@@ -25,6 +25,7 @@ mod problem;
 mod record;
 mod reference;
 mod select;
+mod slips;
 mod source;
 mod symbols;
 mod syntax;

@@ -1,5 +1,7 @@
 //! The nearest known name to a misspelt one.
 
+use super::slips::synonym;
+
 /// Signs of a name that errors show.
 const LONGEST_NAME: usize = 80;
 
@@ -7,7 +9,7 @@ const LONGEST_NAME: usize = 80;
 /// `kind` says what is named, in the singular: `plugin`, `material`.
 pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, Vec<String>) {
     let mut help = Vec::new();
-    if let Some(near) = nearest(name, known) {
+    if let Some(near) = synonym(name, known).or_else(|| nearest(name, known)) {
         help.push(format!("did you mean `{near}`?"));
     }
     if known.is_empty() {
@@ -44,7 +46,9 @@ pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str>
             best = Some((likeness, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    let contains = |candidate: &&str| wanted.len() > 3 && candidate.to_lowercase().contains(&wanted);
+    let longer = || known.iter().map(AsRef::as_ref).filter(contains).min_by_key(|candidate| candidate.len());
+    best.map(|(_, candidate)| candidate).or_else(longer)
 }
 
 #[cfg(test)]
@@ -58,6 +62,8 @@ mod tests {
         assert_eq!(nearest("HourglassControl", &known), Some("hourglass_control"));
         assert_eq!(nearest("hourglass", &known), Some("hourglass_control"));
         assert_eq!(nearest("spam", &known), None);
+        assert_eq!(nearest("mises", &["von_mises", "max_von_mises", "mass"]), Some("von_mises"));
+        assert_eq!(nearest("Level", &["Energy", "WaterLevel"]), Some("WaterLevel"));
         assert_eq!(nearest("colour", &["color", "count"]), Some("color"));
     }
 }

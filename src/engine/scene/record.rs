@@ -20,7 +20,7 @@ pub struct Record {
     /// interrupted run leaves one in any case.
     #[serde(default = "yes")]
     pub checkpoint_at_end: bool,
-    /// Whether each frame is also written as a ParaView file.
+    /// Whether each frame is also written as ParaView files, `<scene>_<body>_<frame>.vtu`, with `<scene>.pvd` for their times.
     #[serde(default)]
     pub vtk: bool,
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::Problem;
+use super::slips;
 use super::tree::{Field, Kind, Node, Word};
 
 /// Deeper nesting than any scene has is refused, so that no text can exhaust the stack.
@@ -203,7 +204,12 @@ impl<'a> Reader<'a> {
             Kind::Fields(self.entries(')', |reader| {
                 reader.skip_space()?;
                 if !reader.peek().is_some_and(starts_word) {
-                    return Err(reader.unexpected("the name of a field"));
+                    let problem = reader.unexpected("the name of a field");
+                    let is_digit = reader.peek().is_some_and(|c| c.is_ascii_digit());
+                    let help = is_digit.then(|| {
+                        "a number has a decimal point, `1.5`; a vector has brackets, `(1, 5)`".into()
+                    });
+                    return Err(problem.helps(help));
                 }
                 let name = reader.word();
                 reader.expect(':', &format!("`:` and the value of `{}`", name.text))?;
@@ -238,7 +244,11 @@ impl<'a> Reader<'a> {
                 Some(',') => self.at += 1,
                 Some(c) if c == close => break,
                 None | Some(')' | ']' | '}') => return Err(self.unclosed(open, close)),
-                Some(_) => return Err(self.unexpected(&format!("`,` or `{close}`"))),
+                Some(_) => {
+                    let problem = self.unexpected(&format!("`,` or `{close}`"));
+                    let help = slips::after_number(&self.text[..self.at], self.rest());
+                    return Err(problem.helps(help));
+                }
             }
         }
         self.at += 1;

@@ -7,6 +7,7 @@ use super::ledger::Ledger;
 use super::limits::TimeStepLimits;
 use super::resources::Resources;
 use super::turn::Turn;
+use crate::notation::{quantity, quantity_to};
 use crate::world::{MissingColumn, World};
 
 /// Where the run is in time.
@@ -59,7 +60,7 @@ pub enum StepError {
     #[error(transparent)]
     MissingColumn(#[from] MissingColumn),
     /// A particle has left the range of what makes sense.
-    #[error("{what} at particle {particle} of body `{body}`, step {step}, time {time:.6e} s{detail}")]
+    #[error("{what} at particle {particle} of body `{body}`, step {step}, time {}{detail}", quantity_to(*.time, "s", 6))]
     Unstable {
         /// What went wrong.
         what: String,
@@ -76,9 +77,11 @@ pub enum StepError {
     },
     /// The bodies hold far more energy than they were given.
     #[error(
-        "the stored energy has grown to {stored:.3e} J, more than {factor} times the {available:.3e} J that were there \
-         at the start or supplied, at step {step}, time {time:.6e} s; most of it is `{account}` energy of body \
-         `{body}`: the run is unstable, a smaller time step or a damping may help"
+        "the stored energy has grown to {}, more than {factor} times the {} present at the start or supplied since, at step {step}, \
+         time {}; most of it is `{account}` energy of body `{body}`: the run is unstable, a smaller time step or a damping may help",
+        quantity(*.stored, "J"),
+        quantity(*.available, "J"),
+        quantity_to(*.time, "s", 6)
     )]
     EnergyGrowth {
         /// Energy stored now, J.

@@ -216,6 +216,7 @@ impl FillErrorKind {
 /// An estimate of a number of particles.
 fn particles(estimate: f64) -> String {
     match estimate {
+        _ if estimate < 1e9 => format!("about {} particles", digits(estimate as u64)),
         _ if estimate.is_finite() => format!("about {} particles", number(estimate)),
         _ => "too many particles to count".into(),
     }

@@ -19,8 +19,8 @@ use crate::parallel::{Split, for_each_block};
 use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
 use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
 use crate::world::{
-    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassMisfit,
-    HourglassModulus, PhaseId, PhaseView, PiolaStress,
+    BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassModulus,
+    HourglassResidual, PhaseId, PhaseView, PiolaStress,
 };
 
 /// A body of a solid formulation.
@@ -140,7 +140,7 @@ impl SolidBodies {
         let mut columns = ColumnSet::default();
         bodies.iter().for_each(|body| body.law.state(&mut columns));
         if sim.columns(phase).get(HourglassModulus::NAME).is_some() {
-            columns.add::<HourglassModulus>().add::<HourglassMisfit>();
+            columns.add::<HourglassModulus>().add::<HourglassResidual>();
         }
         if !damped.is_empty() {
             columns.add::<DampedStrain>().add::<DampingStress>();

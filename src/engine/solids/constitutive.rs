@@ -11,7 +11,7 @@ use super::refit::{self, Refits};
 use crate::materials::{SolidLaw, StateRows, StressRows};
 use crate::parallel::{BLOCK, BlockSum, split_by_rows};
 use crate::world::{
-    DeformationGradient, HourglassGradient, HourglassMisfit, HourglassModulus, MissingColumn, PhaseView,
+    DeformationGradient, HourglassGradient, HourglassModulus, HourglassResidual, MissingColumn, PhaseView,
     PiolaStress,
 };
 
@@ -81,7 +81,7 @@ pub struct SolidColumns<'a> {
     /// First Piola-Kirchhoff stress P.
     pub stress: hecs::ArchetypeColumnMut<'a, PiolaStress>,
     modulus: Option<hecs::ArchetypeColumnMut<'a, HourglassModulus>>,
-    misfit: Option<hecs::ArchetypeColumnMut<'a, HourglassMisfit>>,
+    residual: Option<hecs::ArchetypeColumnMut<'a, HourglassResidual>>,
     gradient: Option<hecs::ArchetypeColumnMut<'a, HourglassGradient>>,
     strain: Option<hecs::ArchetypeColumnMut<'a, DampedStrain>>,
     damping: Option<hecs::ArchetypeColumnMut<'a, DampingStress>>,
@@ -97,7 +97,7 @@ impl<'a> SolidColumns<'a> {
             deformation: view.write()?,
             stress: view.write()?,
             modulus: view.write().ok(),
-            misfit: view.write().ok(),
+            residual: view.write().ok(),
             gradient: view.write().ok(),
             strain: view.write().ok(),
             damping: view.write().ok(),
@@ -117,7 +117,7 @@ impl<'a> SolidColumns<'a> {
             state,
             memory: FoldedMemory {
                 modulus: self.modulus.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
-                misfit: self.misfit.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
+                residual: self.residual.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
                 gradient: self.gradient.as_deref_mut().map_or(&mut [], |all| rows_of(all, rows)),
             },
             damping: match (&mut self.strain, &mut self.damping) {
@@ -151,14 +151,14 @@ pub struct SolidRows<'a> {
 
 split_by_rows!(SolidRows { deformation, stress, state, memory, damping });
 
-/// What is known of a block of particles on its way through the pass. The formulation fills gradient, misfit and volume.
+/// What is known of a block of particles on its way through the pass. The formulation fills gradient, residual and volume.
 pub struct SolidBlock {
     /// Row of its first particle in the phase.
     pub first: usize,
     /// Displacement gradient H = F - I, with all digits of a small strain.
     pub gradient: [DMat3; BLOCK],
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
-    pub misfit: [f64; BLOCK],
+    pub residual: [f64; BLOCK],
     /// Reference volume V_0, m3.
     pub volume: [f64; BLOCK],
     /// Strain energy per reference volume, J/m3.
@@ -178,7 +178,7 @@ thread_local! {
         RefCell::new(SolidBlock {
             first: 0,
             gradient: [DMat3::ZERO; BLOCK],
-            misfit: [0.0; BLOCK],
+            residual: [0.0; BLOCK],
             volume: [0.0; BLOCK],
             energy: [0.0; BLOCK],
             modulus: [0.0; BLOCK],
@@ -300,7 +300,7 @@ impl Constitutive<'_> {
             modulus: &block.modulus[..n],
             strength: &block.strength[..n],
             memory: rows.memory.part(0..n),
-            misfit: &block.misfit[..n],
+            residual: &block.residual[..n],
             volume: &block.volume[..n],
             stress: CorrectedStressRows(stress),
         }

@@ -17,8 +17,9 @@ pub(crate) fn add_fields(sim: &mut SimBuilder<'_>) {
 /// The fields.
 pub(crate) fn fields() -> [Field; 2] {
     let needs = vec![DeformationGradient::NAME, Position::NAME, ReferencePosition::NAME];
-    let error = Field::with_input("hourglass_error", "1", &[""], needs, hourglass_error);
-    let error = error.about("Root mean square error of the affine motion of the neighbours");
+    let error = Field::with_input("hourglass_residual", "1", &[""], needs, hourglass_residual);
+    let error =
+        error.about("Hourglass residual: root mean square deviation of the neighbours from an affine motion");
     let neighbors = Field::with_input("neighbors", "1", &[""], Vec::new(), neighbors);
     let neighbors = neighbors.about("Number of neighbours");
     [error, neighbors].map(|field| field.only_for(BodyKind::Solid))
@@ -26,7 +27,7 @@ pub(crate) fn fields() -> [Field; 2] {
 
 /// Root mean square of |F_i X_ij - x_ij| / |X_ij| over the neighbours. At a crack it is that of the neighbours that hold, with the F that fits these, as
 /// the control sees it; zero for a particle that has failed or has too few neighbours.
-fn hourglass_error(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
+fn hourglass_residual(input: &FieldInput<'_>, out: &mut Vec<f64>) -> Result<(), MissingColumn> {
     let (view, _) = input.world.body_view(input.body);
     let Some(solid) = input.resources.solid(input.world.body(input.body).phase) else { return Ok(()) };
     let gradient = view.read::<DeformationGradient>()?;

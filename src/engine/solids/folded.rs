@@ -25,7 +25,7 @@ pub struct FoldedRows<'a> {
     /// What terms leave in columns.
     pub memory: FoldedMemory<'a>,
     /// Error of the mean deformation, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`, m2 times the unit of V w.
-    pub misfit: &'a [f64],
+    pub residual: &'a [f64],
     /// Reference volume V_i, m3.
     pub volume: &'a [f64],
     /// Corrected stress A_i and bond stiffness k_i, to be added to.
@@ -41,7 +41,7 @@ impl FoldedRows<'_> {
             modulus: &self.modulus[rows.clone()],
             strength: &self.strength[rows.clone()],
             memory: self.memory.part(rows.clone()),
-            misfit: &self.misfit[rows.clone()],
+            residual: &self.residual[rows.clone()],
             volume: &self.volume[rows.clone()],
             stress: CorrectedStressRows(&mut self.stress.0[rows]),
         }
@@ -54,8 +54,8 @@ impl FoldedRows<'_> {
 pub struct FoldedMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
     pub modulus: &'a mut [f64],
-    /// Error of the mean deformation: column [`HourglassMisfit`](crate::world::HourglassMisfit).
-    pub misfit: &'a mut [f64],
+    /// Error of the mean deformation: column [`HourglassResidual`](crate::world::HourglassResidual).
+    pub residual: &'a mut [f64],
     /// Deformation gradient that fits the neighbours that hold: column [`HourglassGradient`](crate::world::HourglassGradient).
     pub gradient: &'a mut [DMat3],
 }
@@ -63,16 +63,16 @@ pub struct FoldedMemory<'a> {
 impl FoldedMemory<'_> {
     /// Some of the rows.
     pub(super) fn part(&mut self, rows: Range<usize>) -> FoldedMemory<'_> {
-        let Self { modulus, misfit, gradient } = self;
+        let Self { modulus, residual, gradient } = self;
         FoldedMemory {
             modulus: modulus.get_mut(rows.clone()).unwrap_or_default(),
-            misfit: misfit.get_mut(rows.clone()).unwrap_or_default(),
+            residual: residual.get_mut(rows.clone()).unwrap_or_default(),
             gradient: gradient.get_mut(rows).unwrap_or_default(),
         }
     }
 }
 
-split_by_rows!(FoldedMemory { modulus, misfit, gradient });
+split_by_rows!(FoldedMemory { modulus, residual, gradient });
 
 /// What a folded term tells of the energy of a block, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -63,7 +63,7 @@ column! {
     /// Modulus that hourglass control resists with.
     pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
     /// Hourglass residual of the last step, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
-    pub struct HourglassMisfit(f64) = "hourglass_misfit", "e^2", "1";
+    pub struct HourglassResidual(f64) = "hourglass_residual_before", "e^2", "1";
     /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the neighbours that hold.
     pub struct HourglassGradient(DMat3) = "hourglass_gradient", "F_h", "1";
 }

@@ -44,10 +44,10 @@ fn cantilever_large(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let end = simulation.end();
     run_until(&mut simulation, end)?;
     let with = disorder.measure(&simulation)?;
-    checks.push(Check::below("disorder at 8 mm", with, 0.05, "coherent"));
+    checks.push(Check::below("hourglass residual at 8 mm", with, 0.05, "coherent"));
     let without = disorder_without(registry, across)?;
     checks.push(Check::above(
-        "disorder at 8 mm without over with control",
+        "hourglass residual at 8 mm without over with control",
         without / with,
         10.0,
         "particles pair",

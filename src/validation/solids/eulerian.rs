@@ -121,8 +121,8 @@ fn tension(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "Pa",
             "E' ln(1.45)",
         ),
-        Check::below("hourglass error at 0.45", disorder, 0.05, "smooth"),
-        Check::above("hourglass error without control at 0.2", free, 0.3, "numerical fracture"),
+        Check::below("hourglass residual at 0.45", disorder, 0.05, "smooth"),
+        Check::above("hourglass residual without control at 0.2", free, 0.3, "numerical fracture"),
     ])
 }
 

@@ -54,18 +54,18 @@ fn patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let name = |what: &str| format!("alpha {alpha}: {what}");
         let (disorder, closest) = (history.disorder, history.closest);
         checks.extend(history.period_and_energy(name)?);
-        let order = name("disorder over 200 periods");
+        let order = name("hourglass residual over 200 periods");
         if alpha == STIFF {
             checks.push(Check::below(order, disorder, 0.05, "coherent"));
             let near = name("least of |x| / |F X| in 200 periods");
             checks.push(Check::above(near, closest, 0.5, "coherent"));
         } else {
-            checks.push(Check::below(order, disorder, 0.3, "not disordered"));
+            checks.push(Check::below(order, disorder, 0.3, "bounded"));
         }
     }
     let without = breathe(registry, across, Control::Alpha(0.0), 8.0)?;
     checks.push(Check::above(
-        "disorder within 8 periods without control",
+        "hourglass residual within 8 periods without control",
         without.disorder,
         0.3,
         "disordered",

@@ -64,8 +64,8 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         checks.push(Check::new(name, at(compression)?, reaction, tolerance, "N/m", SOURCE));
     }
     checks.extend([
-        Check::below("disorder with control", worst, smooth, "smooth"),
-        Check::above("disorder without control", spoiled, 0.3, "pairing"),
+        Check::below("hourglass residual with control", worst, smooth, "smooth"),
+        Check::above("hourglass residual without control", spoiled, 0.3, "pairing"),
         Check::below("energy balance error", energy, 1e-2, "energy is conserved"),
     ]);
     Ok(checks)

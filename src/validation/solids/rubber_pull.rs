@@ -46,9 +46,9 @@ fn rubber_pull(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         checks.push(Check::below(name("top over bottom force"), (top / bottom + 1.0).abs(), 1e-3, "at rest"));
     }
     let with = disorder.measure(&simulation)?;
-    checks.push(Check::below("disorder at 6 times the length", with, 0.3, "not spoiled"));
+    checks.push(Check::below("hourglass residual at 6 times the length", with, 0.3, "not spoiled"));
     checks.push(Check::above(
-        "disorder without control",
+        "hourglass residual without control",
         disorder_without(registry, across)?,
         0.3,
         "spoiled",

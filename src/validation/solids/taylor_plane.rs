@@ -43,9 +43,9 @@ fn taylor_plane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         "Ganzenmueller 2015, section 4.5",
     ));
     let (_, free) = bar(registry, across, "")?;
-    checks.push(Check::above("hourglass error without control", free, 0.3, "disorder"));
+    checks.push(Check::above("hourglass residual without control", free, 0.3, "disorder"));
     checks.push(Check::below(
-        "hourglass error with control over that without",
+        "hourglass residual with control over that without",
         disorder / free,
         0.5,
         "order",

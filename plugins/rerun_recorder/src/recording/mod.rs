@@ -1,6 +1,7 @@
 //! The recording itself, written with rerun.
 
 mod add;
+mod arrays;
 mod blueprint;
 mod color_scale;
 mod error;

@@ -2,11 +2,12 @@
 
 use meshless_engine::record::{BodyFrame, Existing, Frame, RecordError, Recorder, RunInfo, Sample};
 use meshless_engine::scene::Dimension;
-use re_sdk_types::archetypes::{Points3D, Scalars, TextDocument, Transform3D, ViewCoordinates};
+use re_sdk_types::archetypes::{TextDocument, Transform3D, ViewCoordinates};
 use re_sdk_types::components::{Color, MediaType, Radius};
 use re_sdk_types::datatypes::ViewDir;
 use rerun::EntityPath;
 
+use super::arrays;
 use super::color_scale::{ColorScale, RunningScale};
 use super::error::RerunError;
 use super::layout::Layout;
@@ -162,16 +163,14 @@ impl RerunFile {
                 1.0
             };
             let radius = Radius::from(body.radius * size * self.settings.radius_scale as f32);
-            let points = Points3D::new(body.positions.iter().copied())
-                .with_colors(colors(shown, scale, map))
-                .with_radii([radius]);
+            let points = arrays::points(body.positions, &colors(shown, scale, map)).with_radii([radius]);
             open.output.log(&paths::body(body.name), &points)?;
             if self.settings.surfaces.iter().any(|name| name == body.name) {
                 show_surface(&open.output, body, &colors(shown, scale, map))?;
             }
             for field in body.fields.iter().filter(|field| self.fields.iter().any(|name| name == field.name))
             {
-                let numbers = Scalars::new(field.values.iter().copied());
+                let numbers = arrays::scalars(field.values);
                 open.output.log(&paths::field(body.name, field.name), &numbers)?;
             }
         }
@@ -248,8 +247,7 @@ impl Open {
     /// Shows the particles of the first frame for good, as dots.
     fn show_undeformed(&self, frame: &Frame<'_>) -> Result<(), RerunError> {
         for body in frame.bodies {
-            let points = Points3D::new(body.positions.iter().copied())
-                .with_colors([Color::from_rgb(60, 62, 66)])
+            let points = arrays::points(body.positions, &[Color::from_rgb(60, 62, 66)])
                 .with_radii([Radius::from(0.5 * SEEN_THROUGH * body.radius)]);
             self.output.log_static(&paths::undeformed(body.name), &points)?;
         }

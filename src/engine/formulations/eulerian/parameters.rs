@@ -77,6 +77,7 @@ impl Formulation for Eulerian {
     const REFERENCE: &'static str =
         "Eulerian-kernel SPH of solids: N. Mohseni-Mofidi, C. Bierwisch, Comput. Part. Mech. (2020)";
     const KIND: BodyKind = BodyKind::Solid;
+    const BYTES_PER_PARTICLE: usize = 6200;
     const OFFERS: &'static [Offer] = &[
         Offer::PairTerms,
         Offer::PairControl,

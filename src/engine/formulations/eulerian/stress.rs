@@ -256,7 +256,7 @@ impl StressPass<'_> {
             block.gradient[k] = *f - DMat3::IDENTITY;
             block.volume[k] = if points[first + k].place.0[3] > 0.0 { self.volume[first + k].0 } else { 0.0 };
         }
-        block.misfit[..n].fill(0.0);
+        block.residual[..n].fill(0.0);
         let around = &*near.around;
         let share = |k: usize| if around[k].inverse_moment == Sym3::ZERO { 0.0 } else { 1.0 };
         let mut sum = SolidSum::default();

@@ -9,6 +9,7 @@ use super::cloud::FlowCloud;
 use super::near::RowPass;
 use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
+use crate::notation::quantity;
 use crate::parallel::{Arithmetic, Number};
 use crate::schedule::Step;
 
@@ -48,9 +49,9 @@ impl Filling {
             let name = &step.world.body(group.body).name;
             let begin = format!("the particles of `{name}` do not fill ");
             let text = format!(
-                "{begin}the space that they have: inside of it their volumes m/rho make up {:.1} % of it at {:.6e} s; {}",
+                "{begin}the space that they have: inside of it their volumes m/rho make up {:.1} % of it at {}; {}",
                 100.0 * mean,
-                step.clock.time,
+                quantity(step.clock.time, "s"),
                 if mean < 1.0 {
                     "there are gaps, or the flow has swollen: a confined flow wants a pressure above zero, others weaker shifting or none"
                 } else {

@@ -45,6 +45,7 @@ impl Formulation for Fluid {
     const REFERENCE: &'static str = "fluid boundaries: S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057-7075; \
          laminar viscosity: J. P. Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214-226";
     const KIND: BodyKind = BodyKind::Fluid;
+    const BYTES_PER_PARTICLE: usize = 1800;
     const OFFERS: &'static [Offer] = &[Offer::PairTerms];
 
     fn columns(columns: &mut ColumnSet) {

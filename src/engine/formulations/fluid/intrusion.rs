@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 
 use super::cloud::{FlowCloud, Group};
 use super::surface_distance::{apart, dyad};
+use crate::notation::quantity;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
@@ -90,12 +91,12 @@ impl Intrusion {
         let name = |group: &Group| &step.world.body(group.body).name;
         let x = cloud.records[fluid.cloud.start + deepest.row].position();
         step.warnings.push(format!(
-            "particle {id} of `{}` is inside of `{}`, {:.3e} m below its surface, at {x} and {:.6e} s{}: nothing may enter a body; more \
+            "particle {id} of `{}` is inside of `{}`, {} below its surface, at {x} and {}{}: nothing may enter a body; more \
              particles across it, a larger `sound_speed`, `density_diffusion()` or a smaller step may keep them out",
             name(fluid),
             name(other),
-            deepest.depth,
-            step.clock.time,
+            quantity(deepest.depth, "m"),
+            quantity(step.clock.time, "s"),
             if deepest.count > 1 { format!(", and {} others", deepest.count - 1) } else { String::new() }
         ));
         Ok(())

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::cloud::{FluidState, Group};
 use super::record::Record;
+use crate::notation::quantity;
 use crate::schedule::{Step, StepError};
 
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is chosen for. The density then changes by 4 %.
@@ -69,9 +70,9 @@ impl Mach {
         }
         if mach >= 1.0 {
             let message = format!(
-                "the flow of `{name}` has reached {speed:.4} m/s at {:.6e} s, faster than its sound of {sound:.4} m/s: it no longer behaves as a liquid; \
+                "the flow of `{name}` has reached {speed:.4} m/s at {}, faster than its sound of {sound:.4} m/s: it no longer behaves as a liquid; \
                  give ten times the largest speed of the flow as `sound_speed` of its material",
-                step.clock.time
+                quantity(step.clock.time, "s")
             );
             return Err(StepError::System { system: "fluid_pressure".to_owned(), message });
         }

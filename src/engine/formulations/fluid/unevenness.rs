@@ -11,6 +11,7 @@
 use super::cloud::FlowCloud;
 use super::density::DensityShift;
 use super::friction::{Friction, FrictionOf};
+use crate::notation::quantity;
 use crate::schedule::Step;
 
 /// Share of the particles that have to be inside: a flow with a free surface is left alone.
@@ -63,15 +64,17 @@ impl Unevenness {
 
 fn uneven_text(name: &str, time: f64, mean: f64) -> String {
     format!(
-        "the particles of `{name}` have become uneven by {time:.6e} s (first moment times h {mean:.3}): friction between them is too large, a channel loses a tenth of its \
-         flux; give it `plugins: [density_diffusion(), particle_shifting()]`, or start it with a pressure of some rho v^2"
+        "the particles of `{name}` have become uneven by {} (first moment times h {mean:.3}): friction between them is too large, a channel loses a tenth of its \
+         flux; give it `plugins: [density_diffusion(), particle_shifting()]`, or start it with a pressure of some rho v^2",
+        quantity(time, "s")
     )
 }
 
 fn stiff_text(name: &str, time: f64, ratio: f64) -> String {
     format!(
-        "the particles of `{name}` resist as a solid does by {time:.6e} s: where they are sheared, pressure times unevenness is {ratio:.2} of the stress of friction, and a body \
-         that they flow around is too slow by a third of that; take a smaller constant in `pressure`, `plugins: [density_diffusion(), particle_shifting()]`, or a wider `support`"
+        "the particles of `{name}` resist as a solid does by {}: where they are sheared, pressure times unevenness is {ratio:.2} of the stress of friction, and a body \
+         that they flow around is too slow by a third of that; take a smaller constant in `pressure`, `plugins: [density_diffusion(), particle_shifting()]`, or a wider `support`",
+        quantity(time, "s")
     )
 }
 

@@ -80,7 +80,7 @@ impl DeformationPass<'_> {
             first,
             deformation: rows.deformation,
             gradient: &mut block.gradient,
-            misfit: &mut block.misfit,
+            residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut block.volume,
         };

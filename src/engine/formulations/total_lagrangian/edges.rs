@@ -15,7 +15,7 @@ use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum
 /// The displacement gradient that fits the neighbours which count, and its error.
 struct Fit {
     gradient: DMat3,
-    misfit: f64,
+    residual: f64,
     /// Whether there are enough neighbours for one.
     is_one: bool,
 }
@@ -100,7 +100,7 @@ impl DeformationPass<'_> {
         let mut moment = MomentMatrix::new(if self.plane { 2 } else { 3 });
         self.bonds_of(i, &counts).for_each(|bond| moment.add(bond.weight, bond.arm));
         let Some(inverse) = moment.inverse() else {
-            return Fit { gradient: of_all, misfit: 0.0, is_one: false };
+            return Fit { gradient: of_all, residual: 0.0, is_one: false };
         };
         let mut gradient = DMat3::ZERO;
         // What holds may be nearly a plane, and its inverse lose digits: the second time finds them again.
@@ -113,7 +113,7 @@ impl DeformationPass<'_> {
             gradient += rest * inverse.to_matrix();
         }
         let error = |bond: Bond| bond.weight * (gradient * bond.arm - bond.change).length_squared();
-        Fit { gradient, misfit: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
+        Fit { gradient, residual: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
     }
 
     /// The power, W, of what a term has added, on the particle and on the neighbours that count.
@@ -145,7 +145,7 @@ fn add_fitted(term: &dyn FoldedTerm, row: &mut FoldedRows<'_>, fit: &Fit) -> (Fo
     let modulus = if fit.is_one { row.modulus[0] } else { 0.0 };
     let energy = term.add(&mut FoldedRows {
         displacement_gradient: &[fit.gradient],
-        misfit: &[fit.misfit],
+        residual: &[fit.residual],
         modulus: &[modulus],
         ..row.part(0..1)
     });

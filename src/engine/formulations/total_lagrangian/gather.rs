@@ -17,7 +17,7 @@ pub(in crate::formulations) struct Gather<'a> {
     pub first: usize,
     pub deformation: &'a mut [DMat3],
     pub gradient: &'a mut [DMat3; BLOCK],
-    pub misfit: &'a mut [f64; BLOCK],
+    pub residual: &'a mut [f64; BLOCK],
     /// `sum_j V_j w_ij u_ij`.
     pub stretch: &'a mut [DVec3; BLOCK],
     pub volume: &'a mut [f64; BLOCK],
@@ -26,7 +26,7 @@ pub(in crate::formulations) struct Gather<'a> {
 impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, sites, first, deformation, gradient, misfit, stretch, volume } = self;
+        let Self { bonds, sites, first, deformation, gradient, residual, stretch, volume } = self;
         for (k, f_i) in deformation.iter_mut().enumerate() {
             let i = first + k;
             let site = sites[i];
@@ -51,7 +51,7 @@ impl PlaneOrSolid for Gather<'_> {
             let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
             let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
-            misfit[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
+            residual[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
             stretch[k] = stretched.xyz();
             volume[k] = site.reference.0[3];
             gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
@@ -69,7 +69,7 @@ pub(in crate::formulations) fn fit_gradients(
     gradient: &mut [DMat3],
 ) {
     for_each_block(gradient, &mut Vec::new(), &|start, gradient: &mut [DMat3]| {
-        let (mut fitted, mut misfit) = ([DMat3::ZERO; BLOCK], [0.0; BLOCK]);
+        let (mut fitted, mut residual) = ([DMat3::ZERO; BLOCK], [0.0; BLOCK]);
         let (mut stretch, mut volume) = ([DVec3::ZERO; BLOCK], [0.0; BLOCK]);
         let gather = Gather {
             bonds,
@@ -77,7 +77,7 @@ pub(in crate::formulations) fn fit_gradients(
             first: first + start,
             deformation: &mut *gradient,
             gradient: &mut fitted,
-            misfit: &mut misfit,
+            residual: &mut residual,
             stretch: &mut stretch,
             volume: &mut volume,
         };

@@ -33,7 +33,7 @@ pub(super) struct ControlFit<'a> {
     pub sites: &'a [Site],
     pub rows: Range<usize>,
     pub gradient: &'a mut [DMat3; BLOCK],
-    pub misfit: &'a mut [f64; BLOCK],
+    pub residual: &'a mut [f64; BLOCK],
     pub volume: &'a mut [f64; BLOCK],
     /// Whether there are enough neighbours for a fit.
     pub fitted: &'a mut [bool; BLOCK],
@@ -42,7 +42,7 @@ pub(super) struct ControlFit<'a> {
 impl PlaneOrSolid for ControlFit<'_> {
     #[inline(always)]
     fn run<A: Arithmetic, const D: usize>(self, a: A) {
-        let Self { bonds, sites, rows, gradient, misfit, volume, fitted } = self;
+        let Self { bonds, sites, rows, gradient, residual, volume, fitted } = self;
         for (k, i) in rows.enumerate() {
             let own = sites[i];
             let (mut moment, mut spread) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
@@ -63,8 +63,8 @@ impl PlaneOrSolid for ControlFit<'_> {
             fitted[k] = inverse.is_some();
             let h = fit::<A, D>(a, &spread, &inverse.unwrap_or_default());
             let explained: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
-            let residual = square.0[0] + square.0[1] + square.0[2] - explained;
-            misfit[k] = if fitted[k] { residual } else { 0.0 };
+            let unexplained = square.0[0] + square.0[1] + square.0[2] - explained;
+            residual[k] = if fitted[k] { unexplained } else { 0.0 };
             gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
             volume[k] = own.reference.0[3];
         }

@@ -58,7 +58,7 @@ impl GradientPass<'_> {
             first,
             deformation: rows.deformation,
             gradient: &mut block.gradient,
-            misfit: &mut block.misfit,
+            residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut volume,
         };
@@ -119,7 +119,7 @@ impl GradientPass<'_> {
             sites: self.originals,
             rows: first..first + n,
             gradient: &mut block.gradient,
-            misfit: &mut block.misfit,
+            residual: &mut block.residual,
             volume: &mut block.volume,
             fitted: &mut fitted,
         };

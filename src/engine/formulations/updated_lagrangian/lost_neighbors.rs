@@ -7,6 +7,7 @@
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{BodyKernel, Ellipsoid};
 use crate::linalg::{Eigen, Sym3};
+use crate::notation::quantity;
 use crate::plugin::Setup;
 use crate::schedule::Step;
 use crate::world::{BodyId, Damage, SupportRadius, World};
@@ -98,8 +99,8 @@ impl UpdatedRows {
                 continue;
             }
             let text = format!(
-                "{begin} {now} of them at {:.3e} s; smaller spacings or a larger `support` keep the body together, a plugin of failure lets it tear",
-                step.clock.time
+                "{begin} {now} of them at {}; smaller spacings or a larger `support` keep the body together, a plugin of failure lets it tear",
+                quantity(step.clock.time, "s")
             );
             match told {
                 Some(told) => *told = text,

@@ -70,6 +70,7 @@ impl Formulation for UpdatedLagrangian {
     const NAME: &'static str = "UpdatedLagrangian";
     const REFERENCE: &'static str = "updated-Lagrangian SPH: Y. Vidal, J. Bonet, A. Huerta, Int. J. Numer. Methods Engng. 69 (2007) 2687-2710";
     const KIND: BodyKind = BodyKind::Solid;
+    const BYTES_PER_PARTICLE: usize = 3000;
     const OFFERS: &'static [Offer] = Offer::OF_LAGRANGIAN_SOLIDS;
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {

@@ -120,9 +120,9 @@ impl OutputFolder {
     fn all_frames(&self) -> Vec<PathBuf> {
         let prefix = format!("{}_", self.scene_name);
         let ours = |name: &str| {
-            name.strip_prefix(&prefix).is_some_and(|rest| {
-                rest.ends_with(".vtu") && rest.as_bytes().iter().take(6).all(u8::is_ascii_digit)
-            })
+            let series = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(".vtu"));
+            let frame = series.and_then(|series| series.rsplit_once('_')).map(|(_, frame)| frame);
+            frame.is_some_and(|frame| frame.len() == 6 && frame.bytes().all(|digit| digit.is_ascii_digit()))
         };
         let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();
         let mut files: Vec<PathBuf> =

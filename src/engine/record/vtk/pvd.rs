@@ -56,13 +56,27 @@ impl PvdWriter {
         points: &[[f64; 3]],
         arrays: &[PointArray],
     ) -> Result<(), VtkError> {
-        let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
-        let name: String = part.chars().map(plain).collect();
-        // The number alone keeps the names apart.
-        let file = format!("{}_{:06}_{name}.vtu", self.stem, self.frames.len());
+        let earlier = self.frames.iter().filter(|frame| frame.part == part).count();
+        let file = format!("{}_{earlier:06}.vtu", self.series(part));
         write_vtu(&self.path.with_file_name(&file), time, points, arrays, self.existing)?;
         self.frames.push(PvdFrame { time, part: part.to_owned(), file });
         self.write_list(Existing::Replace)
+    }
+
+    /// The files of a part up to the number of the frame, which stands last: so ParaView groups them as a series without the list.
+    fn series(&self, part: &str) -> String {
+        let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
+        let name: String = part.chars().map(plain).collect();
+        let series = |frame: &PvdFrame| frame.file.rsplit_once('_').map(|(series, _)| series.to_owned());
+        if let Some(known) = self.frames.iter().find(|frame| frame.part == part).and_then(series) {
+            return known;
+        }
+        let is_taken = |name: &String| self.frames.iter().filter_map(series).any(|other| other == *name);
+        let numbered = (2..).map(|k| format!("{}_{name}-{k}", self.stem));
+        std::iter::once(format!("{}_{name}", self.stem))
+            .chain(numbered)
+            .find(|name| !is_taken(name))
+            .unwrap_or_default()
     }
 
     /// All frames so far, to be kept in a checkpoint.

@@ -137,11 +137,17 @@ fn the_list_is_valid_after_every_frame() {
     assert!(listed(&path).is_empty());
     let mut expected: Vec<[String; 4]> = Vec::new();
     for (step, time) in ["0.0", "1e-7"].into_iter().enumerate() {
-        for (part, (name, shown, plain)) in
-            [("plate", "plate", "plate"), ("a/b & c", "a/b &amp; c", "a_b___c")].into_iter().enumerate()
+        for (part, (name, shown, plain)) in [
+            ("plate", "plate", "plate"),
+            ("a/b & c", "a/b &amp; c", "a_b___c"),
+            ("a.b-+ c", "a.b-+ c", "a_b-__c"),
+            ("a/b . c", "a/b . c", "a_b___c-2"),
+        ]
+        .into_iter()
+        .enumerate()
         {
             writer.write(time.parse().unwrap(), name, &POINTS, &[]).unwrap();
-            let file = format!("run_{:06}_{plain}.vtu", 2 * step + part);
+            let file = format!("run_{plain}_{step:06}.vtu");
             assert_eq!(read(&folder.path().join(&file)).1[1].0, "Points");
             expected.push([time.to_owned(), part.to_string(), shown.to_owned(), file]);
             assert_eq!(listed(&path), expected);
@@ -165,6 +171,6 @@ fn a_continued_list_drops_what_came_after_the_checkpoint() {
     let mut writer = PvdWriter::resume(&path, kept).unwrap();
     assert_eq!(listed(&path).len(), 1);
     writer.write(1.0, "a", &POINTS[..1], &[]).unwrap();
-    assert_eq!(listed(&path)[1], ["1.0", "0", "a", "run_000001_a.vtu"]);
-    assert_eq!(read(&folder.path().join("run_000001_a.vtu")).1[1].2.len(), 24);
+    assert_eq!(listed(&path)[1], ["1.0", "0", "a", "run_a_000001.vtu"]);
+    assert_eq!(read(&folder.path().join("run_a_000001.vtu")).1[1].2.len(), 24);
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::notation::quantity;
 use crate::schedule::{Ledger, Step};
 use crate::world::BodyId;
 
@@ -52,10 +53,10 @@ impl HourglassShare {
             self.warned[k] = true;
             step.warnings.push(format!(
                 "the hourglass energy of body `{}` is {:.0} % of its largest strain energy plus plastic work, first seen at \
-                 {:.6e} s: more particles across the body or a smaller coefficient of the hourglass control would help",
+                 {}: more particles across the body or a smaller coefficient of the hourglass control would help",
                 body.name,
                 100.0 * hourglass / internal,
-                step.clock.time
+                quantity(step.clock.time, "s")
             ));
         }
     }

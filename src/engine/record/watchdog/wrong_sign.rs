@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::formulations::fluid::{FlowCloud, Group};
+use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, Step};
@@ -65,10 +66,10 @@ impl WrongSign {
             given.told = share;
             let begin = format!("`{}` has produced energy ", account.name);
             let text = format!(
-                "{begin}though it can only dissipate: {:.3e} J, {:.0} % of the peak energy, by {:.6e} s; {}",
-                -account.total(),
+                "{begin}though it can only dissipate: {}, {:.0} % of the peak energy, by {}; {}",
+                quantity(-account.total(), "J"),
                 100.0 * share,
-                step.clock.end(),
+                quantity(step.clock.end(), "s"),
                 advice(&account.name)
             );
             match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {

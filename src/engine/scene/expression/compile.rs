@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::ExpressionError;
 use super::functions::{BINARY, Binary, CONSTANTS, UNARY, Unary, VARIABLES};
 use crate::scene::names::nearest;
+use crate::scene::slips::is_unit;
 use crate::scene::symbols::Symbols;
 use crate::scene::table::Interpolation;
 
@@ -357,7 +358,8 @@ impl Compiler<'_> {
         known.extend(UNARY.iter().map(|(name, _)| *name));
         known.extend(BINARY.iter().map(|(name, _)| *name));
         let near = nearest(name, &known).map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
-        let help = format!("{near}known here: {}", known.join(" "));
+        let unit = if is_unit(name) { "numbers are in SI units, which are not written; " } else { "" };
+        let help = format!("{unit}{near}known here: {}", known.join(" "));
         self.error(range, format!("unknown name `{name}`"), &help)
     }
 }

@@ -43,6 +43,8 @@ fn defaults() {
     assert_eq!(scene.time.step, Step::Adaptive { factor: 1.0 });
     assert_eq!((scene.record.every, scene.record_interval()), (None, 0.01));
     assert!(scene.domain.is_none() && scene.plugins.is_empty() && scene.probes.is_empty());
+    let touching = read(smallest_with("contacts: [Contact(between: (\"a\", \"a\"))],"));
+    assert_eq!(touching.contacts[0].law.text(), "Penalty");
     let step = |text: &str| {
         let text = smallest_with("").text.replace("end: 1", &format!("end: 1, step: {text}"));
         read(Source::new("step.ron", text)).time.step

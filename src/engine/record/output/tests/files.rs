@@ -15,7 +15,7 @@ fn a_run_leaves_the_documented_files_with_their_headers() {
         .chain(["middle.csv", "summary.json", "support.csv", "tip.csv"])
         .map(str::to_owned)
         .collect();
-    expected.extend((0..6).map(|k| format!("cantilever_{k:06}_beam.vtu")));
+    expected.extend((0..6).map(|k| format!("cantilever_beam_{k:06}.vtu")));
     expected.sort();
     assert_eq!(names_in(&out), expected);
     let header = |name: &str| {
@@ -175,7 +175,7 @@ fn without_output_nothing_is_written_and_the_state_is_the_same() {
 fn nothing_is_overwritten_unless_asked_for() {
     for file in ["energy.csv", "summary.json", "checkpoint.mlc", "tip.csv", "cantilever.pvd"]
         .into_iter()
-        .chain(["cantilever_000003_beam.vtu"])
+        .chain(["cantilever_beam_000003.vtu"])
     {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(file);
@@ -196,7 +196,7 @@ fn nothing_is_overwritten_unless_asked_for() {
 #[test]
 fn old_checkpoints_and_summaries_do_not_stay_beside_new_results() {
     let folder = tempfile::tempdir().unwrap();
-    for file in ["summary.json", "checkpoint.mlc", "cantilever_000099_beam.vtu"] {
+    for file in ["summary.json", "checkpoint.mlc", "cantilever_beam_000099.vtu"] {
         fs::write(folder.path().join(file), "old").unwrap();
     }
     fs::write(folder.path().join("cantilever_notes.vtu"), "mine").unwrap();
@@ -204,7 +204,7 @@ fn old_checkpoints_and_summaries_do_not_stay_beside_new_results() {
     let mut sim = try_build(&scene, &options(folder.path(), Existing::Replace, false)).unwrap();
     assert!(folder.path().join("checkpoint.mlc").exists());
     sim.start().unwrap();
-    for file in ["summary.json", "checkpoint.mlc", "cantilever_000099_beam.vtu"] {
+    for file in ["summary.json", "checkpoint.mlc", "cantilever_beam_000099.vtu"] {
         assert!(!folder.path().join(file).exists(), "{file}");
     }
     assert!(folder.path().join("cantilever_notes.vtu").exists());

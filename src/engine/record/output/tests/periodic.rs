@@ -32,7 +32,7 @@ fn particles_are_shown_inside_of_a_periodic_domain() {
     let (view, rows) = sim.world().body_view(BodyId(0));
     let x = view.read::<Position>().unwrap();
     assert!(x[rows].iter().all(|x| x.0.x > 1.6), "all have moved by one and a half periods");
-    let shown = points(&folder.path().join("flow_000001_fluid.vtu"));
+    let shown = points(&folder.path().join("flow_fluid_000001.vtu"));
     assert_eq!(shown.len(), x.len());
     for (shown, x) in shown.iter().zip(x.iter()) {
         assert!((0.2..1.2).contains(&shown[0]), "{shown:?}");

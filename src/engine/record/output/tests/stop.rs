@@ -22,7 +22,7 @@ fn a_run_ends_at_the_first_sample_beyond_the_value() {
     let sim = run(built(&stopping(SAG), folder.path()));
     assert_eq!(sim.clock().time, t[first]);
     let Outcome::Stopped(why) = sim.summary().outcome else { panic!("{:?}", sim.summary().outcome) };
-    assert!(why.starts_with("probe `tip.y` is below -0.0001: -"), "{why}");
+    assert!(why.starts_with("probe `tip.y` is below -100 µm: -"), "{why}");
     // The last state is recorded.
     let energy = crate::record::read_series(&folder.path().join("energy.csv")).unwrap();
     assert_eq!(energy.numbers("t").unwrap().last(), Some(&t[first]));
@@ -66,7 +66,7 @@ fn energies_and_runs_that_write_nothing_stop_too() {
     let condition = r#"(probe: "energies", column: "kinetic", above: 1.0e-6)"#;
     let mut sim = try_build(&stopping(condition), &BuildOptions::default()).unwrap();
     sim.run(|_| true).unwrap();
-    assert!(sim.stop_reason().is_some_and(|why| why.contains("`energies.kinetic` is above 1e-6")));
+    assert!(sim.stop_reason().is_some_and(|why| why.contains("`energies.kinetic` is above 1 µJ: ")));
 }
 
 #[test]
