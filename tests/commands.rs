@@ -169,6 +169,10 @@ fn slips_of_units_are_warned_of() {
         let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), err(&output));
         assert!(text.contains("warning") && text.contains(expected), "{set}: {text}");
     }
+    // A motion that is given in mm/s: longitudinal waves in the beam run at 11.6 m/s.
+    let fast = "conditions=[Velocity(on: Select(face: MinX), value: (\"200*smoothstep(t/10)\", None))]";
+    let output = meshless(folder.path(), &["check", "beam.ron", "--set", fast]);
+    assert!(err(&output).contains("17.2 times the speed of sound in body `beam`"), "{}", err(&output));
     let plain = meshless(folder.path(), &["check", "beam.ron"]);
     assert!(!err(&plain).contains("warning"), "{}", err(&plain));
 }
@@ -202,6 +206,7 @@ fn a_time_to_resume_to_lies_after_the_checkpoint() {
     }
 }
 
+#[cfg(feature = "rerun")]
 #[test]
 fn files_that_are_no_recording_are_not_shown() {
     let folder = folder();

@@ -5,7 +5,8 @@ use serde::Deserialize;
 
 use super::field::Field;
 use super::prescribed::{self, Kind};
-use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
+use crate::notation::{quantity, quantity_to};
+use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
 
 /// Moves particles with a velocity that is a function of their reference position and time.
@@ -37,6 +38,35 @@ impl Plugin for Velocity {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
         let field = Field::new(self.value, sim)?;
+        warn_of_fast_motion(&field, &selection, sim);
         prescribed::prescribe(Self::NAME, Kind::Velocity, field, &selection, sim)
+    }
+}
+
+/// Largest prescribed speed, in speeds of sound of the softest solid.
+const LARGEST_MACH: f64 = 10.0;
+/// Times of a run at which it is looked at.
+const TIMES: u32 = 64;
+
+/// Warns of a speed that is most likely a slip of units.
+fn warn_of_fast_motion(field: &Field, selection: &Selection, sim: &mut SimBuilder<'_>) {
+    let end = sim.scene().time.end;
+    let places = selection.parts.iter().filter_map(|(id, rows)| {
+        let body = sim.body(*id);
+        Some(body.sites[*rows.first()? as usize - body.rows.start].position)
+    });
+    let times = |k| end * f64::from(k) / f64::from(TIMES);
+    let speeds = places.flat_map(|x| (0..=TIMES).map(move |k| field.at(x, times(k)).length()));
+    let speed = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+    let solids = sim.bodies().iter().filter(|body| body.kind == BodyKind::Solid);
+    let sounds = solids.filter_map(|body| Some((body.material.sound_speed()?, &body.name)));
+    if let Some((sound, name)) = sounds.min_by(|a, b| a.0.total_cmp(&b.0))
+        && speed > LARGEST_MACH * sound
+    {
+        let (factor, sound) = (quantity_to(speed / sound, "1", 3), quantity(sound, "m/s"));
+        let speed = quantity(speed, "m/s");
+        sim.warn(format!(
+            "`Velocity` moves particles at up to {speed}, {factor} times the speed of sound in body `{name}` ({sound}): check its unit"
+        ));
     }
 }
