@@ -186,7 +186,7 @@ impl SkinLoad {
         let Self { label, kind, patch, facets, factor, last } = self;
         let skin = Arc::clone(&patch.skin);
         let columns = SkinColumns::new(&skin, step.world)?;
-        patch.update(&columns.view(), step.clock.dt, Wanted::Places);
+        patch.update(&columns.view(), step.clock.dt, Wanted::default());
         let (axes, t) = (skin.facets.axes, step.clock.end());
         for &(facet, middle, area) in &*facets {
             let corners = patch.corners(facet);

@@ -7,6 +7,7 @@ use hecs::ArchetypeColumn;
 
 use super::shape::Shape;
 use crate::plugin::{BodyPlan, Offer};
+use crate::removal::Leaving;
 use crate::scene::Dimension;
 use crate::schedule::Resources;
 use crate::solids::{LocalMotion, SolidPhase};
@@ -76,6 +77,7 @@ pub(super) struct MemberColumns<'a> {
     gradient: Option<ArchetypeColumn<'a, DeformationGradient>>,
     solid: Option<Ref<'a, dyn SolidPhase>>,
     body: Option<Ref<'a, dyn SolidPhase>>,
+    leaving: Option<Ref<'a, Leaving>>,
 }
 
 impl<'a> MemberColumns<'a> {
@@ -96,6 +98,7 @@ impl<'a> MemberColumns<'a> {
             gradient: if particles.deform { Some(view.read()?) } else { None },
             solid: if particles.deform { resources.solid(world.body(particles.body).phase) } else { None },
             body: resources.solid(world.body(particles.body).phase),
+            leaving: resources.try_get_of(world.body(particles.body).phase),
         })
     }
 
@@ -111,6 +114,7 @@ impl<'a> MemberColumns<'a> {
             gradient: self.gradient.as_deref(),
             solid: self.solid.as_deref(),
             body: self.body.as_deref(),
+            leaving: self.leaving.as_deref(),
         }
     }
 }
@@ -128,6 +132,7 @@ pub(super) struct Members<'a> {
     /// The body, where its particles deform with it.
     solid: Option<&'a dyn SolidPhase>,
     body: Option<&'a dyn SolidPhase>,
+    leaving: Option<&'a Leaving>,
 }
 
 impl Members<'_> {
@@ -174,6 +179,10 @@ impl Members<'_> {
     /// How the material around a particle moves, if that is asked for, and can be moved.
     pub fn local_motion(&self, i: usize, moving: bool) -> LocalMotion {
         let row = self.first_row + i;
+        if !self.is_there(i) {
+            let velocity = self.leaving.map_or(DVec3::ZERO, |leaving| leaving.velocity(row));
+            return LocalMotion::alone(Velocity(velocity), self.mobility[row]);
+        }
         match self.solid {
             Some(solid) => solid.local_motion(row, self.velocity, self.mobility[row], moving),
             None => LocalMotion::alone(self.velocity[row], self.mobility[row]),

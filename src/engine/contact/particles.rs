@@ -196,6 +196,22 @@ impl ParticleContact {
                 tally.losses.add_work(share(key), memory, velocity([&of[0], &of[1]], memory.arms), dt);
             }
             tally.losses.keep(share(key), memory, &Memory::default());
+            let (i, j) = (key.0 as usize, key.1 as usize);
+            if !first.is_there(i) || !second.is_there(j) {
+                let x_ij = periodic.minimal_image(mirror.place(second.position(j)) - first.position(i));
+                let reach = first.radius(i) + second.radius(j);
+                let radius = first.radius(i) * second.radius(j) / reach;
+                let of = [first.local_motion(i, true), second.local_motion(j, true)];
+                let meeting = Meeting {
+                    touch: Touch { overlap: memory.overlap, radius, length: reach, depth: reach },
+                    normal: -x_ij.normalize_or_zero(),
+                    scale: 1.0,
+                    area: 1.0,
+                    arms: memory.arms,
+                    velocity: velocity([&of[0], &of[1]], memory.arms),
+                };
+                tally.removed += share(key) * interaction.held(&meeting, dt, memory);
+            }
         };
         let tally = meetings.respond(respond, end);
         let pushes = meetings.pushes();

@@ -74,8 +74,17 @@ impl Interaction {
         self.beside(spring, meeting, inverse_mass, dt, before)
     }
 
+    /// What a contact held at the end of the last step that ends because a particle is taken out, and what its force there would have taken from the motion in the last
+    /// kick, J; the sides move against each other at that velocity, m/s.
+    pub fn held(&self, meeting: &Meeting, dt: f64, before: &Memory) -> f64 {
+        let touch = Touch { overlap: before.overlap, ..meeting.touch };
+        let force = before.pressure - before.dashpot.dot(meeting.normal);
+        self.law.at(&touch).energy - 0.5 * dt * force * meeting.normal.dot(meeting.velocity)
+    }
+
     /// The spring of a point of a surface that remembers nothing, of an area over that for which the law holds: where it was in the last step and will be in the
     /// next follows from the speed at which it approaches, m/s.
+    #[inline]
     pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
         let mut spring = self.law.at(touch).over(area);
         let way = approach.abs() * dt;
@@ -93,7 +102,9 @@ impl Interaction {
         before: &Memory,
     ) -> Response {
         let Meeting { touch, normal, velocity, scale, arms, .. } = meeting;
-        let across = if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(*normal) };
+        // Without a dashpot nobody asks for masses.
+        let inverse_mass = |n: DVec3| if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(n) };
+        let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
         let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
@@ -183,6 +194,7 @@ fn share_of_step(touch: &Touch, approach: f64, before: &Memory) -> f64 {
 }
 
 /// The same, for an overlap that began or ends within the way of a step, m.
+#[inline]
 fn share_of_way(touch: &Touch, way: f64) -> f64 {
     let overlap = touch.overlap;
     if way > overlap && is_held(touch) { 0.5 + 0.5 * overlap / way } else { 1.0 }

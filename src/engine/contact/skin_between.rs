@@ -181,10 +181,7 @@ impl NearSkins {
     fn look(&mut self, side: usize, view: &SkinView<'_>) {
         let rows = Picked::new(&self.regions[side].vertices, &mut self.places[side]);
         for_each_block(rows, &mut Vec::new(), &|_, mut rows: Picked<'_, DVec3>| {
-            for k in 0..rows.len() {
-                let vertex = rows.number(k) as u32;
-                *rows.row(k) = view.place(vertex);
-            }
+            view.places(rows.numbers(), &mut |k, place, _| *rows.row(k) = place);
         });
     }
 

@@ -73,10 +73,9 @@ impl NearTool {
         let rows = Picked::new(&self.region.vertices, &mut self.places);
         type Rows<'a> = Picked<'a, (DVec3, f64)>;
         for_each_block(rows, &mut Vec::new(), &|_, mut rows: Rows<'_>| {
-            for k in 0..rows.len() {
-                let place = view.place(rows.number(k) as u32);
+            view.places(rows.numbers(), &mut |k, place, _| {
                 *rows.row(k) = (place, tool.surface.closest(tool.reference(place)).signed_distance);
-            }
+            });
         });
     }
 }

@@ -17,9 +17,9 @@ use super::response::{Interaction, Meeting};
 use super::sides::Sides;
 use super::skin_near::NearTool;
 use super::skin_points::{Extremes, Points, Pressed, Pressing, Reached, Seen};
-use super::stiffness;
+use super::stiffness::{self, OfSkins};
 use super::tally::Tally;
-use crate::parallel::{BlockSum, Largest, for_each_block, sum_over_blocks};
+use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Patch, Skin, SkinColumns, Vertex, Wanted};
@@ -104,17 +104,21 @@ impl SkinOnTool {
             self.near.find(&skin, &view, tool);
             self.patch.select(self.near.facets.iter().copied());
         }
-        let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Mobility };
+        let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
         self.patch.update(&view, dt, wanted);
-        let Extremes { gap, mut stiffest } = self.press(tool, dt);
+        let Extremes { gap, stiffest } = self.press(tool, dt);
         let mut tally = if self.interaction.is_elastic() { Tally::default() } else { self.rub(tool, dt) };
         let Sums { on_tool, of_tool, stored } = self.push(tool);
         tally.stored += stored;
-        stiffest.add(&Largest(self.expected(tool, gap.0, speeds[0] + speeds[1], dt)));
         tool.push(&on_tool);
         self.patch.hand_on();
-        let squared = stiffness::OF_SKIN * stiffest.0 * skin.lightness + of_tool;
-        stiffness::propose(step, (skin.body, self.tool), squared, speeds[0] + speeds[1], skin.spacing);
+        let (touch, usual) = self.touch(tool);
+        let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
+        let (stiffest, gap) = (stiffest.0, gap.0);
+        let keeps_reference = stiffness::keeps_reference(step, skin.body);
+        let stiffness = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference }.stiffness();
+        let squared = stiffness * skin.lightness + of_tool;
+        stiffness::propose(step, (skin.body, self.tool), squared, speed, skin.spacing);
         Ok(tally)
     }
 
@@ -127,12 +131,6 @@ impl SkinOnTool {
             Touch { overlap: 0.0, radius, length, depth: own },
             length.powi(self.patch.skin.facets.axes as i32 - 1),
         )
-    }
-
-    /// The stiffness over the area that a touch may soon have, N/m3 (N/m2 in two dimensions).
-    fn expected(&self, tool: &RigidBody, gap: f64, speed: f64, dt: f64) -> f64 {
-        let (touch, usual) = self.touch(tool);
-        stiffness::expected(&*self.interaction.law, &touch, gap, speed, dt) / usual
     }
 
     /// Works out what presses on the vertices.

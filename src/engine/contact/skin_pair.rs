@@ -22,7 +22,7 @@ use super::pace::Pace;
 use super::response::{Interaction, Meeting};
 use super::skin_between::NearSkins;
 use super::skin_foot::{Ball, Foot, enclose, foot, slopes};
-use super::stiffness;
+use super::stiffness::{self, OfSkins};
 use super::tally::Tally;
 use crate::neighbors::NeighborError;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
@@ -39,6 +39,8 @@ pub(super) struct SkinPair {
     interaction: Interaction,
     /// Both skins.
     pub patches: [Patch; 2],
+    /// Whether the references of both bodies stay.
+    keeps_reference: bool,
     rule: Rule,
     near: NearSkins,
     /// Around the facets of each side that are near the other.
@@ -93,7 +95,7 @@ impl SkinPair {
         let balls = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
         let near = NearSkins::new(skins.each_ref().map(|skin| &**skin));
         let patches = skins.map(Patch::new);
-        Self { interaction, patches, rule, near, balls, passes }
+        Self { interaction, patches, keeps_reference: false, rule, near, balls, passes }
     }
 
     /// Works out the forces of all points that touch.
@@ -103,22 +105,24 @@ impl SkinPair {
         let first = SkinColumns::new(&skins[0], step.world)?;
         let second = SkinColumns::new(&skins[1], step.world)?;
         let speed = paces[0].speed + paces[1].speed;
-        let (tally, stiffest) = self.act([first.view(), second.view()], speed, dt).map_err(|error| {
+        self.keeps_reference = skins.iter().all(|skin| stiffness::keeps_reference(step, skin.body));
+        let (tally, stiffness) = self.act([first.view(), second.view()], speed, dt).map_err(|error| {
             StepError::System { system: super::CONTACT.to_owned(), message: error.to_string() }
         })?;
-        let squared = CORNERS * stiffness::OF_SKIN * stiffest.0 * (skins[0].lightness + skins[1].lightness);
+        let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);
         let reach = skins[0].spacing.min(skins[1].spacing);
         stiffness::propose(step, (skins[0].body, skins[1].body), squared, speed, reach);
         Ok(tally)
     }
 
-    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s; with the largest stiffness over an area.
+    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s; with the stiffness over an area that the next one goes by, N/m3 (N/m2 in
+    /// two dimensions).
     pub fn act(
         &mut self,
         views: [SkinView<'_>; 2],
         speed: f64,
         dt: f64,
-    ) -> Result<(Tally, Largest), NeighborError> {
+    ) -> Result<(Tally, f64), NeighborError> {
         if self.near.is_old(speed, dt) {
             let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
             self.near.find([first, second], &views, self.rule.len())?;
@@ -126,21 +130,28 @@ impl SkinPair {
                 patch.select(facets.iter().copied());
             }
         }
-        let wanted = if self.interaction.is_elastic() { Wanted::Places } else { Wanted::Gradients };
+        let Interaction { damping_ratio, .. } = self.interaction;
+        let wanted = Wanted { mobility: damping_ratio > 0.0, gradients: !self.interaction.is_elastic() };
         self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
         for (side, balls) in self.balls.iter_mut().enumerate() {
             enclose(&self.patches[side], &self.near.facets[side], balls);
         }
         let mut tally = Tally::default();
-        let mut stiffest = Largest::default();
+        let (mut stiffest, mut gap) = (Largest::default(), Least::default());
         for side in 0..2 {
-            let (of_side, gap) = self.evaluate(side, dt);
+            let (of_side, of_points) = self.evaluate(side, dt);
             tally.add(&of_side);
+            gap.add(&of_points);
             stiffest.add(&self.push(side));
-            stiffest.add(&Largest(self.expected(gap, speed, dt)));
         }
         self.patches.iter_mut().for_each(Patch::hand_on);
-        Ok((tally, stiffest))
+        let length = self.length();
+        let touch = Touch { overlap: 0.0, radius: 0.5 * length, length, depth: length };
+        let usual = length.powi(self.patches[0].skin.facets.axes as i32 - 1);
+        let law = &*self.interaction.law;
+        let (stiffest, gap, keeps_reference) = (stiffest.0, gap.0, self.keeps_reference);
+        let of_skins = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference };
+        Ok((tally, of_skins.stiffness()))
     }
 
     /// Length for which the law holds, m.
@@ -148,18 +159,10 @@ impl SkinPair {
         0.5 * (self.patches[0].skin.spacing + self.patches[1].skin.spacing)
     }
 
-    /// The stiffness over the area that a touch may soon have, N/m3 (N/m2 in two dimensions).
-    fn expected(&self, gap: f64, speed: f64, dt: f64) -> f64 {
-        let length = self.length();
-        let touch = Touch { overlap: 0.0, radius: 0.5 * length, length, depth: length };
-        let usual = length.powi(self.patches[0].skin.facets.axes as i32 - 1);
-        stiffness::expected(&*self.interaction.law, &touch, gap, speed, dt) / usual
-    }
-
     /// What the points of one side do, and the least gap of points that do not touch, m.
-    fn evaluate(&mut self, side: usize, dt: f64) -> (Tally, f64) {
+    fn evaluate(&mut self, side: usize, dt: f64) -> (Tally, Least) {
         let length = self.length();
-        let Self { interaction, patches, rule, near, balls, passes } = self;
+        let Self { interaction, patches, rule, near, balls, passes, .. } = self;
         let (own, other, balls) = (&patches[side], &patches[1 - side], &balls[1 - side][..]);
         let side_of = Side { own, other, balls, rule, length };
         let at = &side_of;
@@ -202,7 +205,7 @@ impl SkinPair {
             }
             tally.losses.keep(1.0, memory, &Memory::default());
         };
-        (passes[side].respond(respond, end), gap.0)
+        (passes[side].respond(respond, end), gap)
     }
 
     /// Pushes the vertices of both skins; returns the largest stiffness over an area.

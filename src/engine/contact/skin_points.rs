@@ -11,7 +11,7 @@ use super::least::Least;
 use super::response::Interaction;
 use crate::parallel::{BlockSum, Largest};
 use crate::rigid::RigidBody;
-use crate::skins::{Patch, Rule, Vertex};
+use crate::skins::{Patch, Rule};
 
 /// No point of a facet is farther from its nearest vertex than that share of its longest side.
 const BEYOND: f64 = 0.6;
@@ -162,20 +162,20 @@ impl Points {
         (reached, seen): (Reached, [&Seen; 3]),
         extremes: &mut Extremes,
     ) -> [Pressed; 3] {
+        if reached == Reached::Flat {
+            return self.press_flat(on, facet, seen, extremes);
+        }
         let mut pressed = [Pressed::default(); 3];
         let rule = if reached == Reached::Partly { &self.fine } else { &self.coarse };
-        let corners = on.patch.corners(facet);
+        let [a, b, c] = on.patch.corners(facet);
         let area = on.patch.skin.measure[facet as usize] / rule.len() as f64;
         for point in 0..rule.len() {
             let shares = rule.shares(point);
-            let (distance, normal, approach) = if reached == Reached::Flat {
-                let mean = |of: fn(&Seen) -> f64| (0..3).map(|k| shares[k] * of(seen[k])).sum::<f64>();
-                (mean(|seen| seen.distance), seen[0].normal, mean(|seen| seen.approach))
-            } else {
-                let mean =
-                    |of: fn(&Vertex) -> DVec3| (0..3).map(|k| shares[k] * of(corners[k])).sum::<DVec3>();
-                on.look(mean(|corner| corner.place), mean(|corner| corner.velocity))
-            };
+            let [p, q, r] = shares;
+            let (distance, normal, approach) = on.look(
+                p * a.place + q * b.place + r * c.place,
+                p * a.velocity + q * b.velocity + r * c.velocity,
+            );
             if distance >= 0.0 {
                 extremes.gap.add(&Least(distance));
             } else if distance < 0.0 {
@@ -188,10 +188,42 @@ impl Points {
         }
         pressed
     }
+
+    /// What presses on the vertices of a facet behind a plane: its points are as deep as the vertices tell.
+    fn press_flat(
+        &self,
+        on: &Pressing<'_>,
+        facet: u32,
+        [a, b, c]: [&Seen; 3],
+        extremes: &mut Extremes,
+    ) -> [Pressed; 3] {
+        let (rule, normal) = (&self.coarse, a.normal);
+        let area = on.patch.skin.measure[facet as usize] / rule.len() as f64;
+        let mut sums = [(Spring::default(), 0.0, 0.0); 3];
+        for point in 0..rule.len() {
+            let shares = rule.shares(point);
+            let [p, q, r] = shares;
+            let distance = p * a.distance + q * b.distance + r * c.distance;
+            let approach = p * a.approach + q * b.approach + r * c.approach;
+            if distance.is_nan() {
+                continue;
+            }
+            let spring = on.spring(&Seen { distance, normal, approach }, area, extremes);
+            for ((sum, own, depth), share) in sums.iter_mut().zip(shares) {
+                sum.force += share * spring.force;
+                sum.stiffness += share * spring.stiffness;
+                sum.energy += share * spring.energy;
+                *own += share * area;
+                *depth -= share * area * distance;
+            }
+        }
+        sums.map(|(spring, area, depth)| Pressed { force: spring.force * normal, spring, area, depth })
+    }
 }
 
 impl Pressing<'_> {
     /// The spring of a point that sees that and stands for an area, m2 (m).
+    #[inline]
     pub fn spring(&self, seen: &Seen, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };
         let spring = self.interaction.spring(&touch, area / self.usual, seen.approach, self.dt);

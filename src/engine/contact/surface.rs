@@ -232,8 +232,23 @@ fn evaluate(
         )
     };
     let end = |(node, _): PairKey, memory: &Memory, tally: &mut Tally| {
-        work_before(node, &nodes.motion(node as usize, moving), memory, &mut tally.losses);
+        let i = node as usize;
+        let motion = nodes.motion(i, moving);
+        work_before(node, &motion, memory, &mut tally.losses);
         tally.losses.keep(1.0, memory, &Memory::default());
+        if !nodes.is_there(i) {
+            let x = sides.near(nodes.position(i), tool);
+            let nearest = tool.surface.closest(tool.reference(x));
+            let meeting = Meeting {
+                touch: touch_of(nodes, i, tool, memory.overlap),
+                normal: tool.state.rotation * nearest.normal,
+                scale: 1.0,
+                area: 1.0,
+                arms: memory.arms,
+                velocity: motion.velocity(DVec3::ZERO, x) - tool.velocity_at(x),
+            };
+            tally.removed += interaction.held(&meeting, dt, memory);
+        }
     };
     meetings.respond(respond, end)
 }

@@ -2,6 +2,7 @@
 
 use super::response::Losses;
 use crate::parallel::BlockSum;
+use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step};
 use crate::world::BodyId;
 
@@ -10,12 +11,15 @@ use crate::world::BodyId;
 pub(super) struct Tally {
     pub stored: f64,
     pub losses: Losses,
+    /// What contacts of particles held that have been taken out.
+    pub removed: f64,
 }
 
 impl BlockSum for Tally {
     fn add(&mut self, next: &Self) {
         self.stored += next.stored;
         self.losses.add(&next.losses);
+        self.removed += next.removed;
     }
 }
 
@@ -32,5 +36,9 @@ pub(super) fn book(step: &mut Step<'_>, tallies: &[((BodyId, BodyId), Tally)]) {
     for (body, tally) in bodies() {
         step.ledger.add(damping, body, 0.5 * tally.losses.damping);
         step.ledger.add(friction, body, 0.5 * tally.losses.friction);
+        if tally.removed != 0.0 {
+            let removed = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+            step.ledger.add(removed, body, 0.5 * tally.removed);
+        }
     }
 }

@@ -29,6 +29,12 @@ impl<'a, T> Picked<'a, T> {
         self.numbers.is_empty()
     }
 
+    /// Numbers of the rows.
+    #[must_use]
+    pub fn numbers(&self) -> &'a [u32] {
+        self.numbers
+    }
+
     /// Number of the `k`-th row.
     #[inline]
     pub fn number(&self, k: usize) -> usize {

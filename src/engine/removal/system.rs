@@ -2,11 +2,13 @@
 //!
 //! A removed particle keeps its row and its position: [`Removed`] is set, its velocity, force and mobility are zero, mass and volume stay
 //! for the energy balance. Formulations, contacts and conditions leave such rows out. Its kinetic energy
-//! goes to the account `removed`, and so does the energy of its bonds, which the formulation books.
+//! goes to the account `removed`, and so does the energy of its bonds and
+//! contacts, which formulation and contact book.
 
 use glam::DVec3;
 
 use super::domain::{DomainBox, RemoveOutside};
+use super::leaving::Leaving;
 use crate::plugin::SimBuilder;
 use crate::scene::Outside;
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
@@ -63,6 +65,11 @@ impl Run for Removal {
             // From the first step on, so that the tables of energies have a column for it.
             step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         }
+        for phase in step.world.phases() {
+            if let Some(mut leaving) = step.resources.try_get_mut_of::<Leaving>(phase) {
+                leaving.clear();
+            }
+        }
         for rule in &mut self.rules {
             for body in (0..step.world.bodies().len()).map(BodyId) {
                 self.rows.clear();
@@ -79,6 +86,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         return Ok(());
     }
     let (view, _) = step.world.body_view(body);
+    let mut leaving = step.resources.try_get_mut_of::<Leaving>(step.world.body(body).phase);
     let mut removed = view.write::<Removed>()?;
     let mut velocity = view.write::<Velocity>()?;
     let mut force = view.write::<Force>()?;
@@ -91,9 +99,14 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
             continue;
         }
         // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take sub-steps are there.
-        let late = if due { 0.5 * step.clock.dt } else { 0.0 };
-        let v = velocity[row].0 + late * (force[row].0 * mobility[row].0);
-        kinetic += 0.5 * mass[row].0 * v.length_squared();
+        let kick = if due { 0.5 * step.clock.dt * (force[row].0 * mobility[row].0) } else { DVec3::ZERO };
+        let v = velocity[row].0;
+        kinetic += 0.5 * mass[row].0 * (v.length_squared() + kick.length_squared());
+        match &mut leaving {
+            // What the new forces would take from the motion is booked by those who make them.
+            Some(leaving) if due => leaving.push(row as u32, v),
+            _ => kinetic += mass[row].0 * v.dot(kick),
+        }
         removed[row] = Removed::YES;
         velocity[row] = Velocity(DVec3::ZERO);
         force[row] = Force(DVec3::ZERO);

@@ -5,6 +5,7 @@ use hecs::ArchetypeColumn;
 
 use super::carriers::Carrier;
 use super::skin::Skin;
+use crate::parallel::{Arithmetic, HotLoop, run_hot};
 use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};
 
 /// The columns of the particles of a body in this step.
@@ -70,32 +71,50 @@ impl SkinView<'_> {
         carriers.fold(zero, |sum, carrier| sum + of(carrier, self.first_row + carrier.particle as usize))
     }
 
-    /// Where a vertex is, m; how much a traction moves the layer of particles there along each axis, m2/kg (m/kg in two dimensions), if that is asked
-    /// for; and whether none of its carriers has been removed.
-    pub fn look(&self, vertex: u32, moving: bool) -> (DVec3, DVec3, bool) {
-        let (mut place, mut mobility, mut is_there) = (DVec3::ZERO, DVec3::ZERO, true);
+    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).
+    pub fn mobility(&self, vertex: u32) -> DVec3 {
+        self.mean(vertex, DVec3::ZERO, |carrier, row| {
+            self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize])
+        })
+    }
+
+    /// Where a vertex is, m, and whether none of its carriers has been removed.
+    #[inline(always)]
+    fn look<A: Arithmetic>(&self, a: A, vertex: u32) -> (DVec3, bool) {
+        // Two sums of each component: an addition waits for the one before it.
+        let (mut x, mut y, mut z) = ([0.0; 2], [0.0; 2], [0.0; 2]);
+        let mut is_there = true;
         for carrier in self.skin.carriers(vertex) {
             let row = self.first_row + carrier.particle as usize;
-            place += carrier.weight * self.carried(carrier, row);
             is_there &= self.removed[row] == Removed::NO;
-            if moving {
-                mobility +=
-                    self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize]);
+            let (weight, arm) = (carrier.weight, carrier.arm);
+            if carrier.map != 0 {
+                let place = self.carried(carrier, row);
+                x[0] = a.mul_add(weight, place.x, x[0]);
+                y[0] = a.mul_add(weight, place.y, y[0]);
+                z[0] = a.mul_add(weight, place.z, z[0]);
+                continue;
             }
+            let (place, f) = (&self.position[row].0, &self.gradient[row].0);
+            let (p, q, r) = (weight * arm.x, weight * arm.y, weight * arm.z);
+            x[0] = a.mul_add(p, f.x_axis.x, a.mul_add(weight, place.x, x[0]));
+            y[0] = a.mul_add(p, f.x_axis.y, a.mul_add(weight, place.y, y[0]));
+            x[1] = a.mul_add(r, f.z_axis.x, a.mul_add(q, f.y_axis.x, x[1]));
+            y[1] = a.mul_add(r, f.z_axis.y, a.mul_add(q, f.y_axis.y, y[1]));
+            z[0] = a.mul_add(p, f.x_axis.z, a.mul_add(weight, place.z, z[0]));
+            z[1] = a.mul_add(r, f.z_axis.z, a.mul_add(q, f.y_axis.z, z[1]));
         }
-        (place, mobility, is_there)
+        (DVec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]), is_there)
     }
 
     /// Where the linear field of a carrier has a vertex, m.
-    #[inline]
     fn carried(&self, carrier: &Carrier, row: usize) -> DVec3 {
-        let place = self.position[row].0 + self.gradient[row].0 * carrier.arm;
-        if carrier.map == 0 { place } else { self.skin.map(carrier).place(place) }
+        self.skin.map(carrier).place(self.position[row].0 + self.gradient[row].0 * carrier.arm)
     }
 
-    /// Where a vertex is, m.
-    pub fn place(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| carrier.weight * self.carried(carrier, row))
+    /// Calls `each` with the number of every vertex of a list, where it is, m, and whether none of its carriers has been removed.
+    pub fn places(&self, vertices: &[u32], each: &mut impl FnMut(usize, DVec3, bool)) {
+        run_hot(Places { view: *self, vertices, each });
     }
 
     /// Mean velocity of the particles that carry a vertex, m/s.
@@ -111,5 +130,24 @@ impl SkinView<'_> {
             let gradient = self.gradient[row].0;
             carrier.weight * if carrier.map == 0 { gradient } else { self.skin.map(carrier).tensor(gradient) }
         })
+    }
+}
+
+/// The loop over the vertices of a list.
+struct Places<'a, E> {
+    view: SkinView<'a>,
+    vertices: &'a [u32],
+    each: &'a mut E,
+}
+
+impl<E: FnMut(usize, DVec3, bool)> HotLoop for Places<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        for (k, &vertex) in self.vertices.iter().enumerate() {
+            let (place, is_there) = self.view.look(a, vertex);
+            (self.each)(k, place, is_there);
+        }
     }
 }

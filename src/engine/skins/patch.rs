@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::columns::SkinView;
 use super::skin::Skin;
-use crate::parallel::{Picked, for_each_block, sum_over_blocks};
+use crate::parallel::{Arithmetic, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::SolidPhase;
 use crate::world::Force;
 
@@ -42,11 +42,11 @@ pub(crate) struct Vertex {
 }
 
 /// What is to be worked out beside places and velocities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    Places,
-    Mobility,
-    Gradients,
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Wanted {
+    pub mobility: bool,
+    /// Deformation gradients and their rates.
+    pub gradients: bool,
 }
 
 /// A vertex by which a force reaches a particle.
@@ -59,6 +59,80 @@ struct End {
     vertex: u32,
     /// Number of the map by which the particle is an image.
     map: u32,
+}
+
+/// What is handed on to particles.
+#[derive(Clone, Copy)]
+struct HandedOn<'a> {
+    skin: &'a Skin,
+    forces: &'a [DVec3],
+    couples: Option<&'a [DMat3]>,
+    starts: &'a [u32],
+    ends: &'a [End],
+}
+
+/// The loop over particles, from the first of a block on.
+struct OnParticles<'a> {
+    all: HandedOn<'a>,
+    first: usize,
+    on: (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]),
+}
+
+impl HotLoop for OnParticles<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: Arithmetic>(self, a: A) {
+        let Self { all, first, on: (on, alone) } = self;
+        for k in 0..on.len() {
+            let ends = all.starts[first + k] as usize..all.starts[first + k + 1] as usize;
+            let (force, couple) = all.on_particle(a, &all.ends[ends]);
+            on[k] = (force, couple);
+            alone[k] = couple;
+        }
+    }
+}
+
+impl HandedOn<'_> {
+    /// The force, N, and the couple, N m, on a particle at these ends.
+    #[inline(always)]
+    fn on_particle<A: Arithmetic>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
+        let (mut fx, mut fy, mut fz) = (0.0, 0.0, 0.0);
+        let (mut xx, mut yx, mut zx) = (0.0, 0.0, 0.0);
+        let (mut xy, mut yy, mut zy) = (0.0, 0.0, 0.0);
+        let (mut xz, mut yz, mut zz) = (0.0, 0.0, 0.0);
+        for end in ends {
+            let mut f = self.forces[end.vertex as usize];
+            if f.x == 0.0 && f.y == 0.0 && f.z == 0.0 {
+                continue;
+            }
+            if end.map != 0 {
+                f = self.skin.maps[end.map as usize].vector(f);
+            }
+            let (x, y, z) = (end.weight * f.x, end.weight * f.y, end.weight * f.z);
+            (fx, fy, fz) = (fx + x, fy + y, fz + z);
+            let arm = &end.arm;
+            (xx, yx, zx) = (a.mul_add(x, arm.x, xx), a.mul_add(y, arm.x, yx), a.mul_add(z, arm.x, zx));
+            (xy, yy, zy) = (a.mul_add(x, arm.y, xy), a.mul_add(y, arm.y, yy), a.mul_add(z, arm.y, zy));
+            (xz, yz, zz) = (a.mul_add(x, arm.z, xz), a.mul_add(y, arm.z, yz), a.mul_add(z, arm.z, zz));
+        }
+        let columns = [DVec3::new(xx, yx, zx), DVec3::new(xy, yy, zy), DVec3::new(xz, yz, zz)];
+        let mut couple = DMat3 { x_axis: columns[0], y_axis: columns[1], z_axis: columns[2] };
+        if self.couples.is_some() {
+            couple += self.of_vertices(ends);
+        }
+        (DVec3::new(fx, fy, fz), couple)
+    }
+
+    /// What the couples on vertices are for a particle at these ends, N m.
+    fn of_vertices(&self, ends: &[End]) -> DMat3 {
+        let couples = self.couples.unwrap_or_default();
+        let of = |end: &End| {
+            let couple = couples[end.vertex as usize];
+            end.weight * if end.map == 0 { couple } else { self.skin.maps[end.map as usize].tensor(couple) }
+        };
+        ends.iter().map(of).fold(DMat3::ZERO, |sum, couple| sum + couple)
+    }
 }
 
 /// A part of a skin.
@@ -173,23 +247,23 @@ impl Patch {
         let rows = (Picked::new(vertices, last), &mut now[..]);
         type Rows<'a> = (Picked<'a, Last>, &'a mut [Vertex]);
         for_each_block(rows, &mut Vec::new(), &|_, (mut last, now): Rows<'_>| {
-            for (k, now) in now.iter_mut().enumerate() {
+            view.places(last.numbers(), &mut |k, place, is_there| {
                 let vertex = last.number(k) as u32;
                 let last = last.row(k);
-                let (place, mobility, is_there) = view.look(vertex, wanted != Wanted::Places);
                 let is_new = last.place.is_nan();
                 let change = |new: DVec3| if dt > 0.0 { (new - last.place) / dt } else { DVec3::ZERO };
                 let velocity = if is_new { view.velocity(vertex) } else { change(place) };
+                let mobility = if wanted.mobility { view.mobility(vertex) } else { DVec3::ZERO };
                 let (mut gradient, mut rate) = (DMat3::IDENTITY, DMat3::ZERO);
-                if wanted == Wanted::Gradients {
+                if wanted.gradients {
                     gradient = view.gradient(vertex);
                     if dt > 0.0 && !is_new {
                         rate = (gradient - last.gradient) * (1.0 / dt);
                     }
                 }
                 *last = Last { place, gradient };
-                *now = Vertex { place, velocity, gradient, rate, mobility, is_there };
-            }
+                now[k] = Vertex { place, velocity, gradient, rate, mobility, is_there };
+            });
         });
     }
 
@@ -272,34 +346,10 @@ impl Patch {
     /// Hands the forces on the vertices on to the particles.
     pub fn hand_on(&mut self) {
         let Self { skin, forces, couples, has_couples, starts, ends, .. } = self;
-        let (skin, forces, couples, has_couples) = (&**skin, &forces[..], &couples[..], *has_couples);
+        let all = HandedOn { skin, forces, couples: has_couples.then_some(&couples[..]), starts, ends };
         let (on_particles, couples_on_particles) = (&mut self.on_particles, &mut self.couples_on_particles);
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
-        type Rows<'a> = (&'a mut [(DVec3, DMat3)], &'a mut [DMat3]);
-        for_each_block(rows, &mut Vec::new(), &|first, (on, alone): Rows<'_>| {
-            for (k, (on, alone)) in on.iter_mut().zip(alone).enumerate() {
-                let ends = &ends[starts[first + k] as usize..starts[first + k + 1] as usize];
-                let (mut force, mut couple) = (DVec3::ZERO, DMat3::ZERO);
-                for end in ends {
-                    let mut f = forces[end.vertex as usize];
-                    let map = (end.map != 0).then(|| &skin.maps[end.map as usize]);
-                    if has_couples {
-                        let turning = couples[end.vertex as usize];
-                        couple += map.map_or(turning, |map| map.tensor(turning)) * end.weight;
-                    }
-                    if f == DVec3::ZERO {
-                        continue;
-                    }
-                    if let Some(map) = map {
-                        f = map.vector(f);
-                    }
-                    f *= end.weight;
-                    force += f;
-                    couple += DMat3::from_cols(f * end.arm.x, f * end.arm.y, f * end.arm.z);
-                }
-                (*on, *alone) = ((force, couple), couple);
-            }
-        });
+        for_each_block(rows, &mut Vec::new(), &|first, on| run_hot(OnParticles { all, first, on }));
     }
 
     /// The particles of the patch, with the force, N, and the couple, N m, on each.

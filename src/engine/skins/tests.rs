@@ -91,10 +91,11 @@ fn vertices_follow_an_affine_motion_exactly() {
         }
         let columns = SkinColumns::new(&skin, sim.world()).unwrap();
         let view = columns.view();
-        for (vertex, reference) in (0..).zip(&skin.facets.points) {
-            let expected = f * *reference + shift;
-            assert!(view.place(vertex).distance(expected) < 1e-14, "{shape} {reference}");
-        }
+        let vertices: Vec<u32> = (0..skin.vertices() as u32).collect();
+        view.places(&vertices, &mut |k, place, _| {
+            let reference = skin.facets.points[k];
+            assert!(place.distance(f * reference + shift) < 1e-14, "{shape} {reference}");
+        });
     }
 }
 
@@ -106,7 +107,7 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
         let mut patch = Patch::new(Arc::clone(&skin));
         patch.select(0..skin.facets.corners.len() as u32);
         let columns = SkinColumns::new(&skin, sim.world()).unwrap();
-        patch.update(&columns.view(), 0.0, Wanted::Places);
+        patch.update(&columns.view(), 0.0, Wanted::default());
         let rule = Rule::exact(skin.facets.axes);
         let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
         for facet in 0..skin.facets.corners.len() as u32 {

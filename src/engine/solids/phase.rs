@@ -40,6 +40,11 @@ pub trait SolidPhase: Any + Send + Sync {
     /// stress is `P = -f (x) A / V`.
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]);
 
+    /// Whether the reference configuration is that of the start for good: what is pressed then stays what it is from step to step.
+    fn keeps_reference(&self) -> bool {
+        false
+    }
+
     /// Hands stress that was added on to the ghosts.
     fn renew_ghosts(&mut self);
 }

@@ -18,6 +18,7 @@ use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
+use crate::removal::Leaving;
 use crate::scene::{Contact, Dimension};
 use crate::schedule::{Mode, Stage, System};
 use crate::solids::{SolidBodies, require_support};
@@ -217,6 +218,7 @@ fn set_up(
     packed.pack(&columns, 0.0, std::iter::empty());
     look_at_reference(&mut packed, setup)?;
     setup.resources.insert_solid(phase, packed);
+    setup.resources.insert_of(phase, Leaving::default());
     Ok(())
 }
 

@@ -11,7 +11,7 @@ use super::parameters::Divergence;
 use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
-use crate::removal::REMOVED_ENERGY;
+use crate::removal::{Leaving, REMOVED_ENERGY};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
     BodyPass, Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows,
@@ -177,10 +177,13 @@ impl Stress {
         self.solids.book(step)?;
         let after = self.forces(step.world, packed)?;
         let velocity = view.read::<Velocity>()?;
+        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
             let rows = step.world.body(body.id).rows.clone();
-            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
+            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
+            let power = left + gone;
             step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
         }
         Ok(())

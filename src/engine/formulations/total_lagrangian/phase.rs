@@ -119,6 +119,10 @@ impl SolidPhase for PackedRows {
         });
     }
 
+    fn keeps_reference(&self) -> bool {
+        true
+    }
+
     fn renew_ghosts(&mut self) {
         self.fill_ghost_stresses();
     }

@@ -8,7 +8,7 @@ use super::phase::PackedRows;
 use super::rows::Site;
 use super::system::Deformation;
 use crate::linalg::dyad;
-use crate::removal::REMOVED_ENERGY;
+use crate::removal::{Leaving, REMOVED_ENERGY};
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::solids::SolidPart;
 use crate::solids::SolidSum;
@@ -58,10 +58,13 @@ impl Deformation {
         self.solids.book(step)?;
         let after = self.forces(step, packed)?;
         let velocity = view.read::<Velocity>()?;
+        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         for ((law, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
             let rows = step.world.body(law.id).rows.clone();
-            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
+            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
+            let power = left + gone;
             step.ledger.add(account, law.id, held - sum.stored() + 0.5 * step.clock.dt * power);
         }
         Ok(true)

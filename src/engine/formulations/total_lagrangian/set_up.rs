@@ -15,6 +15,7 @@ use super::support::choose_support;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
+use crate::removal::Leaving;
 use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{
@@ -82,6 +83,7 @@ impl SetUp {
         };
         let packed = self.pack(reference, setup)?;
         setup.resources.insert_solid(phase, packed);
+        setup.resources.insert_of(phase, Leaving::default());
         Ok(())
     }
 

@@ -10,6 +10,7 @@ use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
+use crate::removal::Leaving;
 use crate::solids::{HessianDifference, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{
@@ -59,6 +60,7 @@ impl SetUp {
         })?;
         rows.warn_of_released_at_start(setup);
         setup.resources.insert_solid(phase, rows);
+        setup.resources.insert_of(phase, Leaving::default());
         Ok(())
     }
 

@@ -13,6 +13,7 @@ use crate::formulations::total_lagrangian::{
     BondedSites, Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site,
 };
 use crate::parallel::{Largest, for_each_block, sum_over_blocks};
+use crate::removal::Leaving;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
     BodyPass, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
@@ -195,9 +196,12 @@ impl UpdatedSolids {
         let after = self.forces(step.world, packed)?;
         let velocity = view.read::<Velocity>()?;
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
         for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
             let rows = step.world.body(body.id).rows.clone();
-            let power: f64 = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum();
+            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
+            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
+            let power = left + gone;
             step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
         }
         Ok(())
