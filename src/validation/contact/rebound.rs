@@ -37,7 +37,7 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let velocity = 11.0 * (target - start).normalize();
         let (low, high) = (start - 0.25, start + 0.25);
         let mut simulation = Template::new(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/tests/validation/rebound/scene.ron"),
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/validation/rebound/scene.ron"),
             include_str!("../../../tests/validation/rebound/scene.ron"),
         )
         .set("bodies.block.shape", format!("Box(min: {}, max: {})", tuple(low), tuple(high)))?
@@ -123,7 +123,7 @@ fn least_distance(simulation: &Simulation) -> Result<f64> {
 /// A rigid block that bounces on the cube without loss, tumbling, without friction: it stays over its place.
 fn bounces(registry: &Registry, wanted: usize) -> Result<Vec<Check>> {
     let mut simulation = Template::new(
-        concat!(env!("CARGO_MANIFEST_DIR"), "/tests/validation/rebound/bounces.ron"),
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/validation/rebound/bounces.ron"),
         include_str!("../../../tests/validation/rebound/bounces.ron"),
     )
     .build(registry)?;
