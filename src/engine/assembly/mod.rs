@@ -4,6 +4,7 @@ mod build;
 mod clamps;
 #[cfg(test)]
 mod handed_tests;
+mod lattice_edges;
 mod memory;
 mod named_fields;
 mod names;

@@ -138,3 +138,24 @@ fn what_is_stretched_up_to_its_support_has_the_energy_of_that_length() {
         }
     }
 }
+
+#[test]
+fn supports_that_end_in_the_lattice_are_told() {
+    let within = "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))), axes: [X])";
+    let side = "Fix(on: Select(face: MinX))";
+    for (formulation, condition, expected) in [
+        ("TotalLagrangian", within, Some("4 % softer")),
+        ("Eulerian", within, Some("4 % softer")),
+        ("Eulerian", side, Some("8 % stiffer")),
+        ("TotalLagrangian", side, None),
+        ("TotalLagrangian", "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))))", None),
+        ("TotalLagrangian", "Fix(on: Select(), axes: [Y])", None),
+    ] {
+        // Half a spacing is 3.8 % of 0.13 m, a spacing 7.7 %.
+        let sim = strip_of(formulation, 0.3, condition);
+        let told =
+            sim.warnings().iter().find(|warning| warning.contains("softer") || warning.contains("stiffer"));
+        assert_eq!(told.is_some(), expected.is_some(), "{formulation} {condition}: {:?}", sim.warnings());
+        assert!(told.is_none_or(|told| told.contains(expected.unwrap_or_default())), "{told:?}");
+    }
+}
