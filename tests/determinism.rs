@@ -6,7 +6,7 @@ use common::coupled::coupled;
 use common::thin::thin;
 use common::touching::{tool_of_triangles, touching};
 use common::wearing::wearing;
-use common::{all_plugins, crash, failing, failing_metals, flow, metals, removal, simulation};
+use common::{all_plugins, crash, failing, failing_metals, flow, metals, mixed, removal, simulation};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -30,6 +30,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (2, coupled()),
         (2, thin()),
         (3, flow(3)),
+        (3, mixed(&flow(3))),
         (3, metals()),
         (2, failing()),
         (2, failing_metals()),

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use meshless_engine::notation::{count, number, quantity, quantity_to};
 use meshless_engine::record::StateHash;
+use meshless_engine::scene::Precision;
 use meshless_engine::schedule::{AccountKind, Ledger};
 use meshless_engine::simulation::{Outcome, Summary};
 
@@ -34,6 +35,9 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
         counted(summary.particle_steps_per_second, "particle-steps/s"),
         count(summary.threads as u64, "thread")
     );
+    if summary.precision == Precision::Mixed {
+        let _ = writeln!(text, "sums over neighbours of fluids in single precision");
+    }
     if let Some(short) = summary.short_steps {
         let per_step = short as f64 / summary.steps.max(1) as f64;
         let _ = writeln!(

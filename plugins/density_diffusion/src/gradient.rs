@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass};
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass, keep_rows};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Arithmetic, Vector};
+use meshless_engine::parallel::{FourLanes, Vector};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Density};
@@ -17,6 +17,7 @@ meshless_engine::column! {
 
 /// Adds the column and the system that fills it, once density and volume are those of the end of the step.
 pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
+    keep_rows(sim);
     sim.add_column_to::<DensityGradient>(&bodies);
     sim.add_system(
         System::new(Stage::Boundary, "density_gradient", Gradient { bodies: bodies.clone() })
@@ -55,7 +56,7 @@ impl RowPass for GradientPass<'_> {
     type Output = DensityGradient;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DensityGradient {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> DensityGradient {
         let own = self.density[i].0;
         let mut moment = FourMoments::new(a);
         let mut sum = Vector::zero(a);

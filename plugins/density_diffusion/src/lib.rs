@@ -7,7 +7,7 @@ mod gradient;
 mod solid;
 
 use meshless_engine::materials::ParameterError;
-use meshless_engine::pair::{Pair, PairTerm, Rates};
+use meshless_engine::pair::{Pair, PairTerm, Rates, Relative};
 use meshless_engine::parallel::{Arithmetic, Number, Vector};
 use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Density};
@@ -93,8 +93,8 @@ struct Molteni {
 }
 
 impl PairTerm for Molteni {
-    type ReadI = (Density,);
-    type ReadJ = (Density,);
+    type ReadI = (Relative<Density>,);
+    type ReadJ = (Relative<Density>,);
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
     const READS_VELOCITY: bool = false;
@@ -119,8 +119,8 @@ struct Antuono {
 }
 
 impl PairTerm for Antuono {
-    type ReadI = (Density, DensityGradient);
-    type ReadJ = (Density, DensityGradient);
+    type ReadI = (Relative<Density>, DensityGradient);
+    type ReadJ = (Relative<Density>, DensityGradient);
     const CHANGES_DENSITY: bool = true;
     const READS_KERNEL: bool = false;
     const READS_VELOCITY: bool = false;

@@ -9,7 +9,9 @@ mod response;
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, Repayment, SHIFTING_ENERGY, displace};
+use meshless_engine::formulations::fluid::{
+    DensityShift, FlowCloud, Repayment, SHIFTING_ENERGY, displace, keep_rows,
+};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
@@ -59,6 +61,7 @@ impl Plugin for ParticleShifting {
         if self.strength == 0.0 || bodies.is_empty() {
             return Ok(());
         }
+        keep_rows(sim);
         sim.add_column_to::<DensityShift>(&bodies);
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));

@@ -3,7 +3,7 @@
 use meshless_engine::correction::FourMoments;
 use meshless_engine::formulations::fluid::{FlowCloud, FourNear, RowPass, smallest_eigenvalue};
 use meshless_engine::glam::{DMat3, DVec3};
-use meshless_engine::parallel::{Arithmetic, Number, Vector};
+use meshless_engine::parallel::{FourLanes, Number, Vector};
 
 /// Strength of the part that keeps close particles apart, with the fourth power of their kernel.
 const CLOSE: f64 = 0.2;
@@ -42,7 +42,7 @@ impl RowPass for Locals<'_> {
     type Output = Local;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Local {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Local {
         let cloud = self.cloud;
         let mut sums = Sums::new(a);
         for near in cloud.fours(a, i, &(0..cloud.fluid)) {
@@ -65,14 +65,14 @@ impl RowPass for Locals<'_> {
 }
 
 /// Sums over neighbours.
-struct Sums<A> {
+struct Sums<A: FourLanes> {
     moment: FourMoments<A>,
     first_moment: Vector<A>,
     filled: Number<A>,
     gradient: [Vector<A>; 3],
 }
 
-impl<A: Arithmetic> Sums<A> {
+impl<A: FourLanes> Sums<A> {
     #[inline(always)]
     fn new(a: A) -> Self {
         Self {

@@ -2,7 +2,7 @@
 
 use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, RowPass};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Arithmetic, Number, Vector, sum_over_blocks};
+use meshless_engine::parallel::{FourLanes, Number, Vector, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Density, Mass, Removed, Velocity};
 
@@ -43,7 +43,7 @@ impl RowPass for Responses<'_> {
     type Output = Response;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Response {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Response {
         let Self { cloud, locals, shifts, pending } = *self;
         let (records, own) = (cloud.records(), shifts[i]);
         let (v_i, pending_i) = (records[i].velocity(), pending[i]);

@@ -5,9 +5,9 @@
 //! no better than particles are evenly spread. Energy that it has given is paid back by friction between neighbours.
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, Repayment, RowPass};
+use meshless_engine::formulations::fluid::{FlowCloud, Repayment, RowPass, keep_rows};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
+use meshless_engine::parallel::{FourLanes, Vector, sum_over_blocks};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Force, Mass, Pressure, Removed, Velocity};
@@ -33,6 +33,7 @@ impl Plugin for TensileControl {
         if bodies.is_empty() {
             return Ok(());
         }
+        keep_rows(sim);
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
                 .on_bodies(bodies.clone())
@@ -120,7 +121,7 @@ impl RowPass for Changes<'_> {
     type Output = DVec3;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
         let p = self.pressure[i].0;
         if p >= 0.0 {
             return DVec3::ZERO;

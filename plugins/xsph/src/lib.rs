@@ -4,10 +4,10 @@
 
 use std::ops::Range;
 
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace};
+use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace, keep_rows};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::parallel::{Arithmetic, Vector};
+use meshless_engine::parallel::{FourLanes, Vector};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Mass, Position, Velocity};
@@ -47,6 +47,7 @@ impl Plugin for Xsph {
         if self.epsilon == 0.0 || bodies.is_empty() {
             return Ok(());
         }
+        keep_rows(sim);
         let gravity = sim.gravity();
         let work = Smoothing { epsilon: self.epsilon, gravity, bodies: bodies.clone(), moves: Vec::new() };
         sim.add_system(
@@ -98,7 +99,7 @@ impl RowPass for Mean<'_> {
     type Output = DVec3;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
         let own = Vector::splat(a, self.velocity[i].0);
         let mut sum = Vector::zero(a);
         for near in self.cloud.fours(a, i, &self.rows) {

@@ -184,6 +184,18 @@ pub const WORKS: &[Work] = &[
         ],
     },
     Work {
+        name: "dam-80-mixed",
+        title: "the same with sums in single precision",
+        scene: DAM,
+        spacing: cube,
+        set: &[
+            ("precision", Text("Mixed")),
+            ("bodies.water.spacing", Spacing),
+            ("bodies.tank.spacing", Spacing),
+            ("bodies.tank.shape", Tank(3)),
+        ],
+    },
+    Work {
         name: "dam-170",
         title: "the same with 170 neighbours inside",
         scene: DAM,

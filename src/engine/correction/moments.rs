@@ -2,16 +2,16 @@
 
 use super::MomentMatrix;
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, Number, Vector};
+use crate::parallel::{FourLanes, Number, Vector};
 
 /// Four partial sums of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij`.
 #[derive(Clone, Copy)]
-pub struct FourMoments<A> {
+pub struct FourMoments<A: FourLanes> {
     /// Products of a component with all of those from it on: xx, xy, xz; yy, yz; zz.
     products: [Vector<A>; 3],
 }
 
-impl<A: Arithmetic> FourMoments<A> {
+impl<A: FourLanes> FourMoments<A> {
     /// The sums of no neighbours.
     #[inline(always)]
     pub fn new(a: A) -> Self {

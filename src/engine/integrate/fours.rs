@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use crate::parallel::{Arithmetic, Lanes4};
+use crate::parallel::{FourLanes, Lanes4};
 
 /// Numbers of four vectors.
 const FOUR: usize = 12;
@@ -75,21 +75,21 @@ impl FourVectors {
 
     /// Products of components.
     #[inline(always)]
-    pub fn times<A: Arithmetic>(self, a: A, other: Self) -> Self {
+    pub fn times<A: FourLanes>(self, a: A, other: Self) -> Self {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
         Self([a.times(x, p), a.times(y, q), a.times(z, r)])
     }
 
     /// `self + s other`.
     #[inline(always)]
-    pub fn plus_scaled<A: Arithmetic>(self, a: A, s: f64, other: Self) -> Self {
+    pub fn plus_scaled<A: FourLanes>(self, a: A, s: f64, other: Self) -> Self {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
         Self([a.scale_add(s, p, x), a.scale_add(s, q, y), a.scale_add(s, r, z)])
     }
 
     /// The components along which the mobility is zero; zero for the others.
     #[inline(always)]
-    pub fn where_held<A: Arithmetic>(self, a: A, mobility: Self) -> Self {
+    pub fn where_held<A: FourLanes>(self, a: A, mobility: Self) -> Self {
         let least = Lanes4::splat(f64::MIN_POSITIVE);
         let ([x, y, z], [p, q, r]) = (self.0, mobility.0);
         Self([a.where_below(p, least, x), a.where_below(q, least, y), a.where_below(r, least, z)])
@@ -97,14 +97,14 @@ impl FourVectors {
 
     /// `sum` and the scalar products with other vectors, spread over its lanes.
     #[inline(always)]
-    pub fn dot_onto<A: Arithmetic>(self, a: A, other: Self, sum: Lanes4) -> Lanes4 {
+    pub fn dot_onto<A: FourLanes>(self, a: A, other: Self, sum: Lanes4) -> Lanes4 {
         let ([x, y, z], [p, q, r]) = (self.0, other.0);
         a.times_add(z, r, a.times_add(y, q, a.times_add(x, p, sum)))
     }
 
     /// Squares of the lengths of the four vectors.
     #[inline(always)]
-    pub fn squares<A: Arithmetic>(self, a: A) -> Lanes4 {
+    pub fn squares<A: FourLanes>(self, a: A) -> Lanes4 {
         let Self([Lanes4(p), Lanes4(q), Lanes4(r)]) = self.times(a, self);
         let (x, y, z) = (
             Lanes4([p[0], p[3], q[2], r[1]]),
@@ -125,7 +125,7 @@ mod tests {
     impl HotLoop for Check {
         type Output = ();
 
-        fn run<A: Arithmetic>(self, a: A) {
+        fn run<A: FourLanes>(self, a: A) {
             let numbers: Vec<f64> = (0..FOUR).map(|k| (1.0 + k as f64).sin()).collect();
             let vectors: Vec<DVec3> = numbers.chunks(3).map(DVec3::from_slice).collect();
             for count in 0..=4 {

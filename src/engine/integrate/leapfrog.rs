@@ -8,7 +8,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::fours::FourVectors;
-use crate::parallel::{Arithmetic, BlockSum, HotLoop, Lanes4, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, Position, Velocity};
@@ -168,7 +168,7 @@ impl HotLoop for FirstKick<'_> {
     type Output = MotionSum;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> MotionSum {
+    fn run<A: FourLanes>(self, a: A) -> MotionSum {
         let gravity = FourVectors::splat(self.gravity);
         let (mut gravity_power, mut constraint_power) = (Lanes4::ZERO, Lanes4::ZERO);
         let positions: &mut [f64] = bytemuck::cast_slice_mut(self.positions);
@@ -244,7 +244,7 @@ impl HotLoop for SecondKick<'_> {
     type Output = MotionSum;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> MotionSum {
+    fn run<A: FourLanes>(self, a: A) -> MotionSum {
         let (mut constraint_power, mut twice_kinetic) = (Lanes4::ZERO, Lanes4::ZERO);
         let mut acceleration_squared = Lanes4::ZERO;
         let of = Components::new(self.rows);

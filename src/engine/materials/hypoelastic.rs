@@ -14,7 +14,7 @@ use super::jaumann::{HypoelasticJ2, HypoelasticState, velocity_gradient_step};
 use super::law::{Material, MaterialModel, ParameterError, SolidLaw, StressRows};
 use super::state::StateRows;
 use super::stretches::Stretches;
-use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation};
 
 elastic_parameters! {
@@ -111,7 +111,7 @@ impl HotLoop for HypoelasticLoop<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let (law, rows) = (self.law, self.rows);
         let mut state = rows.state.reborrow();
         let deviator = state.take::<DeviatoricStress>();

@@ -22,7 +22,7 @@ use super::return_mapping::Trial;
 use super::state::StateRows;
 use super::stretches::Stretches;
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, YieldStress};
 
 elastic_parameters! {
@@ -161,7 +161,7 @@ impl HotLoop for PlasticLoop<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let (law, rows) = (self.law, self.rows);
         let mut state = rows.state.reborrow();
         let strain = state.take::<PlasticStrain>();

@@ -12,7 +12,7 @@ use super::fluid::FluidLaw;
 use super::state::StateRows;
 use super::stretches::Stretches;
 use crate::notation::number;
-use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::ColumnSet;
 
 /// A parameter that is out of its range.
@@ -215,7 +215,7 @@ impl<H: Hyperelastic> HotLoop for StressLoop<'_, '_, H> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let young = self.law.elastic().young;
         let StressRows { deformation, stress, energy, modulus, .. } = self.rows;
         let n = deformation.len();

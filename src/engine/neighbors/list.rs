@@ -50,6 +50,28 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
+    /// Becomes the list of sets of rows of `other`: what any of a set has for a neighbour, ascending.
+    pub(crate) fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self) {
+        self.offsets.clear();
+        self.offsets.push(0);
+        self.indices.clear();
+        for set in sets {
+            let start = self.indices.len();
+            set.iter().for_each(|&row| self.indices.extend_from_slice(other.row(row as usize)));
+            let row = &mut self.indices[start..];
+            row.sort_unstable();
+            let mut kept = start;
+            for k in start..self.indices.len() {
+                if kept == start || self.indices[k] != self.indices[kept - 1] {
+                    self.indices[kept] = self.indices[k];
+                    kept += 1;
+                }
+            }
+            self.indices.truncate(kept);
+            self.offsets.push(kept);
+        }
+    }
+
     /// Counts neighbours from `by` on, as rows of a larger set of particles.
     pub fn shift(&mut self, by: u32) {
         self.indices.iter_mut().for_each(|j| *j += by);

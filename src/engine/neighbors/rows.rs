@@ -6,7 +6,7 @@
 use super::grid::{Grid, Ranges};
 use super::periodic::SHIFT;
 use super::{Cloud, NeighborList, Periodic, Support};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -44,6 +44,8 @@ pub(super) struct Query<'a> {
     /// Whether particles differ along z.
     pub solid: bool,
     pub order: Order<'a>,
+    /// Half the edges of the boxes around the targets, m, where targets are boxes: a source within the radius of the box is a neighbour.
+    pub halves: Option<&'a [DVec3]>,
 }
 
 /// Order of a row.
@@ -62,15 +64,17 @@ impl Query<'_> {
     pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
         let uniform = matches!(self.targets.support, Support::Uniform(_)) && self.grid.supports.is_empty();
         match (self.periodic.any(), uniform) {
-            (false, true) if self.solid => self.fill_as::<3, false, true>(buffers, list),
-            (false, true) => self.fill_as::<2, false, true>(buffers, list),
-            (false, false) => self.fill_as::<3, false, false>(buffers, list),
-            (true, true) => self.fill_as::<3, true, true>(buffers, list),
-            (true, false) => self.fill_as::<3, true, false>(buffers, list),
+            (false, true) if self.halves.is_some() => self.fill_as::<3, false, true, true>(buffers, list),
+            (true, true) if self.halves.is_some() => self.fill_as::<3, true, true, true>(buffers, list),
+            (false, true) if self.solid => self.fill_as::<3, false, true, false>(buffers, list),
+            (false, true) => self.fill_as::<2, false, true, false>(buffers, list),
+            (false, false) => self.fill_as::<3, false, false, false>(buffers, list),
+            (true, true) => self.fill_as::<3, true, true, false>(buffers, list),
+            (true, false) => self.fill_as::<3, true, false, false>(buffers, list),
         }
     }
 
-    fn fill_as<const D: usize, const PERIODIC: bool, const UNIFORM: bool>(
+    fn fill_as<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool>(
         &self,
         buffers: &mut Buffers,
         list: &mut NeighborList,
@@ -87,7 +91,7 @@ impl Query<'_> {
             wave.par_iter_mut().enumerate().for_each(|(b, block)| {
                 let start = first + b * BLOCK;
                 let rows = start..(start + BLOCK).min(last);
-                run_hot(BlockRows::<D, PERIODIC, UNIFORM> { query: self, rows, block });
+                run_hot(BlockRows::<D, PERIODIC, UNIFORM, BOXES> { query: self, rows, block });
             });
 
             let before = list.offsets[first];
@@ -119,21 +123,22 @@ impl Query<'_> {
 }
 
 /// The rows of a block, whose particles differ along the first D axes.
-struct BlockRows<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> {
+struct BlockRows<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> {
     query: &'a Query<'a>,
     rows: Range<usize>,
     block: &'a mut Block,
 }
 
-impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool> HotLoop
-    for BlockRows<'_, D, PERIODIC, UNIFORM>
+impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> HotLoop
+    for BlockRows<'_, D, PERIODIC, UNIFORM, BOXES>
 {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Query { grid, targets, same_set, radius, order, .. } = *self.query;
-        let test = Test::<D, PERIODIC, UNIFORM>::new(self.query);
+        let test = Test::<D, PERIODIC, UNIFORM, BOXES>::new(self.query);
+        let halves = self.query.halves.unwrap_or_default();
         let sorted = grid.rows();
         let Block { ends, found, ranges } = self.block;
         ends.clear();
@@ -142,7 +147,8 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool> HotLoop
             let start = used;
             let x_i = targets.positions[i];
             let support_i = if UNIFORM { 0.0 } else { targets.support_of(i) };
-            grid.around(x_i, radius, ranges);
+            let half = if BOXES { halves[i] } else { DVec3::ZERO };
+            grid.around(x_i, if BOXES { radius + half.length() } else { radius }, ranges);
             if found.len() < used + ranges.room {
                 found.resize((used + ranges.room) * 3 / 2, 0);
             }
@@ -155,7 +161,7 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool> HotLoop
                 let (candidates, four_rows) = test.candidates(sorted, range.first as usize, fours);
                 for (k, four_rows) in four_rows.iter().enumerate() {
                     let mask = if k + 1 < fours { MASKS[4] } else { last };
-                    let near = test.near(a, &candidates, k, (x_i, support_i)) & mask;
+                    let near = test.near(a, &candidates, k, (x_i, half, support_i)) & mask;
                     if let Some(out) = found[used..].first_chunk_mut() {
                         *out = a.pack(*four_rows, near);
                     }
@@ -191,7 +197,7 @@ fn without(values: &mut [u32], first: usize, value: u32) -> usize {
 }
 
 /// Decides who is near, from distances along the first D axes.
-struct Test<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> {
+struct Test<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> {
     coordinates: [&'a [f64]; 3],
     supports: &'a [f64],
     length: DVec3,
@@ -201,7 +207,9 @@ struct Test<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> {
     square: f64,
 }
 
-impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> Test<'a, D, PERIODIC, UNIFORM> {
+impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool>
+    Test<'a, D, PERIODIC, UNIFORM, BOXES>
+{
     #[inline(always)]
     fn new(query: &Query<'a>) -> Self {
         let Query { grid, periodic, skin, radius, .. } = *query;
@@ -234,14 +242,14 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> Test<'a, D, 
 
     /// Which of the k-th four candidates are near a place: a bit for each.
     #[inline(always)]
-    fn near<A: Arithmetic>(
+    fn near<A: FourLanes>(
         &self,
         a: A,
         candidates: &Candidates<'_, D>,
         k: usize,
-        (x_i, support_i): (DVec3, f64),
+        (x_i, half, support_i): (DVec3, DVec3, f64),
     ) -> usize {
-        let x_i = [x_i.x, x_i.y, x_i.z];
+        let (x_i, half) = (x_i.to_array(), half.to_array());
         let mut square = Lanes4::ZERO;
         for axis in 0..D {
             let mut x = a.minus(Lanes4(candidates.coordinates[axis][k]), Lanes4::splat(x_i[axis]));
@@ -249,6 +257,10 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool> Test<'a, D, 
                 let shift = Lanes4::splat(SHIFT);
                 let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
                 x = a.scale_add(-self.length[axis], turns, x);
+            }
+            if BOXES {
+                let distance = a.larger(x, a.scale(-1.0, x));
+                x = a.or_zero(a.minus(distance, Lanes4::splat(half[axis])));
             }
             square = a.times_add(x, x, square);
         }

@@ -31,6 +31,8 @@ struct Wanted<'a> {
     /// Where the groups of sources end that order a row; none for ascending rows.
     groups: Option<&'a [u32]>,
     periodic: &'a Periodic,
+    /// Half the edges of the boxes around the targets, m, where targets are boxes.
+    halves: Option<&'a [DVec3]>,
 }
 
 impl NeighborSearch {
@@ -46,7 +48,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: true, skin, groups: None, periodic };
+        let wanted = Wanted { same_set: true, skin, groups: None, periodic, halves: None };
         self.build(cloud, cloud, wanted, list)
     }
 
@@ -63,7 +65,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: true, skin, groups: Some(groups), periodic };
+        let wanted = Wanted { same_set: true, skin, groups: Some(groups), periodic, halves: None };
         self.build(cloud.first(targets), cloud, wanted, list)
     }
 
@@ -80,7 +82,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: false, skin, groups: None, periodic };
+        let wanted = Wanted { same_set: false, skin, groups: None, periodic, halves: None };
         self.build(targets, sources, wanted, list)
     }
 
@@ -99,7 +101,40 @@ impl NeighborSearch {
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(positions, self.sources.largest_support);
         targets.check("target")?;
-        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic };
+        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic, halves: None };
+        let radius = self.radius(targets, wanted)?;
+        self.fill(targets, radius, wanted, list);
+        Ok(())
+    }
+
+    /// Sorts the sources of one support radius into the grid, for the searches after it.
+    ///
+    /// # Errors
+    /// See [`NeighborError`].
+    pub(crate) fn sort(
+        &mut self,
+        sources: Cloud<'_>,
+        skin: f64,
+        periodic: &Periodic,
+    ) -> Result<(), NeighborError> {
+        let wanted = Wanted { same_set: true, skin, groups: None, periodic, halves: None };
+        self.grid_of(sources.first(0), sources, wanted).map(|_| ())
+    }
+
+    /// Lists the sources of the search before that are within the support radius and the skin of each of the boxes around these centres, m, with these halves of
+    /// their edges, m. Otherwise as [`NeighborSearch::of_others`].
+    ///
+    /// # Errors
+    /// See [`NeighborError`].
+    pub(crate) fn of_boxes(
+        &mut self,
+        (centers, halves, groups): (&[DVec3], &[DVec3], &[u32]),
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        let targets = Cloud::uniform(centers, self.sources.largest_support);
+        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic, halves: Some(halves) };
         let radius = self.radius(targets, wanted)?;
         self.fill(targets, radius, wanted, list);
         Ok(())
@@ -112,6 +147,18 @@ impl NeighborSearch {
         wanted: Wanted<'_>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
+        let radius = self.grid_of(targets, sources, wanted)?;
+        self.fill(targets, radius, wanted, list);
+        Ok(())
+    }
+
+    /// Sorts the sources into the grid; gives the largest pair radius, m.
+    fn grid_of(
+        &mut self,
+        targets: Cloud<'_>,
+        sources: Cloud<'_>,
+        wanted: Wanted<'_>,
+    ) -> Result<f64, NeighborError> {
         let Wanted { same_set, periodic, .. } = wanted;
         sources.check(if same_set { "target" } else { "source" })?;
         if !same_set {
@@ -136,8 +183,7 @@ impl NeighborSearch {
             matches!((targets.support, sources.support), (Support::Uniform(_), Support::Uniform(_)));
         let particles = targets.positions.len().max(count);
         self.grid.build((sources, !uniform), bounds, radius, periodic, particles);
-        self.fill(targets, radius, wanted, list);
-        Ok(())
+        Ok(radius)
     }
 
     /// The largest pair radius, m.
@@ -161,7 +207,7 @@ impl NeighborSearch {
 
     /// Lists the neighbours of the targets in the grid.
     fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: Wanted<'_>, list: &mut NeighborList) {
-        let Wanted { same_set, skin, groups, periodic } = wanted;
+        let Wanted { same_set, skin, groups, periodic, halves } = wanted;
         let Sources { count, bounds: (low, high), .. } = self.sources;
         let more = if same_set { (low, high) } else { targets.bounds() };
         let solid = low.z.min(more.0.z) < high.z.max(more.1.z);
@@ -170,7 +216,8 @@ impl NeighborSearch {
             Some(ends) if ends.iter().all(|&end| end as usize >= count) => Order::Cells,
             Some(ends) => Order::Groups(ends),
         };
-        let query = Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order };
+        let query =
+            Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order, halves };
         query.fill(&mut self.buffers, list);
     }
 }

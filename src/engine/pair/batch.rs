@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::term::Pair;
-use crate::parallel::{Arithmetic, Lanes4, Number, Vector};
+use crate::parallel::{FourLanes, Lanes4, Number, Vector};
 
 /// Fours from which on a batch is full: it then still fits the first-level cache.
 const FULL: usize = 40;
@@ -257,7 +257,7 @@ impl Row<'_> {
 
     /// The pairs of a four; `PLAIN` without reference vectors, `ALIKE` with one support radius.
     #[inline(always)]
-    pub fn pair<A: Arithmetic, const PLAIN: bool, const ALIKE: bool>(&self, a: A, k: usize) -> Pair<A> {
+    pub fn pair<A: FourLanes, const PLAIN: bool, const ALIKE: bool>(&self, a: A, k: usize) -> Pair<A> {
         let FourPairs { current, velocity, weight, kernel, volume_j, .. } = &self.pairs[k];
         let reference = if PLAIN { current } else { self.reference.get(k).unwrap_or(current) };
         let support = if ALIKE { None } else { self.supports.get(k).copied() };

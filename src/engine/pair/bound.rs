@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::batch::{Extras, MAX_ROWS, PairBatch};
+use super::block::{BlockPairs, TermSums};
 use super::of_phase::Fastest;
 use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
-use crate::parallel::{Arithmetic, HotLoop, run_hot_on};
+use crate::parallel::{BlockLoop, EightLanes, FourLanes, HotLoop, run_blocks_on, run_hot_on};
 use crate::schedule::{Access, Mode};
 use crate::world::{Column, DensityRate, Force, MissingColumn, PhaseView, Velocity};
 
@@ -14,6 +15,9 @@ use crate::world::{Column, DensityRate, Force, MissingColumn, PhaseView, Velocit
 pub(super) trait RowTerm: Sync {
     /// Adds the contributions of all neighbours of the rows of a batch, the first of which is row `first` of the phase.
     fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>);
+
+    /// Adds the contributions of some neighbours of a block.
+    fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut TermSums);
 }
 
 /// What a term writes for the rows of a batch.
@@ -42,6 +46,34 @@ impl<T: PairTerm> RowTerm for Bound<'_, T> {
     fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>) {
         run_hot_on(plane, Rows { bound: self, first, batch, out });
     }
+
+    fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut TermSums) {
+        run_blocks_on(plane, OneBlock { bound: self, pairs, sums });
+    }
+}
+
+/// Some neighbours of a block, with the pair function inlined.
+struct OneBlock<'r, 'a, T: PairTerm> {
+    bound: &'r Bound<'a, T>,
+    pairs: &'r BlockPairs,
+    sums: &'r mut TermSums,
+}
+
+impl<T: PairTerm> BlockLoop for OneBlock<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: EightLanes>(self, a: A) {
+        let Bound { term, of_i, of_j } = *self.bound;
+        let base = self.pairs.rows[0];
+        let i = T::ReadI::eight(a, of_i, &self.pairs.rows, base);
+        let mut rates = self.sums.rates(a);
+        for pair in self.pairs.pairs() {
+            let j = T::ReadJ::same(a, of_j, pair.row, base);
+            term.pair(&self.pairs.pair(a, pair), i, j, &mut rates);
+        }
+        self.sums.keep(&rates);
+    }
 }
 
 /// The neighbours of some particles, with the pair function inlined.
@@ -56,7 +88,7 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Extras { reference, mirrors, supports, .. } = self.batch.extras();
         match (reference, mirrors || supports) {
             (false, false) => self.add::<A, true, true>(a),
@@ -70,7 +102,7 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
 impl<T: PairTerm> Rows<'_, '_, T> {
     /// Adds up the neighbours; `PLAIN` without reference vectors, `ALIKE` where none is an image and all have one support radius.
     #[inline(always)]
-    fn add<A: Arithmetic, const PLAIN: bool, const ALIKE: bool>(self, a: A) {
+    fn add<A: FourLanes, const PLAIN: bool, const ALIKE: bool>(self, a: A) {
         let Bound { term, of_i, of_j } = *self.bound;
         let RowsOut { by_term, term: own, terms, total, density, fastest } = self.out;
         for r in 0..self.batch.rows() {
@@ -119,6 +151,15 @@ impl Chain<'_> {
             before.rows(first, batch, plane, out);
         }
         self.term.rows(first, batch, plane, RowsOut { by_term, term, terms, total, density, fastest });
+    }
+
+    /// Runs every term on some neighbours of a block; `sums` has one entry for each.
+    pub fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut [TermSums]) {
+        let Some((own, rest)) = sums.split_last_mut() else { return };
+        if let Some(before) = self.before {
+            before.block(pairs, plane, rest);
+        }
+        self.term.block(pairs, plane, own);
     }
 }
 

@@ -6,6 +6,7 @@
 //! for all terms.
 
 mod batch;
+mod block;
 mod bound;
 mod of_phase;
 mod pass;
@@ -14,9 +15,10 @@ mod term;
 mod work;
 
 pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, Room, WeightAt};
-pub(crate) use of_phase::{BodyTerms, BoundTerms, Fastest, PhaseTerms, TermRows};
+pub(crate) use block::{BlockPairs, CHUNK, EightPairs, TermSums};
+pub(crate) use of_phase::{AllSums, BodyTerms, BoundTerms, Fastest, PhaseTerms, TermRows};
 pub(crate) use pass::with_batch;
 pub use pass::{PairRows, PairSource, add_pair_systems};
-pub use read::{FourOf, ReadSet};
+pub use read::{FourOf, ReadSet, Relative};
 pub use term::{Pair, PairReads, PairTerm, Rates};
 pub(crate) use work::add_work_systems;

@@ -5,10 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::batch::{MAX_ROWS, PairBatch};
+use super::block::{BlockPairs, TermSums};
 use super::bound::{Chain, RowsOut, bind_all};
 use super::term::{PairReads, PairTermOfBodies};
 use super::work;
-use crate::parallel::{BlockSum, Split};
+use crate::parallel::{BlockSum, EIGHT, Split};
 use crate::plugin::{ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Step, StepError};
@@ -167,6 +168,17 @@ impl BoundTerms<'_> {
     }
 }
 
+/// The sums of all terms over the neighbours of a block.
+pub(crate) type AllSums = [TermSums; MAX_TERMS];
+
+impl BoundTerms<'_> {
+    /// Runs all terms on some neighbours of a block of particles, and adds what they make to `sums`.
+    #[inline]
+    pub fn run_block(&self, pairs: &BlockPairs, sums: &mut [TermSums]) {
+        self.chain.block(pairs, self.plane, sums);
+    }
+}
+
 /// The largest rates of a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Fastest {
@@ -189,6 +201,21 @@ impl Fastest {
     }
 }
 
+impl Fastest {
+    /// The largest of a block of particles.
+    #[inline]
+    pub fn add_block(&mut self, sums: &[TermSums]) {
+        let mut of_lane = [Self::default(); EIGHT];
+        for sums in sums {
+            for (lane, fastest) in of_lane.iter_mut().enumerate() {
+                fastest.damping += f64::from(sums.damping.0[lane]);
+                fastest.stiffness += f64::from(sums.stiffness.0[lane]);
+            }
+        }
+        of_lane.iter().for_each(|fastest| self.add(fastest));
+    }
+}
+
 impl BlockSum for Fastest {
     #[inline]
     fn add(&mut self, next: &Self) {
@@ -207,6 +234,27 @@ pub(crate) struct TermRows<'a> {
 }
 
 impl<'a> TermRows<'a> {
+    /// Number of terms.
+    #[inline]
+    pub fn terms(&self) -> usize {
+        self.terms
+    }
+
+    /// Writes the force of a term on row `k`, N, and adds it to the total.
+    #[inline]
+    pub fn put_force(&mut self, k: usize, term: usize, force: DVec3) {
+        self.by_term[self.terms * k + term] = force;
+        self.total[k].0 += force;
+    }
+
+    /// Writes the density rate of row `k`, kg/(m3 s), where the phase has one.
+    #[inline]
+    pub fn put_density(&mut self, k: usize, rate: f64) {
+        if let Some(density) = self.density.get_mut(k) {
+            density.0 = rate;
+        }
+    }
+
     /// Rows of bodies without terms.
     pub fn without_terms(total: &'a mut [Force]) -> Self {
         Self { total, by_term: &mut [], terms: 0, density: &mut [] }

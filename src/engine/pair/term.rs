@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::batch::WeightAt;
 use super::bound::ErasedTerm;
 use super::read::{FourOf, ReadSet};
-use crate::parallel::{Arithmetic, Number, Vector};
+use crate::parallel::{Arithmetic, FourLanes, Number, Vector};
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
@@ -13,7 +13,7 @@ use crate::world::BodySet;
 /// reference vector is the current one. Lanes that hold no neighbour have `volume_j`, `weight` and `kernel` zero: what a term
 /// adds carries the volume of j, as sums over neighbours do.
 #[derive(Clone, Copy)]
-pub struct Pair<A> {
+pub struct Pair<A: Arithmetic> {
     /// Current pair vector x_ij = x_j - x_i, m.
     pub x_ij: Vector<A>,
     /// Reference pair vector X_ij, m.
@@ -93,7 +93,7 @@ impl<A: Arithmetic> Pair<A> {
 
 /// What a term adds to particle i, lane by lane; the lanes are added up once the row is done.
 #[derive(Clone, Copy)]
-pub struct Rates<A> {
+pub struct Rates<A: Arithmetic> {
     /// Force on i, N. The force on j must be its exact opposite when the roles are swapped.
     pub force: Vector<A>,
     /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with [`PairTerm::CHANGES_DENSITY`].
@@ -119,7 +119,9 @@ impl<A: Arithmetic> Rates<A> {
         let zero = Number::zero(a);
         Self { force: Vector::zero(a), density: zero, damping: zero, stiffness: zero }
     }
+}
 
+impl<A: FourLanes> Rates<A> {
     #[inline(always)]
     pub(super) fn sum(self) -> RowRates {
         let Vector { x, y, z } = self.force;

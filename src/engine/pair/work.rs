@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::of_phase::{BodyTerms, MAX_TERMS};
 use crate::integrate::DRIFT;
-use crate::parallel::{Arithmetic, BlockSum, HotLoop, Lanes4, Split, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, Split, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Column, Force, Mobility, PhaseId, Velocity};
@@ -125,7 +125,7 @@ impl HotLoop for WorkRows<'_> {
     type Output = Power;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> Power {
+    fn run<A: FourLanes>(self, a: A) -> Power {
         match self.terms {
             1 => self.power::<A, 1>(a),
             2 => self.power::<A, 2>(a),
@@ -142,7 +142,7 @@ impl HotLoop for WorkRows<'_> {
 impl WorkRows<'_> {
     /// The powers of T terms.
     #[inline(always)]
-    fn power<A: Arithmetic, const T: usize>(self, a: A) -> Power {
+    fn power<A: FourLanes, const T: usize>(self, a: A) -> Power {
         let count = self.velocity.len();
         let (force, mobility) = (&self.force[..count], &self.mobility[..count]);
         let by_term = &self.by_term.as_chunks::<T>().0[..count];

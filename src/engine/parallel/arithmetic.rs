@@ -3,51 +3,82 @@
 //! A loop that is written with [`Lanes4`] and these operations keeps its vectors in registers of four lanes. Left to
 //! itself, the compiler takes rows of four apart and puts the pieces together in pairs: twice the instructions.
 
+use super::eight::{Eight, EightLanes};
 use super::lanes::Lanes4;
 
-/// Operations of an instruction path; a hot loop gets the one it is compiled for.
+/// Operations on numbers of several lanes: what pair functions are written in. A hot loop gets the arithmetic of the instruction path that it is compiled for.
 pub trait Arithmetic: Copy + Send + Sync {
     /// Number of axes of vectors; the components of those beyond it are zero, and no instruction is spent on them.
     const AXES: usize = 3;
 
+    /// A number for each lane.
+    type Lanes: Copy + Send + Sync;
+
+    /// The same number in all lanes.
+    fn splat(self, value: f64) -> Self::Lanes;
+
+    /// Sum of the lanes, in a fixed order.
+    fn sum(self, a: Self::Lanes) -> f64;
+
+    /// `a + b`, lane by lane.
+    fn plus(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// `a - b`, lane by lane.
+    fn minus(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// `a b`, lane by lane.
+    fn times(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// `a / b`, lane by lane.
+    fn over(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// The smaller one, lane by lane; `b` where one is not a number.
+    fn smaller(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// The larger one, lane by lane; `b` where one is not a number.
+    fn larger(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
+
+    /// `c` in lanes where `a < b`, zero in the others.
+    fn where_below(self, a: Self::Lanes, b: Self::Lanes, c: Self::Lanes) -> Self::Lanes;
+
+    /// Bit k is set where `a < b` in lane k.
+    fn below(self, a: Self::Lanes, b: Self::Lanes) -> usize;
+
+    /// `a b + c`, lane by lane.
+    fn times_add(self, a: Self::Lanes, b: Self::Lanes, c: Self::Lanes) -> Self::Lanes;
+
+    /// Square root, lane by lane.
+    fn sqrt(self, a: Self::Lanes) -> Self::Lanes;
+
+    /// `a`, or zero in lanes where it is not above zero.
+    fn or_zero(self, a: Self::Lanes) -> Self::Lanes;
+
+    /// `s a`.
+    #[inline(always)]
+    fn scale(self, s: f64, a: Self::Lanes) -> Self::Lanes {
+        self.times(a, self.splat(s))
+    }
+
+    /// `s a + c`.
+    #[inline(always)]
+    fn scale_add(self, s: f64, a: Self::Lanes, c: Self::Lanes) -> Self::Lanes {
+        self.times_add(a, self.splat(s), c)
+    }
+}
+
+/// The arithmetic of four lanes of double precision, in which a lane is a neighbour or a component: what hot loops over rows are written in.
+pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
+    /// The same path with eight lanes of single precision.
+    type Eight: EightLanes;
+
+    /// See [`FourLanes::Eight`].
+    fn eight(self) -> Self::Eight;
+
     /// `a b + c`.
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
-    /// `a + b`, lane by lane.
-    fn plus(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// `a - b`, lane by lane.
-    fn minus(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// `a b`, lane by lane.
-    fn times(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// `a / b`, lane by lane.
-    fn over(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// The smaller one, lane by lane; `b` where one is not a number.
-    fn smaller(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// The larger one, lane by lane; `b` where one is not a number.
-    fn larger(self, a: Lanes4, b: Lanes4) -> Lanes4;
-
-    /// `c` in lanes where `a < b`, zero in the others.
-    fn where_below(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
-
-    /// Bit k is set where `a < b` in lane k.
-    fn below(self, a: Lanes4, b: Lanes4) -> usize;
-
     /// The values whose bits are set, in their order; what follows them has no meaning.
     fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4];
-
-    /// `a b + c`, lane by lane.
-    fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
-
-    /// Square root, lane by lane.
-    fn sqrt(self, a: Lanes4) -> Lanes4;
-
-    /// `a`, or zero in lanes where it is not above zero.
-    fn or_zero(self, a: Lanes4) -> Lanes4;
 
     /// Rows and columns exchanged: four records of four numbers become four lanes of each number.
     fn transpose(self, rows: [Lanes4; 4]) -> [Lanes4; 4];
@@ -58,18 +89,6 @@ pub trait Arithmetic: Copy + Send + Sync {
         let [a, b, c, d] = self.transpose(of);
         self.plus(self.plus(a, b), self.plus(c, d))
     }
-
-    /// `s a`.
-    #[inline(always)]
-    fn scale(self, s: f64, a: Lanes4) -> Lanes4 {
-        self.times(a, Lanes4([s; 4]))
-    }
-
-    /// `s a + c`.
-    #[inline(always)]
-    fn scale_add(self, s: f64, a: Lanes4, c: Lanes4) -> Lanes4 {
-        self.times_add(a, Lanes4([s; 4]), c)
-    }
 }
 
 /// The instructions that every processor of the architecture has.
@@ -77,10 +96,16 @@ pub trait Arithmetic: Copy + Send + Sync {
 pub(super) struct Portable;
 
 impl Arithmetic for Portable {
+    type Lanes = Lanes4;
+
     #[inline(always)]
-    fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
-        // Where a fused multiply-add is not in the base instruction set it would be a call.
-        if cfg!(target_arch = "aarch64") { a.mul_add(b, c) } else { a * b + c }
+    fn splat(self, value: f64) -> Lanes4 {
+        Lanes4([value; 4])
+    }
+
+    #[inline(always)]
+    fn sum(self, a: Lanes4) -> f64 {
+        a.sum()
     }
 
     #[inline(always)]
@@ -140,17 +165,6 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
-    fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
-        let mut packed = [0; 4];
-        let mut count = 0;
-        for (k, value) in values.into_iter().enumerate() {
-            packed[count] = value;
-            count = (count + (bits >> k & 1)).min(3);
-        }
-        packed
-    }
-
-    #[inline(always)]
     fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
         Lanes4([
             self.mul_add(a.0[0], b.0[0], c.0[0]),
@@ -168,6 +182,32 @@ impl Arithmetic for Portable {
     #[inline(always)]
     fn or_zero(self, a: Lanes4) -> Lanes4 {
         Lanes4([above_zero(a.0[0]), above_zero(a.0[1]), above_zero(a.0[2]), above_zero(a.0[3])])
+    }
+}
+
+impl FourLanes for Portable {
+    type Eight = Eight<Self>;
+
+    #[inline(always)]
+    fn eight(self) -> Eight<Self> {
+        Eight(self)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+        // Where a fused multiply-add is not in the base instruction set it would be a call.
+        if cfg!(target_arch = "aarch64") { a.mul_add(b, c) } else { a * b + c }
+    }
+
+    #[inline(always)]
+    fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
+        let mut packed = [0; 4];
+        let mut count = 0;
+        for (k, value) in values.into_iter().enumerate() {
+            packed[count] = value;
+            count = (count + (bits >> k & 1)).min(3);
+        }
+        packed
     }
 
     #[inline(always)]
@@ -192,7 +232,7 @@ mod v3 {
     use pulp::f64x4;
     use pulp::x86::V3;
 
-    use super::{Arithmetic, Lanes4};
+    use super::{Arithmetic, Eight, FourLanes, Lanes4};
 
     /// For every set of bits the bytes of the values whose bits are set.
     const PACKED: [[u8; 16]; 16] = {
@@ -218,9 +258,16 @@ mod v3 {
 
     /// AVX2 and FMA: product and sum are rounded once.
     impl Arithmetic for V3 {
+        type Lanes = Lanes4;
+
         #[inline(always)]
-        fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
-            a.mul_add(b, c)
+        fn splat(self, value: f64) -> Lanes4 {
+            Lanes4([value; 4])
+        }
+
+        #[inline(always)]
+        fn sum(self, a: Lanes4) -> f64 {
+            a.sum()
         }
 
         #[inline(always)]
@@ -265,11 +312,6 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
-            cast(self.ssse3._mm_shuffle_epi8(cast(values), cast(PACKED[bits & 15])))
-        }
-
-        #[inline(always)]
         fn times_add(self, a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4 {
             cast::<f64x4, Lanes4>(self.mul_add_f64x4(cast(a), cast(b), cast(c)))
         }
@@ -283,6 +325,25 @@ mod v3 {
         fn or_zero(self, a: Lanes4) -> Lanes4 {
             // Where an operand is not a number the instruction gives the second one, zero.
             cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::ZERO)))
+        }
+    }
+
+    impl FourLanes for V3 {
+        type Eight = Eight<Self>;
+
+        #[inline(always)]
+        fn eight(self) -> Eight<Self> {
+            Eight(self)
+        }
+
+        #[inline(always)]
+        fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
+            a.mul_add(b, c)
+        }
+
+        #[inline(always)]
+        fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
+            cast(self.ssse3._mm_shuffle_epi8(cast(values), cast(PACKED[bits & 15])))
         }
 
         #[inline(always)]

@@ -1,12 +1,12 @@
 //! Hot loops with a plane and a solid version: in plane strain the third axis is left out of the sums.
 
-use super::arithmetic::Arithmetic;
+use super::arithmetic::FourLanes;
 use super::path::{HotLoop, run_hot};
 
 /// A loop that is compiled for two and for three axes, each for every instruction path.
 pub trait PlaneOrSolid {
     /// The loop over `D` axes; mark it `#[inline(always)]`.
-    fn run<A: Arithmetic, const D: usize>(self, arithmetic: A);
+    fn run<A: FourLanes, const D: usize>(self, arithmetic: A);
 }
 
 struct Axes<L, const D: usize>(L);
@@ -15,7 +15,7 @@ impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, arithmetic: A) {
+    fn run<A: FourLanes>(self, arithmetic: A) {
         self.0.run::<A, D>(arithmetic);
     }
 }

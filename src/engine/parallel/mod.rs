@@ -3,6 +3,7 @@
 mod arithmetic;
 mod blocks;
 mod dimension;
+mod eight;
 mod lanes;
 mod largest;
 mod number;
@@ -11,13 +12,14 @@ mod picked;
 mod plane;
 mod vector;
 
-pub use arithmetic::Arithmetic;
+pub use arithmetic::{Arithmetic, FourLanes};
 pub(crate) use blocks::split_by_rows;
 pub use blocks::{
     BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
     sum_over_blocks,
 };
 pub use dimension::{PlaneOrSolid, run_hot_in};
+pub use eight::{BlockLoop, EIGHT, EightLanes, Lanes8, run_blocks_on};
 pub use lanes::Lanes4;
 pub use largest::Largest;
 pub use number::Number;

@@ -6,37 +6,36 @@
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::arithmetic::Arithmetic;
-use super::lanes::Lanes4;
 
 /// A number for each of four neighbours.
 #[derive(Clone, Copy)]
-pub struct Number<A> {
-    lanes: Lanes4,
+pub struct Number<A: Arithmetic> {
+    lanes: A::Lanes,
     arithmetic: A,
 }
 
 impl<A: Arithmetic> Number<A> {
     /// These four numbers.
     #[inline(always)]
-    pub fn new(arithmetic: A, lanes: Lanes4) -> Self {
+    pub fn new(arithmetic: A, lanes: A::Lanes) -> Self {
         Self { lanes, arithmetic }
     }
 
     /// The same number four times.
     #[inline(always)]
     pub fn splat(arithmetic: A, value: f64) -> Self {
-        Self { lanes: Lanes4::splat(value), arithmetic }
+        Self { lanes: arithmetic.splat(value), arithmetic }
     }
 
     /// Zero four times.
     #[inline(always)]
     pub fn zero(arithmetic: A) -> Self {
-        Self { lanes: Lanes4::ZERO, arithmetic }
+        Self { lanes: arithmetic.splat(0.0), arithmetic }
     }
 
     /// The four numbers.
     #[inline(always)]
-    pub fn lanes(self) -> Lanes4 {
+    pub fn lanes(self) -> A::Lanes {
         self.lanes
     }
 
@@ -49,7 +48,7 @@ impl<A: Arithmetic> Number<A> {
     /// Sum of the four, in a fixed order.
     #[inline(always)]
     pub fn sum(self) -> f64 {
-        self.lanes.sum()
+        self.arithmetic.sum(self.lanes)
     }
 
     /// Square roots.
@@ -67,19 +66,19 @@ impl<A: Arithmetic> Number<A> {
     /// The smaller of each number and `limit`.
     #[inline(always)]
     pub fn min(self, limit: f64) -> Self {
-        self.with(self.arithmetic.smaller(self.lanes, Lanes4::splat(limit)))
+        self.with(self.arithmetic.smaller(self.lanes, self.arithmetic.splat(limit)))
     }
 
     /// The larger of each number and `limit`.
     #[inline(always)]
     pub fn max(self, limit: f64) -> Self {
-        self.with(self.arithmetic.larger(self.lanes, Lanes4::splat(limit)))
+        self.with(self.arithmetic.larger(self.lanes, self.arithmetic.splat(limit)))
     }
 
     /// `value` where the number is below `limit`, zero elsewhere: what a branch would be.
     #[inline(always)]
     pub fn if_below(self, limit: f64, value: Self) -> Self {
-        self.with(self.arithmetic.where_below(self.lanes, Lanes4::splat(limit), value.lanes))
+        self.with(self.arithmetic.where_below(self.lanes, self.arithmetic.splat(limit), value.lanes))
     }
 
     /// `self b + c`, rounded once where the processor can.
@@ -89,13 +88,13 @@ impl<A: Arithmetic> Number<A> {
     }
 
     #[inline(always)]
-    fn with(self, lanes: Lanes4) -> Self {
+    fn with(self, lanes: A::Lanes) -> Self {
         Self { lanes, arithmetic: self.arithmetic }
     }
 
     #[inline(always)]
     fn like(self, value: f64) -> Self {
-        self.with(Lanes4::splat(value))
+        self.with(self.arithmetic.splat(value))
     }
 }
 

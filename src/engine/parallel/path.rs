@@ -1,9 +1,9 @@
 //! The instruction path: one binary runs on any x86-64 machine and uses AVX2 and FMA where the processor has them.
 //!
-//! A hot loop is written once, generic over [`Arithmetic`], and compiled for both paths. The two differ in the last
+//! A hot loop is written once, generic over [`FourLanes`], and compiled for both paths. The two differ in the last
 //! bits (a fused multiply-add rounds once), so the path is part of a checkpoint.
 
-use super::arithmetic::{Arithmetic, Portable};
+use super::arithmetic::{FourLanes, Portable};
 
 /// A loop that is compiled once for every instruction path.
 ///
@@ -12,7 +12,7 @@ pub trait HotLoop {
     /// What the loop returns.
     type Output;
     /// The loop.
-    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
+    fn run<A: FourLanes>(self, arithmetic: A) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]

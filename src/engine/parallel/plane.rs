@@ -1,12 +1,13 @@
 //! The arithmetic of a plane: the same instructions, and vectors without a third component.
 
-use super::arithmetic::Arithmetic;
+use super::arithmetic::{Arithmetic, FourLanes};
+use super::eight::{EIGHT, EightLanes, Lanes8};
 use super::lanes::Lanes4;
 use super::path::{HotLoop, run_hot};
 
 /// An instruction path whose vectors lie in the plane of x and y.
 #[derive(Clone, Copy)]
-struct Plane<A>(A);
+pub struct Plane<A>(A);
 
 macro_rules! pass_on {
     ($($function:ident($($argument:ident: $of:ty),+) -> $output:ty;)+) => {$(
@@ -20,21 +21,44 @@ macro_rules! pass_on {
 impl<A: Arithmetic> Arithmetic for Plane<A> {
     const AXES: usize = 2;
 
+    type Lanes = A::Lanes;
+
+    pass_on! {
+        splat(value: f64) -> A::Lanes;
+        sum(a: A::Lanes) -> f64;
+        plus(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        minus(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        times(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        over(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        smaller(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        larger(a: A::Lanes, b: A::Lanes) -> A::Lanes;
+        where_below(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
+        below(a: A::Lanes, b: A::Lanes) -> usize;
+        times_add(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
+        sqrt(a: A::Lanes) -> A::Lanes;
+        or_zero(a: A::Lanes) -> A::Lanes;
+    }
+}
+
+impl<A: FourLanes> FourLanes for Plane<A> {
+    type Eight = Plane<A::Eight>;
+
+    #[inline(always)]
+    fn eight(self) -> Self::Eight {
+        Plane(self.0.eight())
+    }
+
     pass_on! {
         mul_add(a: f64, b: f64, c: f64) -> f64;
-        plus(a: Lanes4, b: Lanes4) -> Lanes4;
-        minus(a: Lanes4, b: Lanes4) -> Lanes4;
-        times(a: Lanes4, b: Lanes4) -> Lanes4;
-        over(a: Lanes4, b: Lanes4) -> Lanes4;
-        smaller(a: Lanes4, b: Lanes4) -> Lanes4;
-        larger(a: Lanes4, b: Lanes4) -> Lanes4;
-        where_below(a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
-        below(a: Lanes4, b: Lanes4) -> usize;
         pack(values: [u32; 4], bits: usize) -> [u32; 4];
-        times_add(a: Lanes4, b: Lanes4, c: Lanes4) -> Lanes4;
-        sqrt(a: Lanes4) -> Lanes4;
-        or_zero(a: Lanes4) -> Lanes4;
         transpose(rows: [Lanes4; 4]) -> [Lanes4; 4];
+    }
+}
+
+impl<A: EightLanes> EightLanes for Plane<A> {
+    pass_on! {
+        same(value: f32) -> Lanes8;
+        apart(j: i32, i: [i32; EIGHT]) -> Lanes8;
     }
 }
 
@@ -44,7 +68,7 @@ impl<L: HotLoop> HotLoop for InPlane<L> {
     type Output = L::Output;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> L::Output {
+    fn run<A: FourLanes>(self, a: A) -> L::Output {
         self.0.run(Plane(a))
     }
 }

@@ -4,13 +4,13 @@ use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
 use glam::DVec3;
 
-use super::arithmetic::Arithmetic;
+use super::arithmetic::{Arithmetic, FourLanes};
 use super::lanes::Lanes4;
 use super::number::Number;
 
 /// A vector for each of four neighbours; in the plane its z is zero.
 #[derive(Clone, Copy)]
-pub struct Vector<A> {
+pub struct Vector<A: Arithmetic> {
     /// Components along x.
     pub x: Number<A>,
     /// Components along y.
@@ -22,30 +22,21 @@ pub struct Vector<A> {
 impl<A: Arithmetic> Vector<A> {
     /// Four vectors by their components.
     #[inline(always)]
-    pub fn new(a: A, [x, y, z]: [Lanes4; 3]) -> Self {
-        let z = if A::AXES == 3 { z } else { Lanes4::ZERO };
+    pub fn new(a: A, [x, y, z]: [A::Lanes; 3]) -> Self {
+        let z = if A::AXES == 3 { z } else { a.splat(0.0) };
         Self { x: Number::new(a, x), y: Number::new(a, y), z: Number::new(a, z) }
-    }
-
-    /// Four vectors.
-    #[inline(always)]
-    pub fn from_rows(a: A, [j, k, l, m]: [DVec3; 4]) -> Self {
-        Self::new(
-            a,
-            [Lanes4([j.x, k.x, l.x, m.x]), Lanes4([j.y, k.y, l.y, m.y]), Lanes4([j.z, k.z, l.z, m.z])],
-        )
     }
 
     /// The same vector four times.
     #[inline(always)]
     pub fn splat(a: A, value: DVec3) -> Self {
-        Self::new(a, [Lanes4::splat(value.x), Lanes4::splat(value.y), Lanes4::splat(value.z)])
+        Self::new(a, [a.splat(value.x), a.splat(value.y), a.splat(value.z)])
     }
 
     /// Zero four times.
     #[inline(always)]
     pub fn zero(a: A) -> Self {
-        Self::new(a, [Lanes4::ZERO; 3])
+        Self::new(a, [a.splat(0.0); 3])
     }
 
     /// Scalar products.
@@ -72,6 +63,17 @@ impl<A: Arithmetic> Vector<A> {
     pub fn mul_add(self, s: Number<A>, v: Self) -> Self {
         let z = if A::AXES == 3 { self.z.mul_add(s, v.z) } else { v.z };
         Self { x: self.x.mul_add(s, v.x), y: self.y.mul_add(s, v.y), z }
+    }
+}
+
+impl<A: FourLanes> Vector<A> {
+    /// Four vectors.
+    #[inline(always)]
+    pub fn from_rows(a: A, [j, k, l, m]: [DVec3; 4]) -> Self {
+        Self::new(
+            a,
+            [Lanes4([j.x, k.x, l.x, m.x]), Lanes4([j.y, k.y, l.y, m.y]), Lanes4([j.z, k.z, l.z, m.z])],
+        )
     }
 }
 
@@ -139,7 +141,7 @@ impl<A: Arithmetic> SubAssign for Vector<A> {
 
 /// A matrix for each of four neighbours, by its columns.
 #[derive(Clone, Copy)]
-pub struct Matrix<A>(pub [Vector<A>; 3]);
+pub struct Matrix<A: Arithmetic>(pub [Vector<A>; 3]);
 
 impl<A: Arithmetic> Add for Matrix<A> {
     type Output = Self;
@@ -186,7 +188,7 @@ mod tests {
         type Output = (DVec3, [f64; 4]);
 
         #[inline(always)]
-        fn run<A: Arithmetic>(self, a: A) -> Self::Output {
+        fn run<A: FourLanes>(self, a: A) -> Self::Output {
             let (b, c) = (Vector::from_rows(a, rows(b)), Vector::from_rows(a, rows(c)));
             let dot = b.dot(c);
             let matrix = Matrix([b, c, b + c]);

@@ -6,7 +6,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::contact::is_meant;
-use super::{Body, Contact, Dimension, Domain, Expression, Item, Probe, Record, Table, Time, Vec3};
+use super::{
+    Body, Contact, Dimension, Domain, Expression, Item, Precision, Probe, Record, Table, Time, Vec3,
+};
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -30,6 +32,9 @@ pub struct Scene {
     /// Acceleration of gravity on all bodies \[m/s²\].
     #[serde(default)]
     pub gravity: Vec3,
+    /// Arithmetic of the sums over neighbours of fluids.
+    #[serde(default)]
+    pub precision: Precision,
     /// Materials by the names that bodies refer to.
     pub materials: BTreeMap<String, Item>,
     /// The bodies, in the order in which their particles are created.

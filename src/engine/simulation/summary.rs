@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::Simulation;
 use crate::parallel::instruction_path;
 use crate::record::output::Extreme;
+use crate::scene::Precision;
 use crate::world::{Body, BodyId, Removed};
 
 /// How a run has ended.
@@ -59,6 +60,8 @@ pub struct Summary {
     pub threads: usize,
     /// Instruction path of the hot loops.
     pub instruction_path: String,
+    /// Arithmetic of the sums over neighbours of fluids.
+    pub precision: Precision,
     /// Energies, all bodies together, J.
     pub energies: BTreeMap<String, f64>,
     /// Energies of each body, J.
@@ -135,6 +138,7 @@ impl Simulation {
             particle_steps_per_second: if wall_seconds > 0.0 { work / wall_seconds } else { 0.0 },
             threads: rayon::current_num_threads(),
             instruction_path: instruction_path().to_owned(),
+            precision: self.precision,
             energies: accounts.iter().map(|a| (a.name.clone(), a.total())).collect(),
             energies_of: bodies().map(|(k, body)| (body.name.clone(), of_body(k))).collect(),
             balance_error: self.ledger.balance_error(),

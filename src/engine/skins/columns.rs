@@ -5,7 +5,7 @@ use hecs::ArchetypeColumn;
 
 use super::carriers::Carrier;
 use super::skin::Skin;
-use crate::parallel::{Arithmetic, HotLoop, run_hot};
+use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};
 
 /// The columns of the particles of a body in this step.
@@ -80,7 +80,7 @@ impl SkinView<'_> {
 
     /// Where a vertex is, m, and whether none of its carriers has been removed.
     #[inline(always)]
-    fn look<A: Arithmetic>(&self, a: A, vertex: u32) -> (DVec3, bool) {
+    fn look<A: FourLanes>(&self, a: A, vertex: u32) -> (DVec3, bool) {
         // Two sums of each component: an addition waits for the one before it.
         let (mut x, mut y, mut z) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         let mut is_there = true;
@@ -144,7 +144,7 @@ impl<E: FnMut(usize, DVec3, bool)> HotLoop for Places<'_, E> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         for (k, &vertex) in self.vertices.iter().enumerate() {
             let (place, is_there) = self.view.look(a, vertex);
             (self.each)(k, place, is_there);

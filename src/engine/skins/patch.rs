@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::columns::SkinView;
 use super::skin::Skin;
-use crate::parallel::{Arithmetic, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::SolidPhase;
 use crate::world::Force;
 
@@ -82,7 +82,7 @@ impl HotLoop for OnParticles<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Self { all, first, on: (on, alone) } = self;
         for k in 0..on.len() {
             let ends = all.starts[first + k] as usize..all.starts[first + k + 1] as usize;
@@ -96,7 +96,7 @@ impl HotLoop for OnParticles<'_> {
 impl HandedOn<'_> {
     /// The force, N, and the couple, N m, on a particle at these ends.
     #[inline(always)]
-    fn on_particle<A: Arithmetic>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
+    fn on_particle<A: FourLanes>(&self, a: A, ends: &[End]) -> (DVec3, DMat3) {
         let (mut fx, mut fy, mut fz) = (0.0, 0.0, 0.0);
         let (mut xx, mut yx, mut zx) = (0.0, 0.0, 0.0);
         let (mut xy, mut yy, mut zy) = (0.0, 0.0, 0.0);

@@ -4,7 +4,7 @@ use bytemuck::Pod;
 use glam::{DMat3, DVec3};
 
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, Lanes4, Matrix, Number, Vector};
+use crate::parallel::{Arithmetic, FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// What one row of a column holds: a number, a vector, a tensor, seen as a fixed list of components.
 pub trait Value: Pod + Send + Sync + 'static {
@@ -18,7 +18,10 @@ pub trait Value: Pod + Send + Sync + 'static {
     type Four<A: Arithmetic>: Copy;
 
     /// Four values, one a lane.
-    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Self::Four<A>;
+    fn four<A: FourLanes>(a: A, values: [Self; 4]) -> Self::Four<A>;
+
+    /// Values that are given component by component.
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Self::Four<A>;
 
     /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a number as it
     /// is.
@@ -34,10 +37,16 @@ impl Value for f64 {
     type Four<A: Arithmetic> = Number<A>;
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+    fn four<A: FourLanes>(a: A, values: [Self; 4]) -> Number<A> {
         Number::new(a, Lanes4(values))
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Number<A> {
+        Number::new(a, components[0])
+    }
+
+    #[inline(always)]
     fn component(&self, _: usize) -> f64 {
         *self
     }
@@ -48,11 +57,17 @@ impl Value for u32 {
     type Four<A: Arithmetic> = Number<A>;
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+    fn four<A: FourLanes>(a: A, values: [Self; 4]) -> Number<A> {
         let [j, k, l, m] = values;
         Number::new(a, Lanes4([f64::from(j), f64::from(k), f64::from(l), f64::from(m)]))
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Number<A> {
+        Number::new(a, components[0])
+    }
+
+    #[inline(always)]
     fn component(&self, _: usize) -> f64 {
         f64::from(*self)
     }
@@ -63,11 +78,17 @@ impl Value for u64 {
     type Four<A: Arithmetic> = Number<A>;
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Number<A> {
+    fn four<A: FourLanes>(a: A, values: [Self; 4]) -> Number<A> {
         let [j, k, l, m] = values;
         Number::new(a, Lanes4([j as f64, k as f64, l as f64, m as f64]))
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Number<A> {
+        Number::new(a, components[0])
+    }
+
+    #[inline(always)]
     fn component(&self, _: usize) -> f64 {
         *self as f64
     }
@@ -78,10 +99,16 @@ impl Value for DVec3 {
     type Four<A: Arithmetic> = Vector<A>;
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, values: [Self; 4]) -> Vector<A> {
+    fn four<A: FourLanes>(a: A, values: [Self; 4]) -> Vector<A> {
         Vector::from_rows(a, values)
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Vector<A> {
+        Vector::new(a, [components[0], components[1], components[2]])
+    }
+
+    #[inline(always)]
     fn component(&self, k: usize) -> f64 {
         self[k]
     }
@@ -97,7 +124,7 @@ impl Value for DMat3 {
     type Four<A: Arithmetic> = Matrix<A>;
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, [j, k, l, m]: [Self; 4]) -> Matrix<A> {
+    fn four<A: FourLanes>(a: A, [j, k, l, m]: [Self; 4]) -> Matrix<A> {
         Matrix([
             Vector::from_rows(a, [j.x_axis, k.x_axis, l.x_axis, m.x_axis]),
             Vector::from_rows(a, [j.y_axis, k.y_axis, l.y_axis, m.y_axis]),
@@ -105,6 +132,15 @@ impl Value for DMat3 {
         ])
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Matrix<A> {
+        let [xx, xy, xz] = [components[0], components[1], components[2]];
+        let [yx, yy, yz] = [components[3], components[4], components[5]];
+        let [zx, zy, zz] = [components[6], components[7], components[8]];
+        Matrix([Vector::new(a, [xx, yx, zx]), Vector::new(a, [xy, yy, zy]), Vector::new(a, [xz, yz, zz])])
+    }
+
+    #[inline(always)]
     fn component(&self, k: usize) -> f64 {
         self.col(k % 3)[k / 3]
     }
@@ -121,7 +157,7 @@ impl Value for Sym3 {
     type Four<A: Arithmetic> = [Number<A>; 6];
 
     #[inline(always)]
-    fn four<A: Arithmetic>(a: A, [j, k, l, m]: [Self; 4]) -> [Number<A>; 6] {
+    fn four<A: FourLanes>(a: A, [j, k, l, m]: [Self; 4]) -> [Number<A>; 6] {
         [
             Number::new(a, Lanes4([j.xx, k.xx, l.xx, m.xx])),
             Number::new(a, Lanes4([j.yy, k.yy, l.yy, m.yy])),
@@ -132,6 +168,16 @@ impl Value for Sym3 {
         ]
     }
 
+    #[inline(always)]
+    fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> [Number<A>; 6] {
+        let mut numbers = [Number::zero(a); 6];
+        for k in 0..6 {
+            numbers[k] = Number::new(a, components[k]);
+        }
+        numbers
+    }
+
+    #[inline(always)]
     fn component(&self, k: usize) -> f64 {
         [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz][k]
     }

@@ -19,7 +19,7 @@ use super::parameters::Divergence;
 use super::rows::EulerianRows;
 use super::stress::corrected;
 use crate::column;
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, for_each_block, run_hot_on, split_by_rows};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, for_each_block, run_hot_on, split_by_rows};
 use crate::solids::{CorrectedStress, CorrectedStressRows, FoldedEnergy};
 use crate::symmetry::Map;
 
@@ -153,7 +153,7 @@ impl HotLoop for ControlLoop<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Self { pass, block, sum } = self;
         let ControlBlock { force, stiffness, stresses, energy } = block;
         let BodyControl { xi, density } = pass.control;

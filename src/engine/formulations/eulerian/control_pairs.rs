@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::control::Carried;
 use super::near::Near;
 use super::rows::Point;
-use crate::parallel::{Arithmetic, Lanes4, Matrix, Number, Vector};
+use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// The pairs of a body.
 pub(super) struct ControlPairs<'a> {
@@ -30,7 +30,7 @@ pub(super) struct RowSums {
 }
 
 /// The particle itself, four times.
-struct Own<A> {
+struct Own<A: FourLanes> {
     place: Vector<A>,
     original: Vector<A>,
     deformation: Matrix<A>,
@@ -39,7 +39,7 @@ struct Own<A> {
 }
 
 /// The sums so far.
-struct Sums<A> {
+struct Sums<A: FourLanes> {
     force: Vector<A>,
     couple: [Vector<A>; 3],
     stiffness: Number<A>,
@@ -50,7 +50,7 @@ struct Sums<A> {
 impl ControlPairs<'_> {
     /// The sums of row `i`.
     #[inline(always)]
-    pub fn of_row<A: Arithmetic>(&self, a: A, i: usize) -> RowSums {
+    pub fn of_row<A: FourLanes>(&self, a: A, i: usize) -> RowSums {
         let own = &self.carried[i];
         let [x, y, z] = own.columns;
         let column = |column: Lanes4| Vector::splat(a, column.xyz());
@@ -95,7 +95,7 @@ impl ControlPairs<'_> {
 
     /// Adds four neighbours with their weights and second derivatives of the kernel.
     #[inline(always)]
-    fn add<A: Arithmetic>(
+    fn add<A: FourLanes>(
         &self,
         a: A,
         own: &Own<A>,

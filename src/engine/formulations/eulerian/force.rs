@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::rows::EulerianRows;
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -46,7 +46,7 @@ struct ForceRows<'a> {
 
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let EulerianRows { lists, near, points, stresses, control, .. } = self.packed;
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;

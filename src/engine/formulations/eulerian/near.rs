@@ -4,7 +4,7 @@ use crate::correction::MomentMatrix;
 use crate::formulations::eulerian::rows::Point;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, Split, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, Split, run_hot_in};
 
 /// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or in space in a plane, that a gradient across
 /// it is noise: what is left of a body that has been torn to pieces. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
@@ -113,7 +113,7 @@ struct LookLoop<'a, 'r, K: KernelProfile> {
 
 impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { kernel, look: Look { support, lists, points, first, rows, .. } } = self;
         let limit = support * support;
         let itself = kernel.w(0.0);

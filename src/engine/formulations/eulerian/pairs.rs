@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::rows::{EulerianRows, Point};
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, PhaseId};
 
@@ -51,7 +51,7 @@ impl HotLoop for Fill<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Self { pairs: BodyPairs { packed, support }, rows, batch } = self;
         let EulerianRows { lists, near, points, .. } = *packed;
         let mirrors = !lists.ghosts.is_empty();
@@ -90,7 +90,7 @@ struct Four {
 
 /// Puts four neighbours into place `n` of the room.
 #[inline(always)]
-fn put<A: Arithmetic>(a: A, packed: &EulerianRows, four: Four, n: usize, room: &mut Room<'_>) {
+fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: Four, n: usize, room: &mut Room<'_>) {
     let Four { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);
@@ -125,12 +125,12 @@ fn put<A: Arithmetic>(a: A, packed: &EulerianRows, four: Four, n: usize, room: &
 
 /// Four vectors, with the squares of their lengths, above zero.
 #[inline(always)]
-fn four_vectors<A: Arithmetic>(a: A, vector: Vector<A>) -> FourVectors {
+fn four_vectors<A: FourLanes>(a: A, vector: Vector<A>) -> FourVectors {
     let square = vector.length_squared().lanes();
     FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
 }
 
 #[inline(always)]
-fn lanes<A: Arithmetic>(vector: Vector<A>) -> [Lanes4; 3] {
+fn lanes<A: FourLanes>(vector: Vector<A>) -> [Lanes4; 3] {
     [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }

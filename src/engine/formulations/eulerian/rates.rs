@@ -12,7 +12,7 @@ use super::start;
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::fit;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{
     DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
@@ -134,7 +134,7 @@ struct AdvanceLoop<'a, K: KernelProfile> {
 
 impl<K: KernelProfile> PlaneOrSolid for AdvanceLoop<'_, K> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self {
             kernel,
             of: Advance { support, offsets, neighbors, points, first, dilatation, dt, deformation, .. },

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::advice;
+use super::blocks;
 use super::body_spin::Neighborhood;
 use super::checks;
 use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
@@ -82,11 +83,13 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let short = systems::short_phases(&groups, sim);
     groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
     sim.sub_cycle(short);
+    let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
+    let spin = viscosities.spin;
+    let is_thin = |group: &&Group| thin.iter().any(|thin| thin.copies[0] == group.cloud);
+    let blocks = blocks::choose(spacing, groups.iter().find(is_thin), spin, sim)?;
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
-    let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
-    let spin = viscosities.spin;
     let (repulsion, reach) = Repulsion::new(&groups, kernel.smoothing_length(), sim);
     let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
     let mut cloud = FlowCloud {
@@ -98,7 +101,8 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         periods: Periods::new(&periodic),
         before: Vec::new(),
         records: vec![Record::default(); total],
-        pairs: FlowPairs::new(skins, periodic, ends, thin),
+        blocks,
+        pairs: FlowPairs::new(skins, periodic, ends, thin, plane),
         near: NearRows::default(),
         near_boundary: NearRows::default(),
         compression: Vec::new(),

@@ -4,17 +4,17 @@ use std::ops::Sub;
 
 use glam::DVec3;
 
-use crate::parallel::{Arithmetic, Lanes4, Number, Vector};
+use crate::parallel::{FourLanes, Lanes4, Number, Vector};
 
 /// An axial vector for each of four neighbours: in the plane its x and y are zero, and cost nothing.
 #[derive(Clone, Copy)]
-pub(super) struct Axial<A> {
+pub(super) struct Axial<A: FourLanes> {
     x: Number<A>,
     y: Number<A>,
     z: Number<A>,
 }
 
-impl<A: Arithmetic> Axial<A> {
+impl<A: FourLanes> Axial<A> {
     /// Zero four times.
     #[inline(always)]
     pub fn zero(a: A) -> Self {
@@ -96,7 +96,7 @@ impl<A: Arithmetic> Axial<A> {
     }
 }
 
-impl<A: Arithmetic> Sub for Axial<A> {
+impl<A: FourLanes> Sub for Axial<A> {
     type Output = Self;
 
     #[inline(always)]

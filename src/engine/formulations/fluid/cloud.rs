@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::blocks::Blocks;
 use super::body_spin::Neighborhood;
 use super::kernel::FluidKernel;
 use super::near_rows::NearRows;
@@ -12,7 +13,7 @@ use super::record::{Periods, Record};
 use super::repulsion::Repelled;
 use super::viscosities::Viscosities;
 use crate::materials::EquationOfState;
-use crate::parallel::Lanes4;
+use crate::parallel::{EIGHT, Lanes4};
 use crate::world::{BodyId, PhaseId};
 
 /// The equation of state of a body, with its constants.
@@ -126,6 +127,8 @@ pub struct FlowCloud {
     pub(super) before: Vec<DVec3>,
     pub(super) records: Vec<Record>,
     pub(super) pairs: FlowPairs,
+    /// The blocks of passes in single precision; none in double precision.
+    pub(super) blocks: Option<Box<Blocks>>,
     /// Neighbours of fluid particles within the support.
     pub(super) near: NearRows,
     /// Fluid neighbours within the support of every particle that is no fluid.
@@ -158,7 +161,7 @@ impl FlowCloud {
     pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
         let own = self.records[i].position();
         let limit = self.kernel.support * self.kernel.support;
-        for &j in self.near.row(i) {
+        for &j in self.near_row(i) {
             let row = j as usize;
             let other = &self.records[row];
             let x_ij = self.pairs.periodic().minimal_image(other.position() - own);
@@ -205,7 +208,8 @@ impl FlowCloud {
     /// Number of directed pairs in the lists.
     pub fn pairs(&self) -> usize {
         let FlowPairs { fluid, walls, boundary, .. } = &self.pairs;
-        fluid.pairs() + walls.pairs() + boundary.pairs()
+        let of_blocks = self.blocks.as_ref().map_or(0, |blocks| EIGHT * blocks.lists.fluid.count());
+        of_blocks + fluid.pairs() + walls.pairs() + boundary.pairs()
     }
 
     /// How often the lists have been built.

@@ -8,7 +8,7 @@ use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::near_rows::{NearRow, NearWriter};
 use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
 
 /// Runs the pass.
@@ -17,7 +17,13 @@ pub(super) struct Compression;
 impl Run for Compression {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        cloud.compress(step.clock.dt);
+        match cloud.blocks.take() {
+            Some(mut blocks) => {
+                cloud.compress_blocks(&mut blocks, step.clock.dt);
+                cloud.blocks = Some(blocks);
+            }
+            None => cloud.compress(step.clock.dt),
+        }
         Ok(())
     }
 }
@@ -49,14 +55,14 @@ struct Rows<'a> {
 
 impl PlaneOrSolid for Rows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
 impl Rows<'_> {
     #[inline(always)]
-    fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
+    fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
         let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
         let kernel = *kernel;
         let mut batch = Batch::EMPTY;
@@ -87,7 +93,7 @@ struct Pairs<'a, const D: usize> {
 
 impl<const D: usize> Pairs<'_, D> {
     #[inline(always)]
-    fn add<A: Arithmetic, const P: bool>(
+    fn add<A: FourLanes, const P: bool>(
         &self,
         a: A,
         row: &[u32],
@@ -119,7 +125,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// The squares of the distances at the middle of the step, and V_j v_ij.x_ij; writes down who is near.
     #[inline(always)]
-    fn four<A: Arithmetic, const P: bool>(
+    fn four<A: FourLanes, const P: bool>(
         &self,
         a: A,
         rows: [u32; 4],

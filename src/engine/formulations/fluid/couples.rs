@@ -17,7 +17,7 @@ use super::pair_force::PARTS;
 use super::record::Record;
 use super::spin::rotation;
 use crate::neighbors::Periodic;
-use crate::parallel::{Arithmetic, Lanes4, Number, Vector, for_each_block};
+use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
 use crate::world::Force;
 
 /// Finds the couples on the particles of a boundary, and the forces that make them.
@@ -106,7 +106,7 @@ impl RowPass for CoupleOn<'_> {
     type Output = Lanes4;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Lanes4 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Lanes4 {
         let Self { cloud, group } = *self;
         let (mut sum, mut drag) = (Axial::zero(a), Number::zero(a));
         let own = Vector::splat(a, cloud.records[i].velocity());

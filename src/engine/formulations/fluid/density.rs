@@ -1,7 +1,7 @@
 //! The density of fluids at the end of the step, by continuity.
 
 use super::cloud::{FlowCloud, FluidState};
-use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
@@ -108,7 +108,7 @@ impl HotLoop for Advance<'_> {
     type Output = Change;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> Change {
+    fn run<A: FourLanes>(self, a: A) -> Change {
         let Self { state, dt, by_terms, shift, first, rows } = self;
         let (density, compression, rate, mass, removed) = rows;
         let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::record::Record;
 use super::spread::{Growing, Spread};
 use crate::neighbors::{Buckets, Periodic, SHIFT, bounds};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
 /// What has to hold for lists to be good, m.
 #[derive(Clone, Copy, Debug)]
@@ -165,7 +165,7 @@ impl HotLoop for Moved<'_> {
     type Output = Spread;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> Spread {
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
         let mut moved = Growing::new();

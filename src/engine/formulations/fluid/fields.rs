@@ -7,7 +7,7 @@ use super::near::RowPass;
 use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
 use crate::fields::Field;
-use crate::parallel::{Arithmetic, Vector};
+use crate::parallel::{FourLanes, Vector};
 use crate::plugin::BodyKind;
 use crate::world::{Column, Value, Velocity};
 
@@ -50,7 +50,7 @@ impl RowPass for Vorticity<'_> {
     type Output = DVec3;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> DVec3 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
         let mut moment = FourMoments::new(a);
         let mut gradient = [Vector::zero(a); 3];
         let own = Vector::splat(a, self.velocity[i].0);
@@ -76,7 +76,7 @@ impl RowPass for FreeSurface<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> f64 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> f64 {
         let cloud = self.0;
         let (mut moment, mut inward) = (FourMoments::new(a), Vector::zero(a));
         for near in cloud.fours(a, i, &cloud.everything()) {

@@ -10,7 +10,7 @@ use super::near::RowPass;
 use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
 use crate::notation::quantity;
-use crate::parallel::{Arithmetic, Number};
+use crate::parallel::{FourLanes, Number};
 use crate::schedule::Step;
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
@@ -79,7 +79,7 @@ impl RowPass for FillingPass<'_> {
     type Output = Option<f64>;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Option<f64> {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Option<f64> {
         let cloud = self.0;
         let own = cloud.records[i].volume();
         let (mut moment, mut filling) = (FourMoments::new(a), Number::splat(a, 0.0));

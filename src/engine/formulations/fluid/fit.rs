@@ -21,7 +21,7 @@ pub(super) fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut
         scratch.resize(fluid.cloud.len(), None);
         cloud.for_each_row(fluid.cloud.start, scratch, &FillingPass(cloud));
         let rows = || fluid.cloud.clone().zip(&*scratch).filter_map(|(i, filling)| Some((i, (*filling)?)));
-        let is_bounded = |i: usize| cloud.near.row(i).last().is_some_and(|&j| j as usize >= cloud.fluid);
+        let is_bounded = |i: usize| cloud.near_row(i).last().is_some_and(|&j| j as usize >= cloud.fluid);
         let inside: Vec<f64> = rows().filter(|(i, _)| !is_bounded(*i)).map(|(_, filling)| filling).collect();
         let even = if inside.len() < LEAST { 1.0 } else { mean(inside.iter().copied()) };
         let mut last = None;
@@ -38,8 +38,7 @@ pub(super) fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut
                 };
                 let to = |j: usize| cloud.offset(own.position(), cloud.records[j].position()).length();
                 cloud
-                    .near
-                    .row(i)
+                    .near_row(i)
                     .iter()
                     .map(|&j| j as usize)
                     .any(|j| j >= cloud.fluid && of_boundary(j) && to(j) < reach)

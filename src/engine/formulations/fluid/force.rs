@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
 
+use super::blocks::BlockForce;
 use super::cloud::{FlowCloud, Role};
 use super::couples::Couples;
 use super::pair_force::{PARTS, PairForce};
@@ -31,19 +32,33 @@ pub(super) struct FlowForce {
 
 impl Run for FlowForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let cloud = step.resources.get::<FlowCloud>();
+        let flows = self.gravity.is_some();
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let mut blocks = if flows { cloud.blocks.take() } else { None };
+        if let Some(blocks) = &mut blocks {
+            blocks.pack_states(&cloud);
+        }
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let mut force = view.write::<Force>()?;
         let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
-        for (group, BodyTerms { forces, .. }) in groups.zip(parts.iter_mut()) {
+        for (number, (group, BodyTerms { forces, .. })) in groups.zip(parts.iter_mut()).enumerate() {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
-            let pass = PairForce { cloud: &cloud, group, adds: self.gravity.is_none() };
-            match self.terms.as_mut().filter(|terms| terms.act_on(group.body)) {
-                Some(terms) => pass.run_with(terms, step, total, forces)?,
-                None => pass.run(total, forces),
+            let terms = self.terms.as_mut().filter(|terms| terms.act_on(group.body));
+            if let Some(blocks) = &mut blocks {
+                let mut pass = BlockForce { cloud: &cloud, group, number, blocks };
+                match terms {
+                    Some(terms) => pass.run_with(terms, step, total, forces)?,
+                    None => pass.run(total, forces),
+                }
+            } else {
+                let pass = PairForce { cloud: &cloud, group, adds: !flows };
+                match terms {
+                    Some(terms) => pass.run_with(terms, step, total, forces)?,
+                    None => pass.run(total, forces),
+                }
             }
             self.couples.add(&cloud, group, total, forces);
             cloud.repel(group, total, forces);
@@ -70,6 +85,9 @@ impl Run for FlowForce {
                 step.ledger.add(supplied, group.body, work);
                 step.ledger.add(dissipated, group.body, work);
             }
+        }
+        if flows {
+            cloud.blocks = blocks;
         }
         Ok(())
     }

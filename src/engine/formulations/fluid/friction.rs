@@ -5,7 +5,7 @@ use super::cloud::{FlowCloud, Group};
 use super::near::RowPass;
 use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
-use crate::parallel::{Arithmetic, Number, Vector};
+use crate::parallel::{FourLanes, Number, Vector};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
@@ -31,7 +31,7 @@ impl RowPass for FrictionOf<'_> {
     type Output = Option<Friction>;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Option<Friction> {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Option<Friction> {
         let Self { cloud, group } = *self;
         let own = &cloud.records[i];
         let (velocity, spin) = (Vector::splat(a, own.velocity()), Axial::splat(a, &cloud.spins[i]));

@@ -113,7 +113,7 @@ fn deepest(
 ) -> Option<Deepest> {
     let mut found: Option<Deepest> = None;
     for (row, i) in fluid.cloud.clone().enumerate().filter(|(_, i)| cloud.records[*i].volume() > 0.0) {
-        let near = super::near::part(cloud.near.row(i), &other.cloud);
+        let near = super::near::part(cloud.near_row(i), &other.cloud);
         let Some(place) = place_in_body(cloud, i, near, other, body.spacing, reference) else { continue };
         // The shape tells nothing of a body that has lost particles.
         if body.is_worn && !is_enclosed(cloud, i, near, body.spacing) {

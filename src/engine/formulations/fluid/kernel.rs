@@ -5,7 +5,7 @@
 //! Astronomical Society 425, 1068-1082).
 
 use crate::kernels::{Kernel, KernelName};
-use crate::parallel::{Arithmetic, Lanes4};
+use crate::parallel::Arithmetic;
 
 /// Square of the distance of particles in one place, over that of the support.
 const NO_LENGTH: f64 = 1e-24;
@@ -76,27 +76,35 @@ impl FluidKernel {
 
     /// Pair weights w = |W'| / r of four neighbours.
     #[inline(always)]
-    pub fn weights<A: Arithmetic>(&self, a: A, r: Lanes4) -> Lanes4 {
+    pub fn weights<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
         a.scale(self.weight_scale, self.shapes(a, r))
     }
 
     /// Pair weights of four neighbours over that of r = 0: for sums that are multiplied with [`Self::weight_scale`] once. With q = r/H they are (1 - q)^3,
     /// (1 - q)^5 (1 + 5 q) and (1 - q)^7 (1 + 7 q + 16 q^2).
     #[inline(always)]
-    pub(super) fn shapes<A: Arithmetic>(&self, a: A, r: Lanes4) -> Lanes4 {
-        let s = a.or_zero(a.scale_add(-self.inverse_support, r, Lanes4::splat(1.0)));
+    pub(super) fn shapes<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
+        let s = a.or_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
         let square = a.times(s, s);
         let cube = a.times(square, s);
         let q = a.scale(self.inverse_support, r);
-        let one = Lanes4::splat(1.0);
+        let one = a.splat(1.0);
         match self.shape {
             Shape::WendlandC2 => cube,
             Shape::WendlandC4 => a.times(a.times(cube, square), a.scale_add(5.0, q, one)),
             Shape::WendlandC6 => {
-                let slope = a.scale_add(16.0, q, Lanes4::splat(7.0));
+                let slope = a.scale_add(16.0, q, a.splat(7.0));
                 a.times(a.times(a.times(cube, square), square), a.times_add(q, slope, one))
             }
             Shape::QuinticSpline => a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), q)),
+        }
+    }
+
+    /// Runs a loop over the weights of this kernel: compiled for Wendland C2 alone, which is the default, and for all others.
+    pub(super) fn run<L: KernelLoop>(&self, hot: L) -> L::Output {
+        match self.shape {
+            Shape::WendlandC2 => hot.run(WendlandC2 { slope: -self.inverse_support }),
+            _ => hot.run(self),
         }
     }
 
@@ -109,20 +117,20 @@ impl FluidKernel {
     /// Kernel values W of four neighbours; over W(0), with q = r/H, they are (1 - q)^4 (1 + 4 q), (1 - q)^6 (1 + 6 q + 35/3 q^2) and
     /// (1 - q)^8 (1 + 8 q + 25 q^2 + 32 q^3).
     #[inline(always)]
-    pub fn values<A: Arithmetic>(&self, a: A, r: Lanes4) -> Lanes4 {
-        let s = a.or_zero(a.scale_add(-self.inverse_support, r, Lanes4::splat(1.0)));
+    pub fn values<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
+        let s = a.or_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
         let square = a.times(s, s);
         let fourth = a.times(square, square);
-        let one = Lanes4::splat(1.0);
+        let one = a.splat(1.0);
         let q = a.scale(self.inverse_support, r);
         let shape = match self.shape {
             Shape::WendlandC2 => a.times(fourth, a.scale_add(4.0 * self.inverse_support, r, one)),
             Shape::WendlandC4 => {
-                let slope = a.scale_add(35.0 / 3.0, q, Lanes4::splat(6.0));
+                let slope = a.scale_add(35.0 / 3.0, q, a.splat(6.0));
                 a.times(a.times(fourth, square), a.times_add(q, slope, one))
             }
             Shape::WendlandC6 => {
-                let slope = a.times_add(q, a.scale_add(32.0, q, Lanes4::splat(25.0)), Lanes4::splat(8.0));
+                let slope = a.times_add(q, a.scale_add(32.0, q, a.splat(25.0)), a.splat(8.0));
                 a.times(a.times(fourth, fourth), a.times_add(q, slope, one))
             }
             Shape::QuinticSpline => a.scale(1.0 / 66.0, spline::<A, 5>(a, q)),
@@ -136,14 +144,14 @@ impl FluidKernel {
     pub(super) fn within<A: Arithmetic>(
         &self,
         a: A,
-        square: Lanes4,
-        fill: Lanes4,
-        volume: Lanes4,
-    ) -> (Lanes4, Lanes4) {
+        square: A::Lanes,
+        fill: A::Lanes,
+        volume: A::Lanes,
+    ) -> (A::Lanes, A::Lanes) {
         let limit = self.support * self.support;
         let square = a.scale_add(limit, fill, square);
-        let volume = a.where_below(square, Lanes4::splat(limit), volume);
-        (a.larger(square, Lanes4::splat(self.least_square())), volume)
+        let volume = a.where_below(square, a.splat(limit), volume);
+        (a.larger(square, a.splat(self.least_square())), volume)
     }
 
     /// Square of the length of pairs in one place, m2: one may divide by it.
@@ -182,14 +190,50 @@ impl FluidKernel {
     }
 }
 
+/// Pair weights over that at r = 0, as functions of the distance r, m.
+pub(super) trait PairShape: Copy + Sync {
+    /// The shape of the pairs of all lanes.
+    fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes;
+}
+
+/// `(1 - r/H)^3`.
+#[derive(Clone, Copy)]
+pub(super) struct WendlandC2 {
+    /// -1/H, 1/m.
+    slope: f64,
+}
+
+impl PairShape for WendlandC2 {
+    #[inline(always)]
+    fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes {
+        let s = a.or_zero(a.scale_add(self.slope, r, a.splat(1.0)));
+        a.times(a.times(s, s), s)
+    }
+}
+
+impl PairShape for &FluidKernel {
+    #[inline(always)]
+    fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes {
+        self.shapes(a, r)
+    }
+}
+
+/// A loop over pairs.
+pub(super) trait KernelLoop {
+    /// What it returns.
+    type Output;
+    /// The loop.
+    fn run<K: PairShape>(self, kernel: K) -> Self::Output;
+}
+
 /// Factor of the fourth powers over q = r/H in the pair weight of the quintic spline, which is one at q = 0.
 const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;
 
 /// `(3 - 3 q)^N - 6 (2 - 3 q)^N + 15 (1 - 3 q)^N` of four q = r/H, each bracket where it is positive.
 #[inline(always)]
-fn spline<A: Arithmetic, const N: usize>(a: A, q: Lanes4) -> Lanes4 {
+fn spline<A: Arithmetic, const N: usize>(a: A, q: A::Lanes) -> A::Lanes {
     let power = |knot: f64| {
-        let s = a.or_zero(a.scale_add(-3.0, q, Lanes4::splat(knot)));
+        let s = a.or_zero(a.scale_add(-3.0, q, a.splat(knot)));
         let square = a.times(s, s);
         let fourth = a.times(square, square);
         if N == 5 { a.times(fourth, s) } else { fourth }
@@ -206,14 +250,14 @@ fn truncated_powers(n: i32, q: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parallel::{HotLoop, run_hot};
+    use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot};
 
     struct Four<'a>(&'a FluidKernel, Lanes4);
 
     impl HotLoop for Four<'_> {
         type Output = (Lanes4, Lanes4);
 
-        fn run<A: Arithmetic>(self, a: A) -> (Lanes4, Lanes4) {
+        fn run<A: FourLanes>(self, a: A) -> (Lanes4, Lanes4) {
             (self.0.values(a, self.1), self.0.weights(a, self.1))
         }
     }

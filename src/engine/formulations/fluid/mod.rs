@@ -9,6 +9,7 @@ mod advice;
 mod assemble;
 mod axial;
 mod batch;
+mod blocks;
 mod body_motion;
 mod body_spin;
 #[cfg(test)]
@@ -86,6 +87,7 @@ mod watch;
 mod worn_tests;
 
 pub use assemble::add_systems;
+pub use blocks::keep_rows;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
 pub use density::{DensityShift, SHIFTING_ENERGY};
 pub use displace::displace;

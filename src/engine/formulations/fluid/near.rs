@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use super::cloud::FlowCloud;
 use super::record::{FILLS, Places, as_rows, filled_up};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, Number, Vector, for_each_block, run_hot_on};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, for_each_block, run_hot_on};
 
 /// Four neighbours of a particle. Lanes without a neighbour, and neighbours beyond the support, have weight, kernel and volume
 /// zero and a distance above zero.
 #[derive(Clone, Copy)]
-pub struct FourNear<A> {
+pub struct FourNear<A: FourLanes> {
     /// Rows of fluid particles in their phase; beyond the number of fluid particles, something that bounds the fluid.
     pub rows: [usize; 4],
     /// x_ij = x_j - x_i, m.
@@ -24,7 +24,7 @@ pub struct FourNear<A> {
     pub volume: Number<A>,
 }
 
-impl<A: Arithmetic> FourNear<A> {
+impl<A: FourLanes> FourNear<A> {
     /// A number of each of the four.
     #[inline(always)]
     pub fn number(&self, of: impl Fn(usize) -> f64) -> Number<A> {
@@ -48,7 +48,7 @@ pub struct Fours<'a, A> {
     arithmetic: A,
 }
 
-impl<A: Arithmetic> Iterator for Fours<'_, A> {
+impl<A: FourLanes> Iterator for Fours<'_, A> {
     type Item = FourNear<A>;
 
     #[inline(always)]
@@ -60,7 +60,13 @@ impl<A: Arithmetic> Iterator for Fours<'_, A> {
             Places::gather(a, &cloud.records, &cloud.records[self.i], rows, &cloud.periods);
         let x_ij = Vector::new(a, x);
         let square = x_ij.length_squared().lanes();
-        let (square, volume) = cloud.kernel.within(a, square, FILLS[chunk.len()], volume);
+        let mut fill = FILLS[chunk.len()];
+        if cloud.blocks.is_some() {
+            // The list of its block holds the particle itself.
+            let own = |row: usize| if row == self.i { 4.0 } else { 0.0 };
+            fill = a.plus(fill, Lanes4([own(rows[0]), own(rows[1]), own(rows[2]), own(rows[3])]));
+        }
+        let (square, volume) = cloud.kernel.within(a, square, fill, volume);
         let distance = a.sqrt(square);
         Some(FourNear {
             rows,
@@ -80,7 +86,7 @@ pub trait RowPass: Sync {
 
     /// The value of particle `i`, its row in the phase of fluids. Mark it `#[inline(always)]`: it is then compiled for the
     /// instruction path of the loop around it.
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Self::Output;
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Self::Output;
 }
 
 struct Block<'a, P: RowPass> {
@@ -93,7 +99,7 @@ impl<P: RowPass> HotLoop for Block<'_, P> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         for (k, out) in self.out.iter_mut().enumerate() {
             *out = self.pass.row(a, self.first + k);
         }
@@ -104,20 +110,24 @@ impl FlowCloud {
     /// The neighbours of particle `i` in the bodies whose rows are `among`, in the order of its list, four at a time; `0..self.fluid` are all
     /// fluids, the rows of a body those of its own, and [`FlowCloud::everything`] also what bounds the fluid.
     #[inline(always)]
-    pub fn fours<A: Arithmetic>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
+    pub fn fours<A: FourLanes>(&self, a: A, i: usize, among: &Range<usize>) -> Fours<'_, A> {
         Fours { cloud: self, i, chunks: part(self.near_row(i), among).chunks(4), arithmetic: a }
     }
 
     /// The neighbours of particle `i`, to be taken group by group ([`FlowCloud::next_fours`]).
     #[inline(always)]
     pub(super) fn near_row(&self, i: usize) -> &[u32] {
-        if i < self.fluid { self.near.row(i) } else { self.near_boundary.row(i - self.fluid) }
+        if i >= self.fluid {
+            return self.near_boundary.row(i - self.fluid);
+        }
+        let shared = self.blocks.as_ref().and_then(|blocks| blocks.shared_row(i));
+        shared.unwrap_or_else(|| self.near.row(i))
     }
 
     /// Takes the neighbours in group `n` out of what is left of the row of particle `i`, whose groups come in their order: a flow may have many bodies, of
     /// which few are near.
     #[inline(always)]
-    pub(super) fn next_fours<'a, A: Arithmetic>(
+    pub(super) fn next_fours<'a, A: FourLanes>(
         &'a self,
         a: A,
         i: usize,

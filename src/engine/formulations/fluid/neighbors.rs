@@ -25,9 +25,12 @@ pub(super) struct Neighbors {
 impl FlowCloud {
     /// Builds the lists from these positions, and the room for the neighbours within the support.
     fn build_lists(&mut self, positions: &[DVec3]) -> Result<(), NeighborError> {
-        let Self { pairs, near, near_boundary, fluid, .. } = self;
-        pairs.build(positions, *fluid)?;
-        near.make_room(&[&pairs.fluid, &pairs.walls]);
+        let Self { pairs, near, near_boundary, fluid, blocks, .. } = self;
+        pairs.build(positions, *fluid, blocks.as_mut().map(|blocks| &mut blocks.lists))?;
+        match blocks {
+            Some(blocks) => blocks.make_room(near),
+            None => near.make_room(&[&pairs.fluid, &pairs.walls]),
+        }
         near_boundary.make_room(&[&pairs.boundary]);
         Ok(())
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::cloud::FlowCloud;
 use super::record::Record;
 use super::spread::{Growing, Spread};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 use crate::world::{
     Density, Mass, MissingColumn, Position, Pressure, ReferenceVolume, Removed, Velocity, World,
 };
@@ -63,7 +63,7 @@ impl HotLoop for PackFluid<'_> {
     type Output = Spread;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> Spread {
         let Self((records, x, v, removed), (mass, density, pressure)) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
@@ -81,7 +81,7 @@ impl HotLoop for PackBoundary<'_> {
     type Output = Spread;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> Spread {
         let Self((records, x, v, removed), volume) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
@@ -95,7 +95,7 @@ impl HotLoop for PackBoundary<'_> {
 
 /// Writes the place of a particle, and adds to `moved` how far it is from where it was.
 #[inline(always)]
-fn write<A: Arithmetic>(a: A, record: &mut Record, place: Lanes4, moved: &mut Growing) {
+fn write<A: FourLanes>(a: A, record: &mut Record, place: Lanes4, moved: &mut Growing) {
     moved.add(a, a.minus(place, record.place));
     record.place = place;
 }

@@ -13,7 +13,7 @@ use super::cloud::{FlowCloud, Group};
 use super::pair_sums::{Between, Forces, Pairs};
 use super::record::{Own, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
-use crate::parallel::{Arithmetic, BlockSum, PlaneOrSolid, Split, for_each_block, run_hot_in};
+use crate::parallel::{BlockSum, FourLanes, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
@@ -96,14 +96,14 @@ struct Terms<'a> {
 
 impl PlaneOrSolid for Rows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
 impl Rows<'_> {
     #[inline(always)]
-    fn rows<A: Arithmetic, const D: usize, const P: bool>(self, a: A) {
+    fn rows<A: FourLanes, const D: usize, const P: bool>(self, a: A) {
         let PairForce { cloud, group, adds } = *self.pass;
         let kernel = cloud.kernel;
         let ForceRows { mut written, parts } = self.rows;

@@ -4,7 +4,7 @@ use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
 use crate::pair::{FourPairs, Room};
-use crate::parallel::{Arithmetic, Lanes4};
+use crate::parallel::{FourLanes, Lanes4};
 
 /// The pairs of a particle with the neighbours in `row`.
 pub(super) struct Pairs<'a, const D: usize> {
@@ -39,7 +39,7 @@ impl<const D: usize> Forces<D> {
 
     /// Adds four neighbours: V_j (p_i + p_j) w x_ij and V_j 4 mu w (v_ij - omega_ij x x_ij) between fluids.
     #[inline(always)]
-    fn add_fluid<A: Arithmetic, const FRICTION: u8>(
+    fn add_fluid<A: FourLanes, const FRICTION: u8>(
         &mut self,
         a: A,
         FourPairs { current, velocity, weight, volume_j, kept: pressure, .. }: &FourPairs,
@@ -102,7 +102,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// omega_ij x x_ij of four pairs.
     #[inline(always)]
-    fn turning<A: Arithmetic>(
+    fn turning<A: FourLanes>(
         &self,
         a: A,
         PairSpin { own, share }: PairSpin,
@@ -141,7 +141,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// Adds all neighbours.
     #[inline(always)]
-    pub fn add<A: Arithmetic, const P: bool>(&self, a: A, between: Between, forces: &mut Forces<D>) {
+    pub fn add<A: FourLanes, const P: bool>(&self, a: A, between: Between, forces: &mut Forces<D>) {
         match self.friction() {
             NONE => self.add_all::<A, P, NONE>(a, between, forces),
             PLAIN => self.add_all::<A, P, PLAIN>(a, between, forces),
@@ -150,7 +150,7 @@ impl<const D: usize> Pairs<'_, D> {
     }
 
     #[inline(always)]
-    fn add_all<A: Arithmetic, const P: bool, const FRICTION: u8>(
+    fn add_all<A: FourLanes, const P: bool, const FRICTION: u8>(
         &self,
         a: A,
         between: Between,
@@ -200,7 +200,7 @@ impl<const D: usize> Pairs<'_, D> {
     /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor looks ahead two or three fours.
     /// Taken apart, one gathers and one takes roots, each with short chains of instructions that wait for each other.
     #[inline(always)]
-    pub fn add_and_keep<A: Arithmetic, const P: bool>(
+    pub fn add_and_keep<A: FourLanes, const P: bool>(
         &self,
         a: A,
         Room { pairs, rows, .. }: Room<'_>,
@@ -237,7 +237,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// Puts four neighbours into `kept`, all but lengths and weights: in place of the lengths their squares.
     #[inline(always)]
-    fn gather<A: Arithmetic, const P: bool>(&self, a: A, rows: [u32; 4], kept: &mut FourPairs) {
+    fn gather<A: FourLanes, const P: bool>(&self, a: A, rows: [u32; 4], kept: &mut FourPairs) {
         let Self { cloud: FlowCloud { records, periods, .. }, own, .. } = self;
         let four = Four::<D>::gather::<A, P>(a, records, own, as_rows(rows), periods);
         for axis in 0..D {
@@ -251,7 +251,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// Takes roots, and adds up the forces.
     #[inline(always)]
-    fn weigh<A: Arithmetic, const FRICTION: u8>(
+    fn weigh<A: FourLanes, const FRICTION: u8>(
         &self,
         a: A,
         pairs: &mut [FourPairs],

@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::blocks::{Lists, Sources};
 use super::drift::{Drift, Skins};
 use super::record::Record;
 use super::sides::{Sides, ThinBody};
@@ -29,6 +30,7 @@ pub(super) struct FlowPairs {
     pub walls: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,
+    plane: bool,
     /// How much particles that are near each other can at least still move against each other, m.
     room: f64,
     /// Bodies whose sides do not see each other.
@@ -38,7 +40,7 @@ pub(super) struct FlowPairs {
 }
 
 impl FlowPairs {
-    pub fn new(skins: Skins, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>) -> Self {
+    pub fn new(skins: Skins, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>, plane: bool) -> Self {
         Self {
             skins,
             drift: Drift::default(),
@@ -50,6 +52,7 @@ impl FlowPairs {
             boundary: NeighborList::default(),
             room: f64::NEG_INFINITY,
             thin,
+            plane,
             builds: 0,
         }
     }
@@ -70,11 +73,20 @@ impl FlowPairs {
         self.room < 0.0
     }
 
-    /// Builds the lists; the first `fluid` positions are those of the fluid.
-    pub fn build(&mut self, positions: &[DVec3], fluid: usize) -> Result<(), NeighborError> {
+    /// Builds the lists; the first `fluid` positions are those of the fluid. With `blocks`, fluids have those in the place of lists of their own.
+    pub fn build(
+        &mut self,
+        positions: &[DVec3],
+        fluid: usize,
+        blocks: Option<&mut Lists>,
+    ) -> Result<(), NeighborError> {
         let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
         let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
-        self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
+        if blocks.is_some() {
+            self.search.sort(wet, skin, &self.periodic)?;
+        } else {
+            self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
+        }
         self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
         self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
@@ -84,6 +96,18 @@ impl FlowPairs {
             self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.turn(fluid..positions.len(), &mut self.boundary);
+        }
+        if let Some(lists) = blocks {
+            let fluids: Vec<usize> = self.groups.iter().map(|&end| end as usize).collect();
+            let sources = Sources {
+                positions: &positions[..fluid],
+                fluids: &fluids[..fluids.partition_point(|&end| end <= fluid)],
+                support,
+                skin,
+                plane: self.plane,
+                periodic: &self.periodic,
+            };
+            lists.build(&sources, (&mut self.search, &self.groups), &self.walls)?;
         }
         self.drift.sort(positions, CELL * support, &self.periodic);
         // The particles may have moved already: those of an interrupted run have.

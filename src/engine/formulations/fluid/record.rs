@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::neighbors::Periodic;
-use crate::parallel::{Arithmetic, Lanes4};
+use crate::parallel::{FourLanes, Lanes4};
 
 /// A particle as its neighbours see it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -66,7 +66,7 @@ impl Periods {
 
     /// Differences along an axis to the nearest image.
     #[inline(always)]
-    fn nearest<A: Arithmetic>(&self, a: A, axis: usize, x: Lanes4) -> Lanes4 {
+    fn nearest<A: FourLanes>(&self, a: A, axis: usize, x: Lanes4) -> Lanes4 {
         let shift = Lanes4::splat(SHIFT);
         let turns = a.minus(a.scale_add(self.inverse[axis], x, shift), shift);
         a.scale_add(-self.length[axis], turns, x)
@@ -156,7 +156,7 @@ pub(super) struct Places {
 impl Places {
     /// Reads four neighbours.
     #[inline(always)]
-    pub fn gather<A: Arithmetic>(
+    pub fn gather<A: FourLanes>(
         a: A,
         records: &[Record],
         own: &Record,
@@ -180,7 +180,7 @@ impl Places {
 impl<const D: usize> Four<D> {
     /// Reads four neighbours.
     #[inline(always)]
-    pub fn gather<A: Arithmetic, const P: bool>(
+    pub fn gather<A: FourLanes, const P: bool>(
         a: A,
         records: &[Record],
         own: &Own<D>,
@@ -205,7 +205,7 @@ impl<const D: usize> Four<D> {
 
 /// Scalar products of four pairs of vectors.
 #[inline(always)]
-pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lanes4; D]) -> Lanes4 {
+pub(super) fn dot<A: FourLanes, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lanes4; D]) -> Lanes4 {
     let mut sum = a.times(b[0], c[0]);
     for k in 1..D {
         sum = a.times_add(b[k], c[k], sum);
@@ -215,7 +215,7 @@ pub(super) fn dot<A: Arithmetic, const D: usize>(a: A, b: &[Lanes4; D], c: &[Lan
 
 /// The vector of the sums of the lanes of each axis.
 #[inline(always)]
-pub(super) fn sums<A: Arithmetic, const D: usize>(a: A, v: &[Lanes4; D]) -> DVec3 {
+pub(super) fn sums<A: FourLanes, const D: usize>(a: A, v: &[Lanes4; D]) -> DVec3 {
     let z = if D == 3 { v[D - 1] } else { Lanes4::ZERO };
     a.sums([v[0], v[1], z, Lanes4::ZERO]).xyz()
 }

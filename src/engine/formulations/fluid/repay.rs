@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::cloud::FlowCloud;
 use super::near::RowPass;
-use crate::parallel::{Arithmetic, Number, Vector, sum_over_blocks};
+use crate::parallel::{FourLanes, Number, Vector, sum_over_blocks};
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Removed, Velocity};
 
@@ -87,7 +87,7 @@ impl RowPass for Rubbing<'_> {
     type Output = Rub;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Rub {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Rub {
         let records = self.cloud.records();
         let v_i = records[i].velocity();
         let (mut velocity, mut taken) = (Vector::zero(a), Number::zero(a));

@@ -191,7 +191,7 @@ impl FlowCloud {
             if rows.contains(&repelled.i) {
                 add(repelled.i - rows.start, repelled.force);
             } else if rows.start == repelled.boundary {
-                for &j in part(self.near.row(repelled.i), &rows) {
+                for &j in part(self.near_row(repelled.i), &rows) {
                     let share = repelled.shares.of(self, repelled.i, j as usize);
                     add(j as usize - rows.start, -share * repelled.force);
                 }

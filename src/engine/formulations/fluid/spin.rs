@@ -20,7 +20,7 @@ use super::cloud::{FlowCloud, Group};
 use super::near::RowPass;
 use crate::correction::{FourMoments, SINGULAR};
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, Lanes4, Vector};
+use crate::parallel::{FourLanes, Lanes4, Vector};
 use crate::schedule::{Run, Step, StepError};
 
 /// Finds the spins of all fluid particles.
@@ -66,7 +66,7 @@ impl RowPass for BestFit<'_> {
     type Output = Fit;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Fit {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Fit {
         let Self { cloud, group } = *self;
         let (mut moment, mut angular) = (FourMoments::new(a), Axial::zero(a));
         let own = Vector::splat(a, cloud.records[i].velocity());
@@ -102,7 +102,7 @@ impl RowPass for Sharpened<'_> {
     type Output = Lanes4;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> Lanes4 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Lanes4 {
         let Self { cloud, group, fits } = *self;
         let mut torque = Axial::zero(a);
         let own = Axial::splat(a, &fits[i].spin);

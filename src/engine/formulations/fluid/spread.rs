@@ -1,6 +1,6 @@
 //! How much displacements differ: the box around them.
 
-use crate::parallel::{Arithmetic, BlockSum, Lanes4};
+use crate::parallel::{BlockSum, FourLanes, Lanes4};
 
 /// Displacements of some particles, m: the box around them; inverted where there are none.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +71,7 @@ impl Growing {
 
     /// Adds a displacement; the fourth lane does not matter.
     #[inline(always)]
-    pub fn add<A: Arithmetic>(&mut self, a: A, d: Lanes4) {
+    pub fn add<A: FourLanes>(&mut self, a: A, d: Lanes4) {
         self.spread.low = a.smaller(d, self.spread.low);
         self.spread.high = a.larger(d, self.spread.high);
         // What is no number does not show in the box.

@@ -3,7 +3,7 @@
 use super::cloud::{FlowCloud, FluidState, Group};
 use super::mach::{Mach, relative_speed};
 use super::record::Record;
-use crate::parallel::{Arithmetic, BlockSum, HotLoop, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
 
@@ -105,7 +105,7 @@ impl HotLoop for Apply<'_> {
     type Output = StateSum;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> StateSum {
+    fn run<A: FourLanes>(self, a: A) -> StateSum {
         let FluidState { density: rho_0, sound_speed, eos, .. } = *self.state;
         let (pressure, records, density, mass, removed) = self.rows;
         let mut sum = StateSum::default();

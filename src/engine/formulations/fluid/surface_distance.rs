@@ -75,7 +75,7 @@ impl Shape {
         reference: &[ReferencePosition],
         motion: Option<&BodyMotion>,
     ) -> Option<Place> {
-        let row = part(cloud.near.row(i), &self.group.cloud);
+        let row = part(cloud.near_row(i), &self.group.cloud);
         let from = cloud.records[i].position();
         let offset = |j: u32| cloud.offset(from, cloud.records[j as usize].position());
         let weight = |j: u32| cloud.records[j as usize].volume() * cloud.kernel.value(offset(j).length());

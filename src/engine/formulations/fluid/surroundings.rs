@@ -4,7 +4,7 @@ use super::cloud::FlowCloud;
 use super::near::RowPass;
 use crate::correction::FourMoments;
 use crate::linalg::{Eigen, Sym3};
-use crate::parallel::Arithmetic;
+use crate::parallel::FourLanes;
 
 /// Smallest eigenvalue of `sum_j V_j w_ij x_ij (x) x_ij` over fluids and what bounds them: one inside, about a half at a surface, zero for a
 /// drop (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663).
@@ -14,7 +14,7 @@ impl RowPass for SmallestEigenvalue<'_> {
     type Output = f64;
 
     #[inline(always)]
-    fn row<A: Arithmetic>(&self, a: A, i: usize) -> f64 {
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> f64 {
         let mut moment = FourMoments::new(a);
         for near in self.0.fours(a, i, &self.0.everything()) {
             moment.add(near.volume * near.weight, near.x_ij);

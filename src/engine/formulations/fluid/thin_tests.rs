@@ -41,7 +41,7 @@ fn water_does_not_see_water_through_a_sheet() {
         let mut walls = [0, 0];
         for (side, group) in [left.clone(), right.clone()].into_iter().enumerate() {
             for i in group.clone() {
-                for &j in cloud.near.row(i) {
+                for &j in cloud.near_row(i) {
                     let j = j as usize;
                     if j < cloud.fluid {
                         assert!(group.contains(&j), "{layers} layers of {formulation}: {i} sees {j}");

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::cloud::FlowCloud;
 use super::near_rows::{NearRows, NearWriter};
 use super::record::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 
 /// Least sum of V_f W for which there is fluid beside a wall.
 const LEAST_SHARE: f64 = 1e-10;
@@ -51,14 +51,14 @@ struct Rows<'a> {
 
 impl PlaneOrSolid for Rows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
 impl Rows<'_> {
     #[inline(always)]
-    fn rows<A: Arithmetic, const D: usize, const P: bool>(mut self, a: A) {
+    fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
         let (cloud, kernel) = (self.cloud, self.cloud.kernel);
         let limit = Lanes4::splat(kernel.support * kernel.support);
         for (k, out) in self.out.iter_mut().enumerate() {
@@ -116,7 +116,7 @@ impl Rows<'_> {
 
 /// b_f . x_wf of four particles of the fluid.
 #[inline(always)]
-fn along_loads<A: Arithmetic, const D: usize>(
+fn along_loads<A: FourLanes, const D: usize>(
     a: A,
     cloud: &FlowCloud,
     rows: [u32; 4],

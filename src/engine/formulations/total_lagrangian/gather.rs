@@ -6,7 +6,7 @@ use super::bonds::Bonds;
 use super::rows::Site;
 use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, BLOCK, HotLoop, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::solids::CorrectedStress;
 
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
@@ -25,7 +25,7 @@ pub(in crate::formulations) struct Gather<'a> {
 
 impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, sites, first, deformation, gradient, residual, stretch, volume } = self;
         for (k, f_i) in deformation.iter_mut().enumerate() {
             let i = first + k;
@@ -97,7 +97,7 @@ impl HotLoop for CorrectStress<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         for ((p, inverse), out) in self.stress.iter().zip(self.inverse_moment).zip(self.stresses) {
             let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
             let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];

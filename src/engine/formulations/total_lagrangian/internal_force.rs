@@ -17,7 +17,7 @@ use super::cracks::Cracks;
 use super::frame::{Frame, frame_of};
 use super::phase::PackedRows;
 use super::rows::Site;
-use crate::parallel::{Arithmetic, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
@@ -70,7 +70,7 @@ struct ForceRows<'a> {
 
 impl PlaneOrSolid for ForceRows<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let InternalForce { bonds, sites, stresses, self_force, frames, mass, gravity, .. } = *self.pass;
         let mut frame = frame_of(frames, self.first);
         for (k, force) in self.force.iter_mut().enumerate() {
@@ -117,7 +117,7 @@ impl<const D: usize> ForceSum<D> {
     const ZERO: Self = Self { columns: [Lanes4::ZERO; D], traction: Lanes4::ZERO };
 
     #[inline(always)]
-    fn add<A: Arithmetic>(&mut self, a: A, other: &CorrectedStress, weight: f32) {
+    fn add<A: FourLanes>(&mut self, a: A, other: &CorrectedStress, weight: f32) {
         let weight = f64::from(weight) * other.traction.0[3];
         for axis in 0..D {
             self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
@@ -126,7 +126,7 @@ impl<const D: usize> ForceSum<D> {
     }
 
     #[inline(always)]
-    fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
+    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
         for axis in 0..D {
             self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
         }

@@ -9,7 +9,7 @@ use super::bonds::Bonds;
 use super::rows::Site;
 use crate::kernels::Kernel;
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, Vector, run_hot_on};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
 use crate::solids::SolidPhase;
@@ -109,7 +109,7 @@ impl HotLoop for Fill<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) {
+    fn run<A: FourLanes>(self, a: A) {
         let Self { pairs, rows, batch } = self;
         let extras = Extras {
             reference: true,
@@ -138,7 +138,7 @@ struct FourBonds {
 }
 
 /// The particle of a row in every lane.
-struct Own<A> {
+struct Own<A: FourLanes> {
     reference: Vector<A>,
     displacement: Vector<A>,
     velocity: Vector<A>,
@@ -148,7 +148,7 @@ struct Own<A> {
 impl BodyPairs<'_> {
     /// Adds the row of one particle; `GHOSTS` where there are ghosts.
     #[inline(always)]
-    fn fill_row<A: Arithmetic, const GHOSTS: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
+    fn fill_row<A: FourLanes, const GHOSTS: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
         let Self { bonds, sites, velocity, support, .. } = *self;
         let site = &sites[i];
         let own = Own {
@@ -181,7 +181,7 @@ impl BodyPairs<'_> {
 
     /// Puts four neighbours into the room, all but kernel values.
     #[inline(always)]
-    fn put<A: Arithmetic, const GHOSTS: bool>(
+    fn put<A: FourLanes, const GHOSTS: bool>(
         &self,
         a: A,
         own: &Own<A>,
@@ -246,12 +246,12 @@ fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: Room<'_>) {
 
 /// Four vectors, with the squares of their lengths, above zero.
 #[inline(always)]
-fn four_vectors<A: Arithmetic>(a: A, vector: Vector<A>) -> FourVectors {
+fn four_vectors<A: FourLanes>(a: A, vector: Vector<A>) -> FourVectors {
     let square = vector.length_squared().lanes();
     FourVectors { vector: lanes(vector), length: a.larger(square, Lanes4::splat(f64::MIN_POSITIVE)) }
 }
 
 #[inline(always)]
-fn lanes<A: Arithmetic>(vector: Vector<A>) -> [Lanes4; 3] {
+fn lanes<A: FourLanes>(vector: Vector<A>) -> [Lanes4; 3] {
     [vector.x.lanes(), vector.y.lanes(), vector.z.lanes()]
 }

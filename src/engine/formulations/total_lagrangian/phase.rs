@@ -8,7 +8,7 @@ use super::frame::{Frame, frame_of};
 use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
-use crate::parallel::{Arithmetic, HotLoop, Lanes4, Picked, for_each_block, run_hot};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Picked, for_each_block, run_hot};
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
@@ -139,7 +139,7 @@ impl HotLoop for RateSum<'_> {
     type Output = DMat3;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, a: A) -> DMat3 {
+    fn run<A: FourLanes>(self, a: A) -> DMat3 {
         let Self { packed, row, velocity } = self;
         let (bonds, sites, ghosts) = (&packed.bonds, &packed.sites, &packed.ghosts);
         let (own, v) = (sites[row].reference, Lanes4::new(velocity[row].0, 0.0));

@@ -2,7 +2,7 @@
 
 use super::rows::Site;
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, Lanes4};
+use crate::parallel::{FourLanes, Lanes4};
 
 /// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
 /// wait for each other.
@@ -20,7 +20,7 @@ impl<const D: usize> Spread<D> {
     pub const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
 
     #[inline(always)]
-    pub fn add<A: Arithmetic>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
+    pub fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
         let displacement = a.minus(other.displacement, displacement);
         let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
         for axis in 0..D {
@@ -31,7 +31,7 @@ impl<const D: usize> Spread<D> {
     }
 
     #[inline(always)]
-    pub fn plus<A: Arithmetic>(mut self, a: A, other: &Self) -> Self {
+    pub fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
         for axis in 0..D {
             self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
         }
@@ -43,7 +43,7 @@ impl<const D: usize> Spread<D> {
 
 /// The columns of a weighted sum times the inverse moment matrix.
 #[inline(always)]
-pub(in crate::formulations) fn fit<A: Arithmetic, const D: usize>(
+pub(in crate::formulations) fn fit<A: FourLanes, const D: usize>(
     a: A,
     spread: &[Lanes4; D],
     inverse: &Sym3,

@@ -22,7 +22,7 @@ use glam::{DMat3, DVec3};
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::{Bonds, Site, fit};
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, BLOCK, Lanes4, PlaneOrSolid};
+use crate::parallel::{BLOCK, FourLanes, Lanes4, PlaneOrSolid};
 use crate::solids::CorrectedStress;
 use crate::world::Force;
 
@@ -41,7 +41,7 @@ pub(super) struct ControlFit<'a> {
 
 impl PlaneOrSolid for ControlFit<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, sites, rows, gradient, residual, volume, fitted } = self;
         for (k, i) in rows.enumerate() {
             let own = sites[i];
@@ -95,7 +95,7 @@ pub(super) struct ControlForce<'a> {
 
 impl PlaneOrSolid for ControlForce<'_> {
     #[inline(always)]
-    fn run<A: Arithmetic, const D: usize>(self, a: A) {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, pull, sites, control, first, force } = self;
         for (k, force) in force.iter_mut().enumerate() {
             let i = first + k;

@@ -21,7 +21,7 @@ use super::super::bonds::Bonds;
 use super::super::rows::Site;
 use super::rows::HessianRows;
 use crate::linalg::Sym3;
-use crate::parallel::{Arithmetic, HotLoop, for_each_block, run_hot, sum_over_blocks};
+use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::{
     CorrectedStress, FoldedEnergy, HessianForm, HessianResidual, HessianStiffness, SolidBodies,
 };
@@ -117,7 +117,7 @@ impl HotLoop for ResidualBlock<'_, '_> {
     type Output = FoldedEnergy;
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) -> FoldedEnergy {
+    fn run<A: FourLanes>(self, _: A) -> FoldedEnergy {
         let Residuals { bonds, ghosts, sites, gradient, damage, first, moves } = *self.pass;
         let (residual, held, pull, stiffness, support) = self.own;
         let mut energy = FoldedEnergy::default();
@@ -178,7 +178,7 @@ impl HotLoop for ForceBlock<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let Forces { bonds, sites, pull, first } = *self.pass;
         for (k, (stress, self_force)) in self.stresses.iter_mut().zip(self.self_force).enumerate() {
             let i = first + self.first + k;

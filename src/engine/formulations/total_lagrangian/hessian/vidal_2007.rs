@@ -26,7 +26,7 @@ use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::{Sym3, dyad};
-use crate::parallel::{Arithmetic, HotLoop, for_each_block, run_hot};
+use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot};
 use crate::solids::{CorrectedStress, HessianForm};
 use crate::symmetry::Ghosts;
 use crate::world::Force;
@@ -122,7 +122,7 @@ impl HotLoop for Difference<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let Self { rows, bonds, sites, gradient, eta, first, block } = self;
         for (k, out) in block.iter_mut().enumerate() {
             let i = first + k;
@@ -221,7 +221,7 @@ impl HotLoop for AdjointStress<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let Self { vidal, theta, bonds, sites, eta, first, stresses, self_force } = self;
         let VidalRows { shift, .. } = vidal;
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
@@ -256,7 +256,7 @@ impl HotLoop for AdjointForce<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<A: Arithmetic>(self, _: A) {
+    fn run<A: FourLanes>(self, _: A) {
         let Self { vidal, theta, bonds, sites, eta, first, force } = self;
         let VidalRows { curvature, step, correction, .. } = vidal;
         for (k, force) in force.iter_mut().enumerate() {
