@@ -6,7 +6,7 @@ pub use meshless_engine::glam::{DMat3, DVec3};
 pub use meshless_engine::materials::{
     ElasticConstants, Hyperelastic, Material, MaterialModel, ParameterError,
 };
-pub use meshless_engine::pair::{Pair, PairTerm, Rates};
+pub use meshless_engine::pair::{Pair, PairTerm, Rates, Relative};
 pub use meshless_engine::parallel::{Arithmetic, FourLanes, Matrix, Number, Vector};
 pub use meshless_engine::plugin::{BodyKind, Formulation, Offer, Plugin, Registry, SetupError, SimBuilder};
 pub use meshless_engine::record::read_series;

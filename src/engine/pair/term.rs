@@ -9,8 +9,8 @@ use crate::parallel::{Arithmetic, FourLanes, Number, Vector};
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
-/// Geometry of the pairs of particle i with four neighbours j, one a lane. In formulations without a reference configuration the
-/// reference vector is the current one. Lanes that hold no neighbour have `volume_j`, `weight` and `kernel` zero: what a term
+/// Geometry of pairs, one a lane: of particle i with four neighbours j, or of eight particles i with one neighbour j (flows in single precision). In formulations without a reference configuration the
+/// reference vector is the current one. Lanes that hold no neighbour have `volume_j` zero: what a term
 /// adds carries the volume of j, as sums over neighbours do.
 #[derive(Clone, Copy)]
 pub struct Pair<A: Arithmetic> {
@@ -135,7 +135,7 @@ impl<A: FourLanes> Rates<A> {
     }
 }
 
-/// Contribution of neighbours j to particle i, written as a function of one pair that runs for four neighbours at a time: numbers
+/// Contribution of neighbours j to particle i, written as a function of one pair that runs for four neighbours, or eight particles, at a time: numbers
 /// and vectors have their usual operators, and a branch is [`Number::if_below`], [`Number::min`] or [`Number::max`].
 pub trait PairTerm: Send + Sync + 'static {
     /// Columns it needs of i: a tuple of columns.

@@ -1,4 +1,4 @@
-//! Numbers and vectors of four neighbours at once, with operators: what pair functions are written in.
+//! Numbers and vectors of several pairs at once, with operators: what pair functions are written in.
 //!
 //! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in the plane and in space. Mark
 //! it `#[inline(always)]`: a call would leave the instruction path.
@@ -7,7 +7,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use super::arithmetic::Arithmetic;
 
-/// A number for each of four neighbours.
+/// A number for each lane: four neighbours, or eight particles in single precision.
 #[derive(Clone, Copy)]
 pub struct Number<A: Arithmetic> {
     lanes: A::Lanes,
@@ -15,25 +15,25 @@ pub struct Number<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Number<A> {
-    /// These four numbers.
+    /// These numbers.
     #[inline(always)]
     pub fn new(arithmetic: A, lanes: A::Lanes) -> Self {
         Self { lanes, arithmetic }
     }
 
-    /// The same number four times.
+    /// The same number in all lanes.
     #[inline(always)]
     pub fn splat(arithmetic: A, value: f64) -> Self {
         Self { lanes: arithmetic.splat(value), arithmetic }
     }
 
-    /// Zero four times.
+    /// Zero in all lanes.
     #[inline(always)]
     pub fn zero(arithmetic: A) -> Self {
         Self { lanes: arithmetic.splat(0.0), arithmetic }
     }
 
-    /// The four numbers.
+    /// The numbers.
     #[inline(always)]
     pub fn lanes(self) -> A::Lanes {
         self.lanes
@@ -45,7 +45,7 @@ impl<A: Arithmetic> Number<A> {
         self.arithmetic
     }
 
-    /// Sum of the four, in a fixed order.
+    /// Sum of all lanes, in a fixed order.
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.arithmetic.sum(self.lanes)

@@ -1,4 +1,4 @@
-//! Vectors and matrices of four neighbours at once.
+//! Vectors and matrices of several pairs at once.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
@@ -8,7 +8,7 @@ use super::arithmetic::{Arithmetic, FourLanes};
 use super::lanes::Lanes4;
 use super::number::Number;
 
-/// A vector for each of four neighbours; in the plane its z is zero.
+/// A vector for each lane; in the plane its z is zero.
 #[derive(Clone, Copy)]
 pub struct Vector<A: Arithmetic> {
     /// Components along x.
@@ -20,20 +20,20 @@ pub struct Vector<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Vector<A> {
-    /// Four vectors by their components.
+    /// Vectors by their components.
     #[inline(always)]
     pub fn new(a: A, [x, y, z]: [A::Lanes; 3]) -> Self {
         let z = if A::AXES == 3 { z } else { a.splat(0.0) };
         Self { x: Number::new(a, x), y: Number::new(a, y), z: Number::new(a, z) }
     }
 
-    /// The same vector four times.
+    /// The same vector in all lanes.
     #[inline(always)]
     pub fn splat(a: A, value: DVec3) -> Self {
         Self::new(a, [a.splat(value.x), a.splat(value.y), a.splat(value.z)])
     }
 
-    /// Zero four times.
+    /// Zero in all lanes.
     #[inline(always)]
     pub fn zero(a: A) -> Self {
         Self::new(a, [a.splat(0.0); 3])
@@ -52,7 +52,7 @@ impl<A: Arithmetic> Vector<A> {
         self.dot(self)
     }
 
-    /// Sum of the four vectors, in a fixed order.
+    /// Sum of the vectors of all lanes, in a fixed order.
     #[inline(always)]
     pub fn sum(self) -> DVec3 {
         DVec3::new(self.x.sum(), self.y.sum(), if A::AXES == 3 { self.z.sum() } else { 0.0 })
@@ -139,7 +139,7 @@ impl<A: Arithmetic> SubAssign for Vector<A> {
     }
 }
 
-/// A matrix for each of four neighbours, by its columns.
+/// A matrix for each lane, by its columns.
 #[derive(Clone, Copy)]
 pub struct Matrix<A: Arithmetic>(pub [Vector<A>; 3]);
 
