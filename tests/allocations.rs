@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use common::touching::landing;
-use common::{all_plugins, flow, simulation};
+use common::{all_plugins, eulerian, flow, of_many_tasks, simulation, with_formulation};
 use meshless::scene::Source;
 
 /// The allocator of the system, with a count of what is asked of it.
@@ -44,10 +44,16 @@ static TURN: Mutex<()> = Mutex::new(());
 
 /// Allocations of each of `steps` steps after a warm-up, on a number of threads.
 fn counts(source: &Source, threads: usize, steps: usize) -> Vec<u64> {
+    counts_of(|| source.clone(), threads, steps)
+}
+
+/// The same of a source that takes memory to be made.
+fn counts_of(source: impl FnOnce() -> Source, threads: usize, steps: usize) -> Vec<u64> {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let source = source();
     pool.install(|| {
-        let mut sim = simulation(source);
+        let mut sim = simulation(&source);
         sim.run(|sim| sim.clock().step < 50).expect("a run");
         let mut counts = Vec::with_capacity(steps);
         for _ in 0..steps {
@@ -105,6 +111,24 @@ fn a_step_of_eulerian_bodies_allocates_nothing_but_room_for_longer_lists() {
         let counts = counts(&Source::new("eulerian.ron", text), 1, 100);
         let some = counts.iter().filter(|&&count| count > 0).count();
         assert!(some <= 5, "{dimension}: {counts:?}");
+    }
+}
+
+/// The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies; a pass that allocates does so in every step.
+#[test]
+fn steps_of_bodies_of_many_tasks_on_two_threads_allocate_nothing_of_their_own() {
+    let solids = all_plugins(2);
+    let scenes = [
+        solids.clone(),
+        with_formulation("UpdatedLagrangian(update: Never)", &solids),
+        eulerian(&solids),
+        flow(2),
+        landing(),
+    ];
+    for scene in scenes {
+        let counts = counts_of(|| of_many_tasks(&scene), 2, 40);
+        let none = counts.iter().filter(|&&count| count == 0).count();
+        assert!(none >= 20, "{}: {counts:?}", scene.name);
     }
 }
 

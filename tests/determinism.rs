@@ -4,9 +4,12 @@ mod common;
 
 use common::coupled::coupled;
 use common::thin::thin;
-use common::touching::{tool_of_triangles, touching};
+use common::touching::{large_rigid_bodies, tool_of_triangles, touching};
 use common::wearing::wearing;
-use common::{all_plugins, crash, failing, failing_metals, flow, metals, mixed, removal, simulation};
+use common::{
+    all_plugins, crash, eulerian, failing, failing_metals, flow, metals, mixed, of_many_tasks, removal,
+    simulation, with_formulation,
+};
 use meshless::record::StateHash;
 use meshless::scene::Source;
 
@@ -47,22 +50,20 @@ fn one_two_and_seven_threads_give_the_same_bits() {
     }
 }
 
-/// The scene with every spacing divided by `factor`.
-fn refined(source: &Source, factor: f64) -> Source {
-    let mut parts = source.text.split("spacing: ");
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let end =
-            part.find(|c: char| !matches!(c, '0'..='9' | '.' | 'e' | '-')).expect("something after a number");
-        let spacing: f64 = part[..end].parse().expect("a number");
-        text += &format!("spacing: {:?}{}", spacing / factor, &part[end..]);
-    }
-    Source::new("refined.ron", text)
-}
-
-/// Loops over rows are handed out in tasks of 1 024: bodies of several tasks, so that every loop is really divided.
+/// Loops over rows are handed out in tasks of 1 024: bodies of several tasks, of every formulation, so that every pass is really divided.
 #[test]
 fn bodies_of_many_tasks_give_the_same_bits_on_one_two_and_seven_threads() {
+    let differences = |form: &str| {
+        let Source { name, text, .. } = all_plugins(2);
+        Source::new(
+            name,
+            text.replace(
+                "plugins: [hourglass_control()]",
+                &format!("plugins: [hessian_stabilization({form})]"),
+            ),
+        )
+    };
+    let often = "UpdatedLagrangian(update: Every(3))";
     let scenes = [
         all_plugins(2),
         removal(),
@@ -72,16 +73,25 @@ fn bodies_of_many_tasks_give_the_same_bits_on_one_two_and_seven_threads() {
         thin(),
         metals(),
         failing(),
+        crash(),
+        wearing(),
         touching(),
         tool_of_triangles(),
+        large_rigid_bodies(),
+        differences(""),
+        differences("form: Vidal2007"),
+        with_formulation(often, &all_plugins(2)),
+        with_formulation(often, &failing()),
+        with_formulation(often, &touching()),
+        eulerian(&all_plugins(3)),
+        eulerian(&metals()),
+        eulerian(&failing()),
     ];
     for (n, coarse) in scenes.iter().enumerate() {
-        let finer = (2..).map(|factor| refined(coarse, factor.into()));
-        let large = |source: &Source| simulation(source).world().len() > 4096;
-        let source = finer.into_iter().find(large).expect("a body of many tasks");
-        let one = hash_after(&source, 1, 12);
-        assert_eq!(one, hash_after(&source, 2, 12), "scene {n}, two threads");
-        assert_eq!(one, hash_after(&source, 7, 12), "scene {n}, seven threads");
+        let source = of_many_tasks(coarse);
+        let one = hash_after(&source, 1, 8);
+        assert_eq!(one, hash_after(&source, 2, 8), "scene {n}, {}, two threads", coarse.name);
+        assert_eq!(one, hash_after(&source, 7, 8), "scene {n}, {}, seven threads", coarse.name);
     }
 }
 

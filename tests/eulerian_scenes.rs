@@ -3,19 +3,10 @@
 mod common;
 
 use common::eulerian::{Particle, after, block, particles};
-use common::{all_plugins, failing, failing_metals, metals, removal, simulation};
+use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, simulation};
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-
-/// The scene with Eulerian bodies in the place of the total-Lagrangian ones.
-fn eulerian(source: &Source) -> Source {
-    assert!(source.text.contains("formulation: TotalLagrangian"), "{}", source.name);
-    let text = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
-    let text = text.replace("formulation: TotalLagrangian", "formulation: Eulerian()");
-    let text = text.replace("form: Ganzenmueller2015", "form: Stiffness");
-    Source::new(source.name.clone(), text)
-}
 
 #[test]
 fn bits_do_not_depend_on_threads_or_on_a_restart() {

@@ -3,19 +3,11 @@
 mod common;
 
 use common::touching::touching;
-use common::{all_plugins, failing, failing_metals, removal, simulation};
+use common::{all_plugins, failing, failing_metals, removal, simulation, with_formulation};
 use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
 use meshless::world::{BodyId, DeformationGradient, Mass, Position, Velocity};
-
-/// The scene with another formulation in the place of the total-Lagrangian one.
-fn with(formulation: &str, source: &Source) -> Source {
-    assert!(source.text.contains("formulation: TotalLagrangian"), "{}", source.name);
-    let usual = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
-    let text = usual.replace("formulation: TotalLagrangian", &format!("formulation: {formulation}"));
-    Source::new(source.name.clone(), text)
-}
 
 /// Updates often, so that short runs have many of them.
 const OFTEN: &str = "UpdatedLagrangian(update: Adaptive(change: 0.01))";
@@ -36,8 +28,9 @@ fn positions(sim: &Simulation, body: usize) -> Vec<DVec3> {
 fn without_updates_it_is_the_total_lagrangian_formulation() {
     for (dimension, steps) in [(2, 300), (3, 100)] {
         let scene = all_plugins(dimension);
-        let total = after(&with("TotalLagrangian(kernel: cubic_spline, support: 2.4)", &scene), steps);
-        let updated = after(&with("UpdatedLagrangian(update: Never)", &scene), steps);
+        let total =
+            after(&with_formulation("TotalLagrangian(kernel: cubic_spline, support: 2.4)", &scene), steps);
+        let updated = after(&with_formulation("UpdatedLagrangian(update: Never)", &scene), steps);
         assert!((total.clock().time - updated.clock().time).abs() < 1e-12 * total.clock().time);
         for body in 0..2 {
             for (a, b) in positions(&total, body).iter().zip(positions(&updated, body)) {
@@ -73,7 +66,7 @@ fn bits_do_not_depend_on_threads_or_on_a_restart() {
     let differences = [differences(""), differences("form: Vidal2007")];
     let others = [all_plugins(2), all_plugins(3), removal(), failing(), failing_metals(), touching()];
     for source in others.into_iter().chain(differences) {
-        let source = with(OFTEN, &source);
+        let source = with_formulation(OFTEN, &source);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
             pool.install(|| after(&source, steps).state_hash())

@@ -22,6 +22,7 @@ pub mod fields;
 mod files;
 pub mod formulations;
 pub mod integrate;
+pub mod invariants;
 pub mod kernels;
 pub mod linalg;
 pub mod materials;

@@ -255,3 +255,38 @@ pub fn simulation(source: &Source) -> Simulation {
     let (scene, source) = parse(source.clone()).unwrap_or_else(|error| panic!("{error}"));
     assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
 }
+
+/// The scene with another formulation in the place of the total-Lagrangian one.
+pub fn with_formulation(formulation: &str, source: &Source) -> Source {
+    assert!(source.text.contains("formulation: TotalLagrangian"), "{}", source.name);
+    let usual = source.text.replace("TotalLagrangian(support: 2.6)", "TotalLagrangian");
+    let text = usual.replace("formulation: TotalLagrangian", &format!("formulation: {formulation}"));
+    Source::new(source.name.clone(), text)
+}
+
+/// The scene with Eulerian bodies in the place of the total-Lagrangian ones.
+pub fn eulerian(source: &Source) -> Source {
+    let Source { name, text, .. } = with_formulation("Eulerian()", source);
+    Source::new(name, text.replace("form: Ganzenmueller2015", "form: Stiffness"))
+}
+
+/// The scene with every spacing divided by the least whole number that gives it more than 4096 particles: several tasks of 1 024 rows, so that loops over rows
+/// are really divided between threads.
+pub fn of_many_tasks(source: &Source) -> Source {
+    let finer = (1..).map(|factor| refined(source, f64::from(factor)));
+    let large = |source: &Source| simulation(source).world().len() > 4096;
+    finer.into_iter().find(large).expect("a body of many tasks")
+}
+
+/// The scene with every spacing divided by `factor`.
+fn refined(source: &Source, factor: f64) -> Source {
+    let mut parts = source.text.split("spacing: ");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end =
+            part.find(|c: char| !matches!(c, '0'..='9' | '.' | 'e' | '-')).expect("something after a number");
+        let spacing: f64 = part[..end].parse().expect("a number");
+        text += &format!("spacing: {:?}{}", spacing / factor, &part[end..]);
+    }
+    Source::new("refined.ron", text)
+}

@@ -77,3 +77,28 @@ pub fn landing() -> Source {
         time: (end: 10.0))"#;
     Source::new("landing.ron", text.to_owned())
 }
+
+/// A rigid ball and a rigid block, each of as many particles as the rubber and the water that they fall on: every pass over particles of rigid bodies is as long as
+/// those of the others.
+pub fn large_rigid_bodies() -> Source {
+    let text = r#"(dimension: Two, gravity: (0.0, -9.81),
+        materials: {"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3), "wood": NeoHookean(density: 600, young: 1e9, poisson: 0.3),
+                    "water": Fluid(density: 1000.0, sound_speed: 30.0)},
+        bodies: [
+            (name: "pad", material: "rubber", shape: Box(min: (0, 0), max: (1.0, 0.4)), spacing: 0.05, formulation: TotalLagrangian,
+             plugins: [hourglass_control(), heat_conduction(conductivity: 0.2, specific_heat: 1500, temperature: "300 + 50*x")]),
+            (name: "ball", material: "wood", shape: Sphere(center: (0.5, 0.72), radius: 0.32), spacing: 0.05, velocity: (0.1, -2.0),
+             formulation: Rigid(spin: (0, 0, 3))),
+            (name: "water", material: "water", shape: Box(min: (2, 0), max: (3.2, 0.4)), spacing: 0.05, formulation: Fluid,
+             plugins: [density_diffusion()]),
+            (name: "block", material: "wood", shape: Box(min: (2.2, 0.45), max: (3.0, 0.95)), spacing: 0.05, velocity: (0.0, -1.0),
+             formulation: Rigid()),
+            (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: No),
+             shape: Difference(Box(min: (1.8, -0.2), max: (3.4, 1.2)), Box(min: (2, 0), max: (3.2, 2)))),
+        ],
+        contacts: [Contact(between: ("pad", "ball"), law: Penalty(), friction: 0.3, restitution: 0.5)],
+        conditions: [Fix(on: Select(body: "pad", face: MinY))],
+        plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
+        time: (end: 10.0))"#;
+    Source::new("large_rigid_bodies.ron", text.to_owned())
+}

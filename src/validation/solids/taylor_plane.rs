@@ -28,7 +28,7 @@ fn taylor_plane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "width of the mushroom",
             2.0 * shape.radius,
             0.010094,
-            Tolerance::Between(-0.4, 0.02),
+            Tolerance::Between(-0.12, 0.02),
             "m",
             source,
         )
