@@ -40,7 +40,8 @@ const SINGULAR: f64 = 0.02;
 
 /// Adds the system that conducts at the end of each step of the bodies.
 pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
-    let phases = sim.phases_of(&BodySet::new(conductors.iter().map(|of| of.body)));
+    let bodies = BodySet::new(conductors.iter().map(|of| of.body));
+    let phases = sim.phases_of(&bodies);
     let axes = sim.dimension().count();
     let conduction = Conduction {
         conductors,
@@ -53,12 +54,14 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
     sim.add_system(
         System::new(Stage::PostStep, "heat_conduction", conduction)
             .on_phases(phases)
+            .on_bodies(bodies)
             .by_body()
-            .reads::<Position>()
-            .reads::<ReferenceVolume>()
-            .reads::<DeformationGradient>()
+            .reads_near::<Position>()
+            .reads_near::<ReferenceVolume>()
+            .reads_near::<DeformationGradient>()
             .reads::<Mass>()
-            .reads::<Removed>()
+            .reads_near::<Removed>()
+            .reads_near::<Temperature>()
             .adds::<Temperature>()
             .adds::<ConductedTemperature>(),
     );

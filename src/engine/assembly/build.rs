@@ -99,7 +99,7 @@ fn start(
 ) -> Result<Simulation, Vec<Problem>> {
     let Outputs { output, probes } = outputs;
     let world = spawn::spawn(&sim);
-    let mut resources = Resources::default();
+    let mut resources = Resources::with_shared(std::mem::take(&mut sim.shared));
     let held = BodySet::new(sim.held.take());
     for step in std::mem::take(&mut sim.setup) {
         let mut setup =

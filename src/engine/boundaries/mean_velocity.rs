@@ -3,8 +3,6 @@
 //! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies together at the end of a step, weighted by mass,
 //! `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,7 +12,7 @@ use super::part::Part;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{PerAxis, Select};
-use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::schedule::{Run, Shared, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Mass, Removed, Velocity};
 
 /// Keeps the mean velocity of bodies, weighted by mass, by a force per mass that is the same for all of their particles: the pressure gradient of a channel
@@ -41,11 +39,11 @@ impl Plugin for MeanVelocity {
         let selection = self.selection(sim)?;
         let wanted = self.wanted(sim)?;
         let controlled = [0, 1, 2].map(|axis| f64::from(u8::from(self.value.0[axis].is_some())));
-        let control = Control { wanted, axes: DVec3::from_array(controlled), state: ControlState::default() };
-        let shared = Arc::new(Mutex::new(control));
+        let force = sim.share(ForcePerMass::default());
         let bodies: Vec<BodyId> = selection.parts.iter().map(|(id, _)| *id).collect();
         let phases = sim.phases_of(&BodySet::new(bodies.iter().copied()));
-        let measure = Measure { control: Arc::clone(&shared), bodies };
+        let axes = DVec3::from_array(controlled);
+        let measure = Measure { bodies, wanted, axes, state: ControlState::default(), force };
         sim.add_system(
             System::new(Stage::PreStep, "mean_velocity_control", measure)
                 .on_phases(phases)
@@ -54,7 +52,7 @@ impl Plugin for MeanVelocity {
                 .reads::<Mass>()
                 .reads::<Removed>(),
         );
-        load::apply("mean_velocity", Uniform(shared), &selection, sim, System::reads::<Mass>);
+        load::apply("mean_velocity", Uniform(force), &selection, sim, System::reads::<Mass>);
         Ok(())
     }
 }
@@ -110,14 +108,6 @@ impl MeanVelocity {
     }
 }
 
-/// What drives the bodies.
-struct Control {
-    wanted: DVec3,
-    /// 1 along controlled axes, else 0.
-    axes: DVec3,
-    state: ControlState,
-}
-
 /// The part that a checkpoint keeps.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct ControlState {
@@ -127,7 +117,9 @@ struct ControlState {
     last: Option<DVec3>,
 }
 
-type Shared = Arc<Mutex<Control>>;
+/// The force per mass of this step, N/kg, for the system that applies it.
+#[derive(Clone, Copy, Default)]
+struct ForcePerMass(DVec3);
 
 /// Momentum and mass.
 #[derive(Clone, Copy, Default)]
@@ -142,8 +134,12 @@ impl BlockSum for Moving {
 
 /// Measures the mean velocity, and sets the force of the step that begins.
 struct Measure {
-    control: Shared,
     bodies: Vec<BodyId>,
+    wanted: DVec3,
+    /// 1 along controlled axes, else 0.
+    axes: DVec3,
+    state: ControlState,
+    force: Shared<ForcePerMass>,
 }
 
 impl Run for Measure {
@@ -165,34 +161,33 @@ impl Run for Measure {
         }
         let dt = step.clock.dt;
         if moving.1 > 0.0 && dt > 0.0 {
-            let mut control = self.control.lock().unwrap_or_else(PoisonError::into_inner);
-            let (mean, wanted, axes) = (moving.0 / moving.1, control.wanted, control.axes);
-            let change = mean - control.state.last.unwrap_or(mean);
-            let correction = (wanted - mean) / (STEPS * STEPS) - 2.0 * change / STEPS;
-            control.state.force += axes * correction / dt;
-            control.state.last = Some(mean);
+            let (mean, state) = (moving.0 / moving.1, &mut self.state);
+            let change = mean - state.last.unwrap_or(mean);
+            let correction = (self.wanted - mean) / (STEPS * STEPS) - 2.0 * change / STEPS;
+            state.force += self.axes * correction / dt;
+            state.last = Some(mean);
         }
+        step.resources.of_mut(self.force).0 = self.state.force;
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
-        let control = self.control.lock().unwrap_or_else(PoisonError::into_inner);
-        postcard::to_stdvec(&control.state).unwrap_or_default()
+        postcard::to_stdvec(&self.state).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
         let Ok(state) = postcard::from_bytes(state) else { return false };
-        self.control.lock().unwrap_or_else(PoisonError::into_inner).state = state;
+        self.state = state;
         true
     }
 }
 
 /// The force per mass, the same for all particles.
-struct Uniform(Shared);
+struct Uniform(Shared<ForcePerMass>);
 
 impl LoadLaw for Uniform {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
-        let force = self.0.lock().unwrap_or_else(PoisonError::into_inner).state.force;
+        let force = step.resources.of(self.0).0;
         let mass = step.world.body_view(part.body).0.read::<Mass>()?;
         out.clear();
         out.extend(part.rows.iter().map(|&row| force * mass[row as usize].0));

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
-use super::skin_load::{self, Kind, skins_of};
+use super::skin_load::{self, Kind, LoadedSurface, skins_of};
 use crate::notation::quantity;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
@@ -45,7 +45,13 @@ impl Plugin for Pressure {
         let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || Kind::Pressure(self.value.clone());
-            return skin_load::apply("pressure", make, (&self.on, self.area), skins, sim);
+            return skin_load::apply(
+                "pressure",
+                make,
+                LoadedSurface { select: &self.on, area: self.area },
+                skins,
+                sim,
+            );
         }
         let normal = normal_of(&self.on)?;
         if self.area.is_none() {

@@ -2,7 +2,7 @@
 //!
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use super::field::Field;
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
 use crate::scene::{Expression, Select};
-use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
 use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
 use crate::world::{
@@ -80,14 +80,23 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
     Skin::of(body, shape, &[], (sim.dimension(), sim.folder())).map(Arc::new)
 }
 
-/// Adds a load on the skins of bodies; `area` is what the scene says of the loaded area.
+/// What a scene says of a loaded surface.
+#[derive(Clone, Copy)]
+pub(super) struct LoadedSurface<'a> {
+    pub select: &'a Select,
+    /// Its area, m2, where it is stated.
+    pub area: Option<f64>,
+}
+
+/// Adds a load on the skins of bodies.
 pub(super) fn apply(
     label: &'static str,
     make: impl Fn() -> Kind,
-    (select, area): (&Select, Option<f64>),
+    on: LoadedSurface<'_>,
     skins: Vec<Arc<Skin>>,
     sim: &mut SimBuilder<'_>,
 ) -> Result<(), SetupError> {
+    let LoadedSurface { select, area } = on;
     let mut loads = Vec::new();
     let mut total = 0.0;
     for skin in skins {
@@ -120,8 +129,8 @@ pub(super) fn apply(
         factor,
         last: Vec::new(),
     });
-    let shared = Arc::new(Mutex::new(loads.collect::<Vec<_>>()));
-    let make = System::new(Stage::Boundary, label, Make(Arc::clone(&shared)));
+    let shared = sim.share(loads.collect::<Vec<_>>());
+    let make = System::new(Stage::Boundary, label, Make(shared));
     sim.add_system(
         make.on_phases(phases.clone())
             .reads::<Position>()
@@ -131,24 +140,19 @@ pub(super) fn apply(
             .reads::<DeformationGradient>()
             .touches("corrected_stress", Mode::Adds),
     );
-    let push = move |step: &mut Step<'_>| lock(&shared).iter().try_for_each(|load| load.push(step));
+    let push =
+        move |step: &mut Step<'_>| step.resources.of(shared).iter().try_for_each(|load| load.push(step));
     sim.add_system(System::new(Stage::External, label, push).on_phases(phases).adds::<Force>());
     Ok(())
 }
 
-type Shared = Arc<Mutex<Vec<SkinLoad>>>;
-
-fn lock(loads: &Shared) -> MutexGuard<'_, Vec<SkinLoad>> {
-    loads.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// The system that works out the forces.
-struct Make(Shared);
+struct Make(Shared<Vec<SkinLoad>>);
 
 impl Run for Make {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let mut loads = lock(&self.0);
-        loads.iter_mut().try_for_each(|load| load.make(step))?;
+        let resources = step.resources;
+        resources.of_mut(self.0).iter_mut().try_for_each(|load| load.make(step))?;
         for phase in step.world.phases() {
             if let Some(mut solid) = step.resources.solid_mut(phase) {
                 solid.renew_ghosts();
@@ -157,15 +161,15 @@ impl Run for Make {
         Ok(())
     }
 
-    fn save(&self) -> Vec<u8> {
-        let saved: Vec<Saved> =
-            lock(&self.0).iter().map(|load| (load.last.clone(), load.patch.saved())).collect();
+    fn save_with(&self, resources: &Resources) -> Vec<u8> {
+        let loads = resources.of(self.0);
+        let saved: Vec<Saved> = loads.iter().map(|load| (load.last.clone(), load.patch.saved())).collect();
         postcard::to_stdvec(&saved).unwrap_or_default()
     }
 
-    fn restore(&mut self, state: &[u8]) -> bool {
+    fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
         let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
-        let mut loads = lock(&self.0);
+        let mut loads = resources.of_mut(self.0);
         let fits = saved.len() == loads.len();
         for (load, (last, places)) in loads.iter_mut().zip(saved) {
             let facets: Vec<u32> = load.facets.iter().map(|facet| facet.0).collect();

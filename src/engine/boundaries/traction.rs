@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::Field;
 use super::load::{self, DeadLoad};
-use super::skin_load::{self, Kind, skins_of};
+use super::skin_load::{self, Kind, LoadedSurface, skins_of};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
@@ -40,7 +40,13 @@ impl Plugin for Traction {
         let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || Kind::Traction(field.clone());
-            return skin_load::apply("traction", make, (&self.on, self.area), skins, sim);
+            return skin_load::apply(
+                "traction",
+                make,
+                LoadedSurface { select: &self.on, area: self.area },
+                skins,
+                sim,
+            );
         }
         if self.area.is_none() {
             selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;

@@ -20,7 +20,7 @@ impl Pace {
     /// Of a body, the shapes of whose particles follow their deformation if it is to `deform`.
     pub fn of(body: BodyId, deform: bool, step: &Step<'_>) -> Result<Self, StepError> {
         if let Some(bodies) = step.resources.try_get::<RigidBodies>()
-            && let Some(rigid) = bodies.lock().iter().find(|rigid| rigid.id == body)
+            && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
         {
             // The points that touch are farther out than the particles.
             return Ok(Self { speed: rigid.largest_speed(), ..Self::NONE });

@@ -90,8 +90,8 @@ impl SkinOnTool {
 
     /// Works out the forces of all points that touch, and pushes the rigid body.
     pub fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
-        let shared = step.resources.get::<RigidBodies>().clone();
-        let mut bodies = shared.lock();
+        let resources = step.resources;
+        let mut bodies = resources.get_mut::<RigidBodies>();
         let missing =
             || StepError::System { system: super::CONTACT.to_owned(), message: "no rigid body".into() };
         let tool = bodies.iter_mut().find(|body| body.id == self.tool).ok_or_else(missing)?;

@@ -24,9 +24,8 @@ pub(super) fn refuse_bodies_within_others(
 }
 
 fn check(sides: &Sides, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
-    let bodies = setup.resources.get::<RigidBodies>().clone();
-    let found =
-        sides.with(setup.world, setup.resources, &bodies.lock(), |nodes, tool| sides.inside(nodes, tool));
+    let bodies = setup.resources.get::<RigidBodies>();
+    let found = sides.with(setup.world, setup.resources, &bodies, |nodes, tool| sides.inside(nodes, tool));
     let Some(place) = found.map_err(|error| SetupError::internal(&error))? else { return Ok(()) };
     let name = |id| &setup.world.body(id).name;
     let (first, second) = (name(sides.first), name(sides.second));

@@ -84,8 +84,8 @@ impl SurfaceContact {
 
     /// Works out the forces of all nodes that touch, and pushes the rigid bodies.
     pub fn run(&mut self, step: &mut Step<'_>, paces: [Pace; 2]) -> Result<Tally, StepError> {
-        let shared = step.resources.get::<RigidBodies>().clone();
-        let mut bodies = shared.lock();
+        let resources = step.resources;
+        let mut bodies = resources.get_mut::<RigidBodies>();
         let speed = paces[0].speed + paces[1].speed;
         let dt = step.clock.dt;
         let Self { interaction, sides, nearby, meetings, gravity, touched } = self;

@@ -16,7 +16,7 @@ use crate::materials::{Law, SolidLaw};
 use crate::neighbors::Periodic;
 use crate::notation::place;
 use crate::scene::{Dimension, Scene, Select};
-use crate::schedule::{Stage, Step, System};
+use crate::schedule::{Shared, SharedValues, Stage, Step, System};
 use crate::shapes::{Shape, Surface};
 use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
 
@@ -38,6 +38,8 @@ pub struct SimBuilder<'s> {
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
     pub(crate) handed: HandedIn,
+    /// What systems share by its place.
+    pub(crate) shared: SharedValues,
 }
 
 impl<'s> SimBuilder<'s> {
@@ -62,6 +64,7 @@ impl<'s> SimBuilder<'s> {
             prescribed: BTreeMap::new(),
             held: RefCell::default(),
             handed: HandedIn::default(),
+            shared: SharedValues::default(),
         }
     }
 
@@ -180,6 +183,11 @@ impl<'s> SimBuilder<'s> {
                 Ok(())
             },
         ));
+    }
+
+    /// Gives a value that several systems share a place, where they find it by [`Resources::of`](crate::schedule::Resources::of).
+    pub fn share<T: Send + 'static>(&mut self, value: T) -> Shared<T> {
+        self.shared.add(value)
     }
 
     /// Adds something to do once, after the particles are spawned and before the first step.

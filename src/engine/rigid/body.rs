@@ -1,6 +1,6 @@
 //! A rigid body: its position, its motion, the forces on it.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::ops::{Deref, DerefMut};
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -142,13 +142,20 @@ pub(super) struct RigidParts {
     pub constraint: Constraint,
 }
 
-/// The rigid bodies of a simulation, in scene order, shared by the systems that move them and those that push them.
-#[derive(Clone, Default)]
-pub struct RigidBodies(Arc<Mutex<Vec<RigidBody>>>);
+/// The rigid bodies of a simulation, in scene order: a resource of the systems that move them and those that push them.
+#[derive(Default)]
+pub struct RigidBodies(pub(super) Vec<RigidBody>);
 
-impl RigidBodies {
-    /// All bodies. Systems run one after another: nobody waits.
-    pub fn lock(&self) -> MutexGuard<'_, Vec<RigidBody>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+impl Deref for RigidBodies {
+    type Target = [RigidBody];
+
+    fn deref(&self) -> &[RigidBody] {
+        &self.0
+    }
+}
+
+impl DerefMut for RigidBodies {
+    fn deref_mut(&mut self) -> &mut [RigidBody] {
+        &mut self.0
     }
 }

@@ -11,9 +11,10 @@ use super::nodes::Nodes;
 use super::rotation::Inertia;
 use super::systems;
 use crate::integrate::OwnMotion;
+use crate::parallel::sum_over_blocks;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::scene::{Dimension, Vec3};
-use crate::world::{BodyId, ColumnSet, Mass, Mobility, Position, Velocity};
+use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocity};
 
 /// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact surface of its
 /// shape. It moves freely, except along the axes that `Fix`, `Velocity` or `Displacement` hold or drive; these conditions must
@@ -53,7 +54,7 @@ impl Formulation for Rigid {
         let mut drives: Vec<DrivenBody> = sim.take_extensions();
         let mut rotations: Vec<DrivenRotation> = sim.take_extensions();
         let halved: Vec<HalvedBody> = sim.take_extensions();
-        let shared = RigidBodies::default();
+        let mut all = RigidBodies::default();
         let mut spins = Vec::new();
         for (id, parameters) in bodies {
             sim.extend(OwnMotion(id));
@@ -65,15 +66,15 @@ impl Formulation for Rigid {
                 .filter(|halved| halved.body == id)
                 .try_for_each(|halved| constraint.holds(halved, sim))?;
             spins.push(parameters.spin.0);
-            shared.lock().push(parameters.body(id, constraint, sim)?);
+            all.0.push(parameters.body(id, constraint, sim)?);
         }
-        let owned = shared.clone();
+        let ids = BodySet::new(all.iter().map(|body| body.id));
         sim.add_setup(move |setup| {
-            start(&owned, &spins, setup)?;
-            setup.resources.insert(owned);
+            start(&mut all, &spins, setup)?;
+            setup.resources.insert(all);
             Ok(())
         });
-        systems::add(sim, &shared);
+        systems::add(sim, ids);
         Ok(())
     }
 }
@@ -237,14 +238,16 @@ pub(crate) fn checked_axis(axis: DVec3, dimension: Dimension, field: &str) -> Re
 }
 
 /// The motion at the start from the velocities of the particles, which initial conditions have set.
-fn start(bodies: &RigidBodies, spins: &[DVec3], setup: &mut Setup<'_>) -> Result<(), SetupError> {
+fn start(bodies: &mut RigidBodies, spins: &[DVec3], setup: &mut Setup<'_>) -> Result<(), SetupError> {
     let missing = |error: crate::world::MissingColumn| SetupError::internal(&error);
-    for (body, spin) in bodies.lock().iter_mut().zip(spins) {
+    for (body, spin) in bodies.iter_mut().zip(spins) {
         let (view, rows) = setup.world.body_view(body.id);
         let (x, velocity) =
             (view.read::<Position>().map_err(missing)?, view.read::<Velocity>().map_err(missing)?);
         let mut mass = view.write::<Mass>().map_err(missing)?;
-        let total: f64 = rows.clone().map(|row| mass[row].0).sum();
+        let total: f64 = sum_over_blocks(&mass[rows.clone()], &|_, mass: &[Mass]| {
+            mass.iter().map(|mass| mass.0).sum::<f64>()
+        });
         let mut momentum = DVec3::ZERO;
         let mut turning = DVec3::ZERO;
         for row in rows.clone() {

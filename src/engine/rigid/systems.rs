@@ -7,7 +7,7 @@ use super::constraint::Turning;
 use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
-use crate::schedule::{AccountKind, Clock, Run, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Clock, Resources, Run, Stage, Step, StepError, System};
 use crate::world::{BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Velocity};
 
 /// Label of the system that moves rigid bodies by the first kick and the drift.
@@ -18,12 +18,11 @@ const RIGID_WEIGHT: &str = "rigid_weight";
 const RIGID_KICK: &str = "rigid_kick";
 
 /// Adds the systems of all rigid bodies.
-pub(super) fn add(sim: &mut SimBuilder<'_>, bodies: &RigidBodies) {
-    let ids = BodySet::new(bodies.lock().iter().map(|body| body.id));
+pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
     let phases: Vec<PhaseId> = sim.phases_of(&ids);
     let (gravity, end) = (sim.gravity(), sim.scene().time.end);
     sim.add_system(
-        System::new(Stage::InitialIntegrate, RIGID_DRIFT, Drift { bodies: bodies.clone(), gravity })
+        System::new(Stage::InitialIntegrate, RIGID_DRIFT, Drift { gravity })
             .on_phases(phases.clone())
             .reads::<ReferencePosition>()
             .writes::<Position>()
@@ -36,7 +35,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, bodies: &RigidBodies) {
         .on_phases(phases.clone()),
     );
     sim.add_system(
-        System::new(Stage::FinalIntegrate, RIGID_KICK, Kick { bodies: bodies.clone(), end })
+        System::new(Stage::FinalIntegrate, RIGID_KICK, Kick { end })
             .on_phases(phases)
             .reads::<Position>()
             .reads::<Mass>()
@@ -137,7 +136,6 @@ impl RigidBody {
 }
 
 struct Drift {
-    bodies: RigidBodies,
     gravity: DVec3,
 }
 
@@ -146,7 +144,8 @@ impl Run for Drift {
         let dt = step.clock.dt;
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
-        for body in self.bodies.lock().iter_mut() {
+        let resources = step.resources;
+        for body in resources.get_mut::<RigidBodies>().iter_mut() {
             // As for particles: what is prescribed is set first, then the forces kick what is free.
             let work = body.drive(false, &step.clock)?;
             body.kick(0.5 * dt);
@@ -185,7 +184,6 @@ const MOTION_FACTOR: f64 = 0.1;
 const LEAST_STEPS: f64 = 100.0;
 
 struct Kick {
-    bodies: RigidBodies,
     end: f64,
 }
 
@@ -194,7 +192,8 @@ impl Run for Kick {
         let half = 0.5 * step.clock.dt;
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
-        for body in self.bodies.lock().iter_mut() {
+        let resources = step.resources;
+        for body in resources.get_mut::<RigidBodies>().iter_mut() {
             let contact = sum_of_forces(body, step)?;
             share_out(body, contact, step)?;
             let power = body.constraint_power();
@@ -218,14 +217,15 @@ impl Run for Kick {
         Ok(())
     }
 
-    fn save(&self) -> Vec<u8> {
-        let states: Vec<RigidState> = self.bodies.lock().iter().map(|body| body.state).collect();
+    fn save_with(&self, resources: &Resources) -> Vec<u8> {
+        let bodies = resources.get::<RigidBodies>();
+        let states: Vec<RigidState> = bodies.iter().map(|body| body.state).collect();
         postcard::to_stdvec(&states).unwrap_or_default()
     }
 
-    fn restore(&mut self, state: &[u8]) -> bool {
+    fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
         let Ok(states) = postcard::from_bytes::<Vec<RigidState>>(state) else { return false };
-        let mut bodies = self.bodies.lock();
+        let mut bodies = resources.get_mut::<RigidBodies>();
         let fits = states.len() == bodies.len();
         bodies.iter_mut().zip(states).for_each(|(body, state)| body.state = state);
         fits

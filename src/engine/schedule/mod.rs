@@ -15,7 +15,7 @@ pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, Ledger};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
-pub use resources::Resources;
+pub use resources::{Resources, Shared, SharedValues};
 pub use stage::Stage;
 pub use step::{Clock, Step, StepError};
 pub use system::{Access, Mode, Run, System};

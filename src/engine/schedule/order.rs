@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::system::{Mode, System};
@@ -97,15 +98,16 @@ impl Schedule {
     }
 
     /// Key and state of every system that has state; the key is the label, with a number where several have it.
-    pub fn save(&self) -> Vec<(String, Vec<u8>)> {
-        let states = (0..self.systems.len()).map(|k| (self.key(k), self.systems[k].work.save()));
+    pub fn save(&self, resources: &Resources) -> Vec<(String, Vec<u8>)> {
+        let state = |k: usize| self.systems[k].work.save_with(resources);
+        let states = (0..self.systems.len()).map(|k| (self.key(k), state(k)));
         states.filter(|(_, state)| !state.is_empty()).collect()
     }
 
     /// Gives a system the state it saved. Returns `false` if there is no such system or it refuses the state.
-    pub fn restore(&mut self, key: &str, state: &[u8]) -> bool {
+    pub fn restore(&mut self, key: &str, state: &[u8], resources: &Resources) -> bool {
         let found = (0..self.systems.len()).find(|&k| self.key(k) == key);
-        found.is_some_and(|k| self.systems[k].work.restore(state))
+        found.is_some_and(|k| self.systems[k].work.restore_with(state, resources))
     }
 
     fn key(&self, k: usize) -> String {
@@ -119,33 +121,65 @@ impl Schedule {
     /// The order in words: a line per stage, a line per system with the columns it touches.
     pub fn describe(&self) -> String {
         let mut text = String::new();
+        let exchanges = self.exchanges();
         for stage in Stage::ALL {
-            let all = self.systems.iter().zip(&self.paces);
-            let members: Vec<_> = all.filter(|(system, _)| system.stage == stage).collect();
+            let all = self.systems.iter().zip(&self.paces).zip(&exchanges);
+            let members: Vec<_> = all.filter(|((system, _), _)| system.stage == stage).collect();
             if members.is_empty() {
                 continue;
             }
             let _ = writeln!(text, "{stage:?}");
-            for (system, pace) in members {
+            for ((system, pace), exchanged) in members {
                 let when = match pace {
                     Pace::Long => "",
                     Pace::Short => " (sub-steps)",
                     Pace::Both => " (long and sub-steps)",
                 };
                 let _ = write!(text, "  {}{when}", system.label);
-                for (mode, verb) in
-                    [(Mode::Reads, "reads"), (Mode::Writes, "writes"), (Mode::Adds, "adds to")]
-                {
+                for (mode, verb) in Mode::VERBS {
                     let columns: Vec<_> =
                         system.access.iter().filter(|a| a.mode == mode).map(|a| a.column).collect();
                     if !columns.is_empty() {
                         let _ = write!(text, "; {verb} {}", columns.join(", "));
                     }
                 }
+                if !exchanged.is_empty() {
+                    let _ = write!(
+                        text,
+                        "; rows of neighbours changed since they were last read: {}",
+                        exchanged.join(", ")
+                    );
+                }
                 text.push('\n');
             }
         }
         text
+    }
+
+    /// Of every system: the columns that it reads near ([`Mode::ReadsNear`]) and that have been changed since they were last read so. Several machines would
+    /// exchange them before the system.
+    fn exchanges(&self) -> Vec<Vec<&'static str>> {
+        let mut found = vec![Vec::new(); self.systems.len()];
+        // Who has changed what since the last exchange, from one step to the next.
+        let mut changed: Vec<(usize, &'static str)> = Vec::new();
+        for _ in 0..2 {
+            for (k, system) in self.systems.iter().enumerate() {
+                found[k].clear();
+                for near in system.access.iter().filter(|access| access.mode == Mode::ReadsNear) {
+                    let stale = |(by, column): &(usize, &str)| {
+                        *column == near.column && self.systems[*by].shares_rows_with(system)
+                    };
+                    if changed.iter().any(stale) {
+                        changed.retain(|change| !stale(change));
+                        found[k].push(near.column);
+                    }
+                }
+                let changes =
+                    system.access.iter().filter(|access| matches!(access.mode, Mode::Writes | Mode::Adds));
+                changed.extend(changes.map(|access| (k, access.column)));
+            }
+        }
+        found
     }
 }
 
@@ -259,7 +293,7 @@ fn check_ambiguity(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Column, Force, Velocity};
+    use crate::world::{Column, Force, Mass, Position, Velocity};
 
     fn idle(label: &str) -> System {
         System::new(Stage::Rates, label, |_: &mut Step<'_>| Ok(()))
@@ -289,5 +323,26 @@ mod tests {
         let one = crossed("one", |system| system.writes::<Force>().adds::<Velocity>());
         let other = crossed("other", |system| system.writes::<Velocity>().adds::<Force>());
         assert!(matches!(labels(vec![one, other]), Err(ScheduleError::Ambiguous { .. })));
+    }
+
+    #[test]
+    fn near_reads_of_what_has_changed_since_the_last_one_are_told() {
+        let mover = System::new(Stage::InitialIntegrate, "mover", |_: &mut Step<'_>| Ok(()));
+        let near = |stage, label: &str| {
+            System::new(stage, label, |_: &mut Step<'_>| Ok(())).reads_near::<Position>().reads_near::<Mass>()
+        };
+        let systems = vec![
+            mover.writes::<Position>(),
+            near(Stage::Gradients, "first"),
+            near(Stage::Rates, "second"),
+            idle("other phase").on_phases([PhaseId(7)]).reads::<Position>(),
+        ];
+        let text = Schedule::new(systems, &[]).expect("an order").describe();
+        let line =
+            |label: &str| text.lines().find(|line| line.trim_start().starts_with(label)).expect("a line");
+        let told = "rows of neighbours changed since they were last read: ";
+        assert!(line("first").ends_with(&format!("{told}{}", Position::NAME)), "{text}");
+        // Positions are those of the first; masses never change.
+        assert!(line("second").contains("reads near") && !line("second").contains(told), "{text}");
     }
 }

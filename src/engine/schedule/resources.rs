@@ -3,22 +3,77 @@
 use std::any::{Any, TypeId, type_name};
 use std::cell::{Ref, RefCell, RefMut};
 use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
 
 use crate::world::PhaseId;
 
-/// Values by their type, or by their type and a phase. Everything in here is derived from the scene and the columns, so no checkpoint holds it.
+/// The place of a value that the systems of one owner share: a plugin that a scene has twice has two of them.
+pub struct Shared<T> {
+    number: usize,
+    of: PhantomData<fn() -> T>,
+}
+
+impl<T> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Shared<T> {}
+
+impl<T> fmt::Debug for Shared<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "shared value {} of type {}", self.number, type_name::<T>())
+    }
+}
+
+/// Values that systems share by their places.
 #[derive(Default)]
-pub struct Resources(BTreeMap<(TypeId, Option<PhaseId>), RefCell<Box<dyn Any + Send>>>);
+pub struct SharedValues(Vec<Box<dyn Any + Send>>);
+
+impl SharedValues {
+    /// Adds a value, and gives its place.
+    pub fn add<T: Send + 'static>(&mut self, value: T) -> Shared<T> {
+        self.0.push(Box::new(value));
+        Shared { number: self.0.len() - 1, of: PhantomData }
+    }
+}
+
+/// Values by their type, or by their type and a phase. What is not derived from the scene and the columns is kept
+/// by the system that owns it ([`Run::save_with`](super::Run::save_with)).
+#[derive(Default)]
+pub struct Resources {
+    by_type: BTreeMap<(TypeId, Option<PhaseId>), RefCell<Box<dyn Any + Send>>>,
+    shared: Vec<RefCell<Box<dyn Any + Send>>>,
+}
 
 impl Resources {
+    /// Resources with values that have a place.
+    pub fn with_shared(values: SharedValues) -> Self {
+        Self { by_type: BTreeMap::new(), shared: values.0.into_iter().map(RefCell::new).collect() }
+    }
+
+    /// The value in its place, for reading. Panics where the place is that of another simulation.
+    pub fn of<T: Send + 'static>(&self, place: Shared<T>) -> Ref<'_, T> {
+        Ref::filter_map(self.shared[place.number].borrow(), |value| value.downcast_ref())
+            .unwrap_or_else(|_| panic!("no {place:?}"))
+    }
+
+    /// The value in its place, for writing. Panics where the place is that of another simulation.
+    pub fn of_mut<T: Send + 'static>(&self, place: Shared<T>) -> RefMut<'_, T> {
+        RefMut::filter_map(self.shared[place.number].borrow_mut(), |value| value.downcast_mut())
+            .unwrap_or_else(|_| panic!("no {place:?}"))
+    }
+
     /// Puts a value in place of the one of its type.
     pub fn insert<T: Send + 'static>(&mut self, value: T) {
-        self.0.insert((TypeId::of::<T>(), None), RefCell::new(Box::new(value)));
+        self.by_type.insert((TypeId::of::<T>(), None), RefCell::new(Box::new(value)));
     }
 
     /// Puts a value in place of the one that a phase has of its type.
     pub fn insert_of<T: Send + 'static>(&mut self, phase: PhaseId, value: T) {
-        self.0.insert((TypeId::of::<T>(), Some(phase)), RefCell::new(Box::new(value)));
+        self.by_type.insert((TypeId::of::<T>(), Some(phase)), RefCell::new(Box::new(value)));
     }
 
     /// The value of type `T` for reading. Panics where the plugin that owns it was not built.
@@ -36,6 +91,11 @@ impl Resources {
         self.write(None).unwrap_or_else(|| panic!("no resource of type {}", type_name::<T>()))
     }
 
+    /// The value of type `T` for writing, if there is one.
+    pub fn try_get_mut<T: Send + 'static>(&self) -> Option<RefMut<'_, T>> {
+        self.write(None)
+    }
+
     /// The value of type `T` that a phase has, for reading, if there is one.
     pub fn try_get_of<T: Send + 'static>(&self, phase: PhaseId) -> Option<Ref<'_, T>> {
         self.read(Some(phase))
@@ -47,12 +107,12 @@ impl Resources {
     }
 
     fn read<T: Send + 'static>(&self, phase: Option<PhaseId>) -> Option<Ref<'_, T>> {
-        let cell = self.0.get(&(TypeId::of::<T>(), phase))?;
+        let cell = self.by_type.get(&(TypeId::of::<T>(), phase))?;
         Ref::filter_map(cell.borrow(), |value| value.downcast_ref()).ok()
     }
 
     fn write<T: Send + 'static>(&self, phase: Option<PhaseId>) -> Option<RefMut<'_, T>> {
-        let cell = self.0.get(&(TypeId::of::<T>(), phase))?;
+        let cell = self.by_type.get(&(TypeId::of::<T>(), phase))?;
         RefMut::filter_map(cell.borrow_mut(), |value| value.downcast_mut()).ok()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::each::EachRow;
 use super::ledger::AccountKind;
+use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::turn::Pace;
@@ -12,10 +13,22 @@ use crate::world::{BodySet, Column, PhaseId};
 pub enum Mode {
     /// It reads the column.
     Reads,
+    /// It reads the column in rows of neighbours too.
+    ReadsNear,
     /// It overwrites or changes the column.
     Writes,
     /// It adds to an accumulator; additions commute, and run in the order of the scene.
     Adds,
+}
+
+impl Mode {
+    /// All modes, in words.
+    pub(super) const VERBS: [(Self, &'static str); 4] = [
+        (Self::Reads, "reads"),
+        (Self::ReadsNear, "reads near"),
+        (Self::Writes, "writes"),
+        (Self::Adds, "adds to"),
+    ];
 }
 
 /// A declared access.
@@ -30,8 +43,9 @@ pub struct Access {
 impl Access {
     /// Whether two systems with these accesses need a stated order.
     pub fn conflicts(&self, other: &Access) -> bool {
-        use Mode::{Adds, Reads};
-        self.column == other.column && !matches!((self.mode, other.mode), (Reads, Reads) | (Adds, Adds))
+        let reads = |mode| matches!(mode, Mode::Reads | Mode::ReadsNear);
+        let both_add = self.mode == Mode::Adds && other.mode == Mode::Adds;
+        self.column == other.column && !both_add && !(reads(self.mode) && reads(other.mode))
     }
 }
 
@@ -48,6 +62,16 @@ pub trait Run: Send {
     /// Takes up what [`Run::save`] gave. Returns `false` where the bytes are not what it wrote.
     fn restore(&mut self, state: &[u8]) -> bool {
         state.is_empty()
+    }
+
+    /// [`Run::save`] for a system whose state is among what systems share.
+    fn save_with(&self, _: &Resources) -> Vec<u8> {
+        self.save()
+    }
+
+    /// Takes up what [`Run::save_with`] gave.
+    fn restore_with(&mut self, state: &[u8], _: &Resources) -> bool {
+        self.restore(state)
     }
 }
 
@@ -146,6 +170,11 @@ impl System {
     /// Declares that the system reads column `T`.
     pub fn reads<T: Column>(self) -> Self {
         self.touches(T::NAME, Mode::Reads)
+    }
+
+    /// Declares that the system reads column `T` in rows of neighbours: on several machines or beside a GPU these are to be exchanged first.
+    pub fn reads_near<T: Column>(self) -> Self {
+        self.touches(T::NAME, Mode::ReadsNear)
     }
 
     /// Declares that the system writes column `T`.
@@ -250,7 +279,7 @@ impl System {
     }
 
     /// Whether the two may touch the same rows.
-    fn shares_rows_with(&self, other: &System) -> bool {
+    pub(super) fn shares_rows_with(&self, other: &System) -> bool {
         let phases = match (&self.phases, &other.phases) {
             (Some(a), Some(b)) => a.iter().any(|phase| b.contains(phase)),
             _ => true,

@@ -127,7 +127,7 @@ impl Simulation {
             limits: self.limits.clone(),
             sub_steps: self.sub_steps.state.clone(),
             warnings: self.warnings.clone(),
-            systems: self.schedule.save(),
+            systems: self.schedule.save(&self.resources),
         };
         let bytes = postcard::to_stdvec(&header).unwrap_or_default();
         let inputs = postcard::to_stdvec(&self.inputs.beside(path, &source.name)).unwrap_or_default();
@@ -177,7 +177,7 @@ impl Simulation {
         }
         for (label, state) in systems {
             let writes_nothing = label == OUTPUT && self.output.is_none();
-            if !writes_nothing && !self.schedule.restore(label, state) {
+            if !writes_nothing && !self.schedule.restore(label, state, &self.resources) {
                 return Err(content(format!("the state of system `{label}` does not fit")));
             }
         }

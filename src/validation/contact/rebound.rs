@@ -95,8 +95,8 @@ fn momenta(simulation: &Simulation) -> Result<(DVec3, DVec3)> {
     let mut linear: DVec3 = rows.clone().map(|row| m[row].0 * v[row].0).sum();
     let mut angular: DVec3 = rows.map(|row| x[row].0.cross(m[row].0 * v[row].0)).sum();
     let cube = state(simulation, "cube")?;
-    let bodies = simulation.resources().get::<RigidBodies>().clone();
-    let mass = bodies.lock()[0].mass;
+    let bodies = simulation.resources().get::<RigidBodies>();
+    let mass = bodies[0].mass;
     linear += mass * cube.velocity;
     angular += cube.center.cross(mass * cube.velocity) + cube.angular_momentum;
     Ok((linear, angular))
@@ -113,8 +113,7 @@ fn mean_velocity(simulation: &Simulation) -> Result<DVec3> {
 fn least_distance(simulation: &Simulation) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(body(simulation, "block")?);
     let position = view.read::<Position>()?;
-    let bodies = simulation.resources().get::<RigidBodies>().clone();
-    let bodies = bodies.lock();
+    let bodies = simulation.resources().get::<RigidBodies>();
     let cube = &bodies[0];
     let distance = |row: usize| cube.surface.closest(cube.reference(position[row].0)).signed_distance;
     Ok(rows.map(distance).fold(f64::INFINITY, f64::min))
@@ -130,8 +129,8 @@ fn bounces(registry: &Registry, wanted: usize) -> Result<Vec<Check>> {
     simulation.start()?;
     let energy = |simulation: &Simulation| -> Result<f64> {
         let height = state(simulation, "block")?.center.z - 1.0;
-        let bodies = simulation.resources().get::<RigidBodies>().clone();
-        let mass = bodies.lock()[1].mass;
+        let bodies = simulation.resources().get::<RigidBodies>();
+        let mass = bodies[1].mass;
         Ok(simulation.ledger().stored() + mass * 9.81 * height)
     };
     let before = energy(&simulation)?;

@@ -9,7 +9,7 @@ use super::motion::body;
 /// State of the rigid body of that name.
 pub fn state(simulation: &Simulation, name: &str) -> Result<RigidState> {
     let id = body(simulation, name)?;
-    let bodies = simulation.resources().get::<RigidBodies>().clone();
-    let found = bodies.lock().iter().find(|body| body.id == id).map(|body| body.state);
+    let bodies = simulation.resources().get::<RigidBodies>();
+    let found = bodies.iter().find(|body| body.id == id).map(|body| body.state);
     found.with_context(|| format!("`{name}` is not rigid"))
 }

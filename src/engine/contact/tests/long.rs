@@ -17,8 +17,8 @@ fn a_block_that_sticks_on_an_incline_does_not_creep_over_200_000_steps() {
             time: (end: 100.0))"#,
     );
     let place = |sim: &crate::simulation::Simulation| {
-        let bodies = sim.resources().get::<RigidBodies>().clone();
-        let state = bodies.lock()[1].state;
+        let bodies = sim.resources().get::<RigidBodies>();
+        let state = bodies[1].state;
         state.center
     };
     sim.run(|sim| sim.clock().step < 20_000).unwrap();

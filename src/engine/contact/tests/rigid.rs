@@ -33,8 +33,8 @@ fn hertz_impact_of_a_sphere_has_the_depth_force_and_time_of_the_closed_form() {
     while !sim.is_finished() {
         sim.step().unwrap();
         let overlap = 0.01 - centre(&sim, 1).0.z;
-        let bodies = sim.resources().get::<RigidBodies>().clone();
-        force = force.max(bodies.lock()[1].state.force.length());
+        let bodies = sim.resources().get::<RigidBodies>();
+        force = force.max(bodies[1].state.force.length());
         deepest = deepest.max(overlap);
         if overlap > 0.0 {
             if begin == 0.0 {
@@ -93,8 +93,7 @@ fn a_roller_that_is_turned_drives_what_lies_on_it_and_its_work_is_booked() {
 
 /// Momentum and angular momentum about the origin of all rigid bodies.
 fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
-    let bodies = sim.resources().get::<RigidBodies>().clone();
-    let bodies = bodies.lock();
+    let bodies = sim.resources().get::<RigidBodies>();
     let linear = bodies.iter().map(|body| body.mass * body.state.velocity).sum();
     let angular = |body: &crate::rigid::RigidBody| {
         body.state.center.cross(body.mass * body.state.velocity) + body.state.angular_momentum
@@ -130,8 +129,8 @@ fn tumbling_boxes_and_a_sphere_keep_momentum_and_angular_momentum() {
     let (q, m) = momenta(&sim);
     assert!((q - p).length() < 1e-12 * p.length(), "{p} {q}");
     assert!((m - l).length() < 1e-12 * l.length(), "{l} {m}");
-    let bodies = sim.resources().get::<RigidBodies>().clone();
-    let hit = bodies.lock().iter().filter(|body| body.state.velocity.length() > 0.05).count();
+    let bodies = sim.resources().get::<RigidBodies>();
+    let hit = bodies.iter().filter(|body| body.state.velocity.length() > 0.05).count();
     assert!(hit == 3 && sim.ledger().total_named("friction") > 0.0);
     assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
 }
@@ -181,8 +180,8 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
     let motion = r#"Velocity(on: Select(body: "tool"), value: (0.0, "-0.5*smoothstep(t/0.01)"))"#;
     let mut sim = pressed_block(motion, "law: Penalty()", 0.02);
     sim.run(|_| true).unwrap();
-    let bodies = sim.resources().get::<RigidBodies>().clone();
-    let states: Vec<_> = bodies.lock().iter().map(|body| body.state).collect();
+    let bodies = sim.resources().get::<RigidBodies>();
+    let states: Vec<_> = bodies.iter().map(|body| body.state).collect();
     let (table, tool) = (states[0], states[1]);
     // Pressed by 7.5 mm of 100: about E'(0.075) over 0.1 m, with half a spacing of soft contact on both sides.
     assert!((5e3..9e3).contains(&tool.force.y), "{}", tool.force);

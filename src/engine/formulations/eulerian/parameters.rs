@@ -139,21 +139,23 @@ impl Formulation for Eulerian {
 fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
     let rates = System::new(Stage::Gradients, RATES, Rates { phase })
         .on_phases([phase])
-        .reads::<Position>()
-        .reads::<ReferencePosition>()
-        .reads::<ReferenceVolume>()
-        .reads::<Removed>()
-        .reads::<Velocity>()
+        .reads_near::<Position>()
+        .reads_near::<ReferencePosition>()
+        .reads_near::<ReferenceVolume>()
+        .reads_near::<Removed>()
+        .reads_near::<Velocity>()
+        .reads_near::<DeformationGradient>()
         .writes::<DeformationGradient>();
     let is_dilated = sim.columns(phase).get(DilatationRate::NAME).is_some();
     sim.add_system(if is_dilated { rates.reads::<DilatationRate>() } else { rates });
     let state = solids.access();
     let stress = System::new(Stage::Constitutive, STRESS, Stress::new(phase, solids))
         .on_phases([phase])
-        .reads::<Position>()
-        .reads::<ReferenceVolume>()
-        .reads::<Removed>()
-        .reads::<Velocity>()
+        .reads_near::<Position>()
+        .reads_near::<ReferenceVolume>()
+        .reads_near::<Removed>()
+        .reads_near::<Velocity>()
+        .reads_near::<DeformationGradient>()
         .reads::<Mass>()
         .touches_all(state);
     let has_control = sim.columns(phase).get(HourglassEnergy::NAME).is_some();
@@ -163,7 +165,9 @@ fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
     sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
     let force = InternalForce { phase, gravity: sim.gravity() };
     let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
-    sim.add_system(force.touches("corrected_stress", Mode::Reads).writes::<Force>());
+    sim.add_system(
+        force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),
+    );
 }
 
 impl Eulerian {

@@ -43,7 +43,7 @@ pub(super) fn sinking(
     let Some(bodies) = setup.resources.try_get::<RigidBodies>() else { return };
     let fluids = cloud.groups.iter().filter_map(|group| group.fluid());
     let lightest = fluids.map(|state| state.density).fold(f64::INFINITY, f64::min);
-    for body in bodies.lock().iter() {
+    for body in bodies.iter() {
         let falls = (0..3).any(|axis| gravity[axis] != 0.0 && !body.is_driven_along(axis));
         let (view, rows) = setup.world.body_view(body.id);
         let Ok(volume) = view.read::<ReferenceVolume>() else { continue };

@@ -151,7 +151,8 @@ impl Coupling {
 impl Coupling {
     /// Gives a body what it lacks at the end of the long step.
     fn give(&mut self, step: &mut Step<'_>, cloud: &FlowCloud, group: &Group) -> Result<Exchange, StepError> {
-        let rigid = step.resources.try_get::<RigidBodies>().map(|bodies| bodies.clone());
+        let resources = step.resources;
+        let mut rigid = resources.try_get_mut::<RigidBodies>();
         let view = step.world.phase(group.phase);
         let rows = group.rows.clone();
         let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);
@@ -182,12 +183,9 @@ impl Coupling {
             pressure: &mut pressure[rows.clone()],
             drag: drag.as_mut().map(|drag| drag.rows(rows)),
         };
-        let body = |bodies: &RigidBodies| bodies.lock().iter().position(|body| body.id == group.body);
-        let (exchange, rate) = match rigid.as_ref().and_then(|bodies| Some((bodies, body(bodies)?))) {
-            Some((bodies, k)) => {
-                let body = &mut bodies.lock()[k];
-                (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body))
-            }
+        let body = rigid.as_mut().and_then(|bodies| bodies.iter_mut().find(|body| body.id == group.body));
+        let (exchange, rate) = match body {
+            Some(body) => (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body)),
             None => (particles.give(columns, &mut self.sums), particles.rate()),
         };
         if rate > 0.0 {

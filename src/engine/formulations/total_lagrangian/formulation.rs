@@ -112,10 +112,10 @@ impl Formulation for TotalLagrangian {
         let deformation = Deformation::new(phase, plane, solids);
         let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
             .on_phases([phase])
-            .reads::<Position>()
-            .reads::<ReferencePosition>()
-            .reads::<ReferenceVolume>()
-            .reads::<Removed>()
+            .reads_near::<Position>()
+            .reads_near::<ReferencePosition>()
+            .reads_near::<ReferenceVolume>()
+            .reads_near::<Removed>()
             .reads::<Velocity>()
             .reads::<Mass>()
             .touches_all(state);
@@ -127,7 +127,8 @@ impl Formulation for TotalLagrangian {
             })
             .on_phases([phase])
             .reads::<Mass>()
-            .touches("corrected_stress", Mode::Reads)
+            .reads_near::<Position>()
+            .touches("corrected_stress", Mode::ReadsNear)
             .writes::<Force>(),
         );
         add_pair_systems(sim, phase, BondPairs::<PackedRows>::of(phase))?;

@@ -116,13 +116,16 @@ impl Formulation for UpdatedLagrangian {
         sim.add_setup(move |setup| first_lists.run(setup));
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])
-            .reads::<Position>()
-            .reads::<ReferencePosition>()
-            .reads::<ReferenceVolume>()
+            .reads_near::<Position>()
+            .reads_near::<ReferencePosition>()
+            .reads_near::<ReferenceVolume>()
             .writes::<SupportRadius>()
-            .reads::<Removed>()
+            .reads_near::<Removed>()
             .reads::<Velocity>()
             .reads::<Mass>()
+            .reads_near::<UpdatedReference>()
+            .reads_near::<UpdatedGradient>()
+            .reads_near::<UpdatedVolume>()
             .writes::<UpdatedReference>()
             .writes::<UpdatedGradient>()
             .writes::<UpdatedMetric>()
@@ -132,7 +135,9 @@ impl Formulation for UpdatedLagrangian {
         sim.add_system(gradient.touches_all(state));
         let force = InternalForce { phase, plane, gravity: sim.gravity() };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
-        sim.add_system(force.touches("corrected_stress", Mode::Reads).writes::<Force>());
+        sim.add_system(
+            force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),
+        );
         add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
     }
 }
