@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::phase::SolidPhase;
-use crate::parallel::for_each_block;
+use super::row_loops::fill_rows;
 use crate::world::{DeformationGradient, MissingColumn, PhaseView, ReferenceVolume, Removed};
 
 /// Present volumes of the rows of a phase, m3, kept between steps so that none allocates.
@@ -68,11 +68,4 @@ impl PresentPairs<'_> {
             });
         });
     }
-}
-
-/// Sets the values of the rows from `first` on to what `value` gives for each, on all threads.
-pub fn fill_rows<T: Send>(values: &mut [T], first: usize, value: impl Fn(usize) -> T + Sync) {
-    for_each_block(values, &mut Vec::new(), &|start, values: &mut [T]| {
-        values.iter_mut().zip(first + start..).for_each(|(own, row)| *own = value(row));
-    });
 }

@@ -7,6 +7,7 @@ use glam::DMat3;
 
 use super::rows::EulerianRows;
 use crate::column;
+use crate::parallel::sum_over_blocks;
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, PhaseId};
 
@@ -43,12 +44,17 @@ impl Dilatation {
         self.before.resize(rate.len(), 0.0);
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
         for (body, listed) in bodies.zip(&packed.lists.bodies) {
-            let mut energy = 0.0;
-            for row in listed.rows.clone() {
-                let now = packed.held(row);
-                energy += 0.5 * (self.before[row] + now) * rate[row].0;
-                self.before[row] = now;
-            }
+            let rows = listed.rows.clone();
+            let own = (&mut self.before[rows.clone()], &rate[rows.clone()]);
+            let energy = sum_over_blocks(own, &|first, (before, rate): (&mut [f64], &[DilatationRate])| {
+                let mut energy = 0.0;
+                for ((before, rate), row) in before.iter_mut().zip(rate).zip(rows.start + first..) {
+                    let now = packed.held(row);
+                    energy += 0.5 * (*before + now) * rate.0;
+                    *before = now;
+                }
+                energy
+            });
             if step.clock.dt > 0.0 {
                 step.ledger.add(account, body, -energy * step.clock.dt);
             }

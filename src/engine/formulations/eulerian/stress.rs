@@ -11,11 +11,11 @@ use super::parameters::Divergence;
 use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
-use crate::removal::{Leaving, REMOVED_ENERGY};
+use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
     BodyPass, Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows,
-    SolidSum,
+    SolidSum, count_rows,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
@@ -164,10 +164,10 @@ impl Stress {
     fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let removed = view.read::<Removed>()?;
-        if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.len() {
+        if count_rows(&removed, |row| *row != Removed::NO) == self.removed.len() {
             return Ok(());
         }
-        let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
+        let held = self.solids.stored();
         let before = self.forces(step.world, packed)?;
         self.removed.clear();
         self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
@@ -176,17 +176,8 @@ impl Stress {
         self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         let after = self.forces(step.world, packed)?;
-        let velocity = view.read::<Velocity>()?;
-        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
-        for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
-            let rows = step.world.body(body.id).rows.clone();
-            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
-            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
-            let power = left + gone;
-            step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
-        }
-        Ok(())
+        self.solids.book_change(step, account, &held, &before, &after)
     }
 
     /// The internal forces of the last pass.

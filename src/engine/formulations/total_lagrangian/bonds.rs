@@ -136,7 +136,6 @@ impl Bonds {
         if self.offsets.is_empty() {
             self.offsets.push(0);
         }
-        let first_bond = self.neighbors.len();
         for k in 0..rows.len() {
             if body.is_seen(k as u32) {
                 let seen = list.row(k).iter().filter(|&&j| body.is_seen(j)).map(|&j| body.row(j));
@@ -144,8 +143,7 @@ impl Bonds {
             }
             self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
         }
-        self.weights.resize(self.neighbors.len(), 0.0);
-        self.weigh(body, first_bond);
+        self.weigh(body);
         self.correct(rows.clone(), body.kernel.dimension(), body.position, body.volume, body.ghosts);
         let free = self.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
         if free == rows.len() {
@@ -154,29 +152,39 @@ impl Bonds {
         Ok(())
     }
 
-    fn weigh(&mut self, body: &BodyBonds<'_>, first_bond: usize) {
+    fn weigh(&mut self, body: &BodyBonds<'_>) {
         let kernel = body.kernel;
         let ratio = kernel.smoothing_length(1.0);
-        let mut rest = &mut self.weights[first_bond..];
-        let mut parts = Vec::with_capacity(body.rows.len());
-        for i in body.rows.clone() {
-            let bonds = (self.offsets[i + 1] - self.offsets[i]) as usize;
-            let (part, tail) = rest.split_at_mut(bonds);
+        self.set_weights(body.rows.clone(), |i, j| {
+            let r_ij = body.ghosts.pair(body.position, i, j);
+            let (distance, density) = body.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
+                (own.distance(body.ghosts, i, j, r_ij), own.density(body.ghosts, i, j))
+            });
+            let support = body.support[i] + body.support[body.ghosts.source(j)];
+            (density * kernel.pair_weight(distance, 0.5 * support * ratio)) as f32
+        });
+    }
+
+    /// Sets the weights of the bonds of some rows, on all threads.
+    pub(in crate::formulations) fn set_weights(
+        &mut self,
+        rows: Range<usize>,
+        weight: impl Fn(usize, usize) -> f32 + Sync,
+    ) {
+        let Self { offsets, neighbors, weights, .. } = self;
+        weights.resize(neighbors.len(), 0.0);
+        let mut rest = &mut weights[offsets[rows.start] as usize..];
+        let mut parts = Vec::with_capacity(rows.len());
+        for i in rows {
+            let (part, tail) = rest.split_at_mut((offsets[i + 1] - offsets[i]) as usize);
             parts.push((i, part));
             rest = tail;
         }
-        let (offsets, neighbors) = (&self.offsets, &self.neighbors);
+        let (offsets, neighbors) = (&*offsets, &*neighbors);
         parts.par_iter_mut().for_each(|(i, weights)| {
             let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
-            for (weight, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
-                let j = j as usize;
-                let r_ij = body.ghosts.pair(body.position, *i, j);
-                let (distance, density) = body.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
-                    (own.distance(body.ghosts, *i, j, r_ij), own.density(body.ghosts, *i, j))
-                });
-                let support = body.support[*i] + body.support[body.ghosts.source(j)];
-                let smoothing_length = 0.5 * support * ratio;
-                *weight = (density * kernel.pair_weight(distance, smoothing_length)) as f32;
+            for (own, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
+                *own = weight(*i, j as usize);
             }
         });
     }

@@ -10,6 +10,7 @@ use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::rows::Site;
+use crate::parallel::sum_over_blocks;
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, Removed};
 
@@ -90,7 +91,11 @@ impl Cracks {
             self.relist(known, damage.len(), bonds, ghosts);
         }
         let is_failed = |row: usize| damage[row].0 >= 1.0 && removed[row] == Removed::NO;
-        if (0..damage.len()).filter(|&row| is_failed(row)).count() == known.len() {
+        let own = (damage, removed);
+        let count = sum_over_blocks(own, &|_, (damage, removed): (&[Damage], &[Removed])| {
+            damage.iter().zip(removed).filter(|row| row.0.0 >= 1.0 && *row.1 == Removed::NO).count() as f64
+        });
+        if count as usize == known.len() {
             return;
         }
         self.marks.resize(damage.len(), Mark::Holds);

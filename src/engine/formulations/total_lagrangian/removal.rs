@@ -8,13 +8,12 @@ use super::phase::PackedRows;
 use super::rows::Site;
 use super::system::Deformation;
 use crate::linalg::dyad;
-use crate::removal::{Leaving, REMOVED_ENERGY};
+use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::solids::SolidPart;
-use crate::solids::SolidSum;
+use crate::solids::{SolidPart, count_rows};
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
-    SupportRadius, Velocity, World,
+    SupportRadius, World,
 };
 
 impl Deformation {
@@ -42,12 +41,12 @@ impl Deformation {
     ) -> Result<bool, StepError> {
         let view = step.world.phase(self.phase);
         let removed = view.read::<Removed>()?;
-        if removed.iter().filter(|row| **row != Removed::NO).count() == self.removed.rows.len() {
+        if count_rows(&removed, |row| *row != Removed::NO) == self.removed.rows.len() {
             return Ok(false);
         }
         self.pass(step.world, packed, SolidPart::of(step))?;
         self.solids.book(step)?;
-        let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
+        let held = self.solids.stored();
         let before = self.forces(step, packed)?;
         let known = std::mem::take(&mut self.removed.rows);
         self.removed.rows.extend((0..removed.len() as u32).filter(|&k| removed[k as usize] != Removed::NO));
@@ -57,16 +56,8 @@ impl Deformation {
         self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         let after = self.forces(step, packed)?;
-        let velocity = view.read::<Velocity>()?;
-        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
-        for ((law, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
-            let rows = step.world.body(law.id).rows.clone();
-            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
-            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
-            let power = left + gone;
-            step.ledger.add(account, law.id, held - sum.stored() + 0.5 * step.clock.dt * power);
-        }
+        self.solids.book_change(step, account, &held, &before, &after)?;
         Ok(true)
     }
 

@@ -153,24 +153,19 @@ impl UpdatedRows {
     ) {
         let Self { bonds, ghosts, gradient, kernels, control_bonds, volume, ellipsoids, .. } = self;
         let ellipsoids = Ellipsoids(ellipsoids);
-        let mut weights = std::mem::take(&mut control_bonds.weights);
-        weights.clear();
+        control_bonds.take_topology(bonds);
         for BodyKernel { body, kernel, .. } in kernels.iter() {
             let ratio = kernel.smoothing_length(1.0);
-            for i in world.body(*body).rows.clone() {
-                weights.extend(bonds.row(i).map(|(j, _)| {
-                    let source = ghosts.source(j);
-                    let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                    let x_ij = ghosts.pair(original, i, j);
-                    let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
-                    let h = 0.5 * (support[i] + support[source]) * ratio;
-                    let distance = ellipsoids.distance(ghosts, i, j, mean);
-                    (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
-                }));
-            }
+            control_bonds.set_weights(world.body(*body).rows.clone(), |i, j| {
+                let source = ghosts.source(j);
+                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
+                let x_ij = ghosts.pair(original, i, j);
+                let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
+                let h = 0.5 * (support[i] + support[source]) * ratio;
+                let distance = ellipsoids.distance(ghosts, i, j, mean);
+                (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
+            });
         }
-        control_bonds.take_topology(bonds);
-        control_bonds.weights = weights;
         let held: Vec<f64> =
             volume.iter().enumerate().map(|(row, v)| if has_failed(row) { 0.0 } else { *v }).collect();
         for BodyKernel { body, kernel, .. } in kernels.iter() {

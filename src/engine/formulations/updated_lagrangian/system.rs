@@ -13,14 +13,14 @@ use crate::formulations::total_lagrangian::{
     BondedSites, Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site,
 };
 use crate::parallel::{Largest, for_each_block, sum_over_blocks};
-use crate::removal::Leaving;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, SolidSum, StepEstimate,
+    BodyPass, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, StepEstimate, count_rows,
+    fill_rows,
 };
 use crate::world::{
     BodyId, Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position,
-    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity, World,
+    ReferencePosition, ReferenceVolume, Removed, SupportRadius, World,
 };
 
 /// Account of what an update of the reference changes of the stored energies.
@@ -185,8 +185,7 @@ impl UpdatedSolids {
         packed: &mut UpdatedRows,
         is_due: &[bool],
     ) -> Result<(), StepError> {
-        let held: Vec<f64> = self.solids.found().iter().map(SolidSum::stored).collect();
-        let view = step.world.phase(self.phase);
+        let held = self.solids.stored();
         let before = self.forces(step.world, packed)?;
         self.move_reference(step.world, packed, is_due)?;
         // States of laws have advanced by this step already.
@@ -194,17 +193,8 @@ impl UpdatedSolids {
         self.solids.book(step)?;
         packed.warn_of_released(step);
         let after = self.forces(step.world, packed)?;
-        let velocity = view.read::<Velocity>()?;
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
-        let leaving = step.resources.try_get_of::<Leaving>(self.phase);
-        for ((body, held), sum) in self.solids.iter().zip(held).zip(self.solids.found()) {
-            let rows = step.world.body(body.id).rows.clone();
-            let gone = leaving.as_ref().map_or(0.0, |leaving| leaving.power(&rows, &before));
-            let left = rows.map(|k| (before[k].0 - after[k].0).dot(velocity[k].0)).sum::<f64>();
-            let power = left + gone;
-            step.ledger.add(account, body.id, held - sum.stored() + 0.5 * step.clock.dt * power);
-        }
-        Ok(())
+        self.solids.book_change(step, account, &held, &before, &after)
     }
 
     /// Gives the bodies that are due another reference, with the same deformation gradient.
@@ -226,14 +216,17 @@ impl UpdatedSolids {
             let start = view.read::<ReferenceVolume>()?;
             for k in (0..is_due.len()).filter(due) {
                 let rows = world.body(self.solids.id(k)).rows.clone();
-                for row in rows.clone() {
-                    reference[row].0 = position[row].0;
-                    metric[row].0 = Ellipsoid::following(&deformation[row].0);
-                    volume[row].0 = start[row].0 * deformation[row].0.determinant();
-                }
+                let (position, deformation, start) = (&position[..], &deformation[..], &start[..]);
+                fill_rows(&mut reference[rows.clone()], rows.start, |row| UpdatedReference(position[row].0));
+                fill_rows(&mut metric[rows.clone()], rows.start, |row| {
+                    UpdatedMetric(Ellipsoid::following(&deformation[row].0))
+                });
+                fill_rows(&mut volume[rows.clone()], rows.start, |row| {
+                    UpdatedVolume(start[row].0 * deformation[row].0.determinant())
+                });
                 if self.is_smoothed(k) {
                     let (damage, h) = (damage.as_deref(), self.updates[k].1);
-                    smooth(&Smoothing { packed, deformation: &deformation, damage, h }, rows, &mut reference);
+                    smooth(&Smoothing { packed, deformation, damage, h }, rows, &mut reference);
                 }
             }
         }
@@ -250,11 +243,13 @@ impl UpdatedSolids {
         {
             let mut gradient = view.write::<UpdatedGradient>()?;
             for k in (0..is_due.len()).filter(due) {
-                for row in world.body(self.solids.id(k)).rows.clone() {
+                let (rows, deformation) = (world.body(self.solids.id(k)).rows.clone(), &deformation[..]);
+                let is_smoothed = self.is_smoothed(k);
+                fill_rows(&mut gradient[rows.clone()], rows.start, |row| {
                     let since = DMat3::IDENTITY + changes[row];
-                    let since = if self.is_smoothed(k) { since } else { DMat3::IDENTITY };
-                    gradient[row].0 = since.inverse() * deformation[row].0;
-                }
+                    let since = if is_smoothed { since } else { DMat3::IDENTITY };
+                    UpdatedGradient(since.inverse() * deformation[row].0)
+                });
             }
         }
         packed.take_gradients(world, self.phase)?;
@@ -283,9 +278,9 @@ impl UpdatedSolids {
     fn take_up_lost(&mut self, world: &World) -> Result<bool, MissingColumn> {
         let view = world.phase(self.phase);
         let removed = view.read::<Removed>()?;
-        let count = removed.iter().filter(|row| **row != Removed::NO).count();
+        let count = count_rows(&removed, |row| *row != Removed::NO);
         let damage = view.read::<Damage>().ok();
-        let failed = damage.map_or(0, |damage| damage.iter().filter(|damage| has_failed(damage)).count());
+        let failed = damage.map_or(0, |damage| count_rows(&damage, has_failed));
         let has_lost = count != self.removed.len() || failed as u64 != self.failed;
         if has_lost {
             self.removed.clear();

@@ -1,5 +1,6 @@
 //! Volume of the particles removed from the run.
 
+use crate::parallel::sum_over_blocks;
 use crate::plugin::Selection;
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
@@ -25,8 +26,11 @@ impl Measure for RemovedVolume {
         for (body, rows) in &self.selection.parts {
             let (view, _) = world.body_view(*body);
             let (removed, volume) = (view.read::<Removed>()?, view.read::<ReferenceVolume>()?);
-            let gone = rows.iter().map(|&row| row as usize).filter(|&row| removed[row] == Removed::YES);
-            sum += gone.map(|row| volume[row].0).sum::<f64>();
+            let (removed, volume) = (&removed[..], &volume[..]);
+            sum += sum_over_blocks(&rows[..], &|_, rows: &[u32]| {
+                let gone = rows.iter().map(|&row| row as usize).filter(|&row| removed[row] == Removed::YES);
+                gone.map(|row| volume[row].0).sum::<f64>()
+            });
         }
         Ok(vec![sum])
     }
