@@ -267,6 +267,10 @@ fn force(step: &Step<'_>, phase: PhaseId, gravity: DVec3) -> Result<(), StepErro
 }
 
 impl SolidPhase for Rows {
+    fn keeps_reference(&self) -> bool {
+        true
+    }
+
     fn ghosts(&self) -> &Ghosts {
         &self.ghosts
     }
