@@ -41,8 +41,7 @@ struct Fit {
 #[derive(Default)]
 struct Rows {
     ghosts: Ghosts,
-    /// Neighbours with their weights.
-    lists: Vec<Vec<(usize, f64)>>,
+    lists: Vec<Vec<(usize, f64)>>, // neighbours with their weights
     points: Vec<Point>,
     fits: Vec<Fit>,
     stresses: Vec<CorrectedStress>,
@@ -70,9 +69,9 @@ impl Formulation for Toy {
         let solids = SolidBodies::new(&ids, sim)?;
         let mut parts = Vec::new();
         for own in solids.iter() {
-            let (body, id) = (sim.body(own.id), own.id);
-            let repeats = repeats_of(body, SUPPORT * body.spacing, sim).map_err(|e| e.of_formulation(id))?;
-            parts.push((id, SUPPORT * body.spacing, repeats, own.estimate));
+            let (id, support) = (own.id, SUPPORT * sim.body(own.id).spacing);
+            let repeats = repeats_of(sim.body(id), support, sim).map_err(|e| e.of_formulation(id))?;
+            parts.push((id, support, repeats, own.estimate));
         }
         sim.add_setup(move |setup| set_up(&parts, phase, setup).map_err(|e| SetupError::internal(&e)));
         let state = solids.access();
@@ -128,9 +127,8 @@ fn set_up(parts: &[Part], phase: PhaseId, setup: &mut Setup<'_>) -> Result<(), M
                     weight_sum += share;
                 }
             }
-            let inverse = moment.inverse().unwrap_or_default();
-            stable_step =
-                stable_step.min(estimate.stable_step(weight_sum, inverse.trace() / dimension as f64));
+            let mean = moment.inverse().unwrap_or_default().trace() / dimension as f64;
+            stable_step = stable_step.min(estimate.stable_step(weight_sum, mean));
         }
         view.write::<SupportRadius>()?[own].fill(SupportRadius(*support));
         rows.stable_step.push(stable_step);
@@ -141,6 +139,8 @@ fn set_up(parts: &[Part], phase: PhaseId, setup: &mut Setup<'_>) -> Result<(), M
     setup.resources.insert_solid(phase, rows);
     Ok(())
 }
+
+type Own<'a> = (&'a mut [Fit], &'a mut [CorrectedStress]);
 
 impl Rows {
     /// Packs the particles as they are now; removed ones have no volume.
@@ -174,11 +174,7 @@ impl Rows {
             (j, other.volume * weight, x, u)
         })
     }
-}
 
-type Own<'a> = (&'a mut [Fit], &'a mut [CorrectedStress]);
-
-impl Rows {
     /// From the displacements of the neighbours to the corrected stress of a block.
     fn block(
         &self,
@@ -226,13 +222,12 @@ impl Run for Stress {
         let (mut fits, mut stresses) =
             (std::mem::take(&mut packed.fits), std::mem::take(&mut packed.stresses));
         let mut columns = SolidColumns::of(&view)?;
-        let part = SolidPart::of(step);
         let points = &*packed;
         solids.begin();
         for k in 0..solids.len() {
             let rows = step.world.body(solids.id(k)).rows.clone();
             let own = (&mut fits[rows.clone()], &mut stresses[rows.clone()]);
-            let pass = BodyPass { body: k, view: &view, rows, part };
+            let pass = BodyPass { body: k, view: &view, rows, part: SolidPart::of(step) };
             solids.run(pass, &mut columns, own, &|law, rows, own: Own<'_>, block| {
                 points.block(law, rows, own, block)
             });
