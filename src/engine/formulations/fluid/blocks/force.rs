@@ -184,11 +184,9 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
                 }
             }
             let out = &mut lanes[k * stride..(k + 1) * stride];
-            for axis in 0..3 {
-                out[axis] = sums.pressure[axis];
-                out[3 + axis] = sums.viscous[axis];
-                out[6 + axis] = sums.wall[axis];
-            }
+            out[..3].copy_from_slice(&sums.pressure);
+            out[3..6].copy_from_slice(&sums.viscous);
+            out[6..FIXED].copy_from_slice(&sums.wall);
             let mut density = Lanes8::ZERO;
             for (n, term) in of_terms[..count].iter().enumerate() {
                 out[FIXED + 3 * n..FIXED + 3 * (n + 1)].copy_from_slice(&term.force);

@@ -44,7 +44,7 @@ fn after(scene: &str, steps: u64) -> Simulation {
 /// A column of the water by the numbers of its particles.
 fn by_id<C: crate::world::Column + Copy>(sim: &Simulation) -> Vec<C> {
     let ids = column::<ParticleId>(sim, 0);
-    let mut rows: Vec<(u64, C)> = ids.iter().map(|id| u64::from(id.0)).zip(column::<C>(sim, 0)).collect();
+    let mut rows: Vec<(u64, C)> = ids.iter().map(|id| id.0).zip(column::<C>(sim, 0)).collect();
     rows.sort_by_key(|row| row.0);
     rows.into_iter().map(|row| row.1).collect()
 }
