@@ -29,8 +29,9 @@ impl Eigen {
                     continue;
                 }
                 let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                // No `hypot`, a call of the library: where the square is too large for a number, the angle is zero to rounding.
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;
                 let r = 3 - p - q;
                 let (mpq, mrp, mrq) = (m[p][q], m[r][p], m[r][q]);

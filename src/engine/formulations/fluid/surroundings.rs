@@ -28,7 +28,7 @@ impl RowPass for SmallestEigenvalue<'_> {
 pub fn smallest_eigenvalue(moment: &Sym3, plane: bool) -> f64 {
     if plane {
         let (mean, difference) = (0.5 * (moment.xx + moment.yy), 0.5 * (moment.xx - moment.yy));
-        mean - difference.hypot(moment.xy)
+        mean - (difference * difference + moment.xy * moment.xy).sqrt()
     } else {
         Eigen::new(moment).values.min_element()
     }

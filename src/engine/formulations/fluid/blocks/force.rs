@@ -40,7 +40,7 @@ impl Blocks {
 impl BlockForce<'_> {
     /// Writes the forces on all particles of the fluid and their parts.
     pub fn run(&mut self, total: &mut [Force], parts: &mut [DVec3]) {
-        self.sum(None, 0, &mut Vec::new());
+        self.sum(None, 0);
         self.land(TermRows::without_terms(total), parts);
     }
 
@@ -53,8 +53,8 @@ impl BlockForce<'_> {
         parts: &mut [DVec3],
     ) -> Result<(), StepError> {
         let body = self.group.body;
-        let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
-            let fastest = self.sum(Some(terms), written.terms(), sums);
+        let fastest = terms.on_body(step, body, total, &mut |terms, written, _| {
+            let fastest = self.sum(Some(terms), written.terms());
             self.land(written, parts);
             fastest
         })?;
@@ -62,15 +62,16 @@ impl BlockForce<'_> {
         Ok(())
     }
 
-    fn sum(&mut self, terms: Option<&BoundTerms<'_>>, count: usize, sums: &mut Vec<Fastest>) -> Fastest {
+    fn sum(&mut self, terms: Option<&BoundTerms<'_>>, count: usize) -> Fastest {
         let range = self.blocks.lists.table.of_fluid(self.number);
         let stride = stride(count);
-        let mut forces = std::mem::take(&mut self.blocks.forces);
+        let Blocks { forces, fastest, .. } = &mut *self.blocks;
+        let (mut forces, mut sums) = (std::mem::take(forces), std::mem::take(fastest));
         forces.resize(range.len() * stride, Lanes8::ZERO);
         let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
         let rows = BlockRows { lanes: &mut forces, stride };
-        let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums });
-        self.blocks.forces = forces;
+        let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums: &mut sums });
+        (self.blocks.forces, self.blocks.fastest) = (forces, sums);
         fastest
     }
 

@@ -4,6 +4,7 @@ use super::super::near_rows::NearRows;
 use super::compression::Rates;
 use super::lists::Lists;
 use super::record::{Packed, Units};
+use crate::pair::Fastest;
 use crate::parallel::Lanes8;
 
 /// The blocks of a flow, and what their passes read and write.
@@ -17,6 +18,8 @@ pub(in super::super) struct Blocks {
     pub(super) rates: Vec<Rates>,
     /// What the pass of the force sums for each block.
     pub(super) forces: Vec<Lanes8>,
+    /// The largest rates of the pair terms in blocks of the pass.
+    pub(super) fastest: Vec<Fastest>,
     /// Whether the neighbours of every particle are written down in every step.
     pub(super) keeps_rows: bool,
 }
@@ -31,6 +34,7 @@ impl Blocks {
             near: NearRows::default(),
             rates: Vec::new(),
             forces: Vec::new(),
+            fastest: Vec::new(),
             keeps_rows,
         }
     }
