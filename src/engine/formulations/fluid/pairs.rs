@@ -98,10 +98,10 @@ impl FlowPairs {
             self.walls.turn(fluid..positions.len(), &mut self.boundary);
         }
         if let Some(lists) = blocks {
-            let fluids: Vec<usize> = self.groups.iter().map(|&end| end as usize).collect();
+            let ends = &self.groups;
             let sources = Sources {
                 positions: &positions[..fluid],
-                fluids: &fluids[..fluids.partition_point(|&end| end <= fluid)],
+                fluids: &ends[..ends.partition_point(|&end| end as usize <= fluid)],
                 support,
                 skin,
                 plane: self.plane,

@@ -34,7 +34,7 @@ pub(in super::super) struct Sources<'a> {
     /// Positions of the fluids, m, those that the search has sorted.
     pub positions: &'a [DVec3],
     /// Where each fluid ends.
-    pub fluids: &'a [usize],
+    pub fluids: &'a [u32],
     pub support: f64,
     pub skin: f64,
     /// Whether all particles have one z.

@@ -49,11 +49,11 @@ struct Point {
 
 impl Table {
     /// Makes the blocks of fluids whose rows end here from the positions of their particles, m, which are finite.
-    pub fn build(&mut self, positions: &[DVec3], fluids: &[usize], support: f64, periodic: &Periodic) {
+    pub fn build(&mut self, positions: &[DVec3], fluids: &[u32], support: f64, periodic: &Periodic) {
         self.rows.clear();
         self.ends.clear();
         let mut first = 0;
-        for &end in fluids {
+        for end in fluids.iter().map(|&end| end as usize) {
             self.add_fluid(&positions[first..end], first as u32, support, periodic);
             self.ends.push(self.rows.len());
             first = end;
