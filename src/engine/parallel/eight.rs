@@ -17,6 +17,13 @@ pub struct Lanes8(pub [f32; EIGHT]);
 impl Lanes8 {
     /// Zero in all lanes.
     pub const ZERO: Self = Self([0.0; EIGHT]);
+
+    /// Sum of the lanes, in a fixed order.
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        f64::from(((a + b) + (c + d)) + ((e + f) + (g + h)))
+    }
 }
 
 impl Default for Lanes8 {
@@ -116,8 +123,8 @@ mod portable {
         }
 
         #[inline(always)]
-        fn sum(self, Lanes8([a, b, c, d, e, f, g, h]): Lanes8) -> f64 {
-            f64::from(((a + b) + (c + d)) + ((e + f) + (g + h)))
+        fn sum(self, a: Lanes8) -> f64 {
+            a.sum()
         }
 
         #[inline(always)]
@@ -216,8 +223,8 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn sum(self, Lanes8([a, b, c, d, e, f, g, h]): Lanes8) -> f64 {
-            f64::from(((a + b) + (c + d)) + ((e + f) + (g + h)))
+        fn sum(self, a: Lanes8) -> f64 {
+            a.sum()
         }
 
         #[inline(always)]

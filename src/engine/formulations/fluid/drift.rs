@@ -7,9 +7,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::cells::sort_into_cells;
 use super::record::Record;
 use super::spread::{Growing, Spread};
-use crate::neighbors::{Buckets, Periodic, SHIFT, bounds};
+use crate::neighbors::{Buckets, Periodic, SHIFT};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
 /// What has to hold for lists to be good, m.
@@ -62,36 +63,12 @@ pub(super) struct Drift {
 impl Drift {
     /// Sorts particles into cells of at least that length, m.
     pub fn sort(&mut self, positions: &[DVec3], length: f64, periodic: &Periodic) {
-        let (low, high) = bounds(positions);
         self.wraps = periodic.axes();
         let period = periodic.lengths();
         let inverse = DVec3::from_array(period.to_array().map(|l| if l > 0.0 { 1.0 / l } else { 0.0 }));
         self.periods = [Lanes4::new(period, 0.0), Lanes4::new(inverse, 0.0)];
-        let lengths = DVec3::select(glam::BVec3::from_array(self.wraps), period, high - low);
-        let lengths = lengths.max(DVec3::ZERO);
-        self.length = length;
-        // Not more cells than particles: drops that fly far apart have larger ones.
-        loop {
-            let along = |a: usize| (lengths[a] / self.length).floor() as usize + usize::from(!self.wraps[a]);
-            self.counts = [0, 1, 2].map(|a| along(a).max(1));
-            let product = self.counts.iter().fold(1_usize, |product, &n| product.saturating_mul(n));
-            if product <= positions.len() + 64 {
-                break;
-            }
-            self.length *= 2.0;
-        }
-        let ([nx, ny, nz], wraps) = (self.counts, self.wraps);
-        let origin = DVec3::select(glam::BVec3::from_array(wraps), periodic.min(), low);
-        let cell = DVec3::from_array(
-            [0, 1, 2].map(|a| if wraps[a] { self.counts[a] as f64 / lengths[a] } else { 1.0 / self.length }),
-        );
-        let key = |x: DVec3| {
-            let x = if periodic.any() { periodic.wrap(x) } else { x };
-            let at = (x - origin) * cell;
-            let [i, j, k] = [(at.x, nx), (at.y, ny), (at.z, nz)].map(|(at, n)| (at as usize).min(n - 1));
-            ((k * ny + j) * nx + i) as u32
-        };
-        self.cells.sort(positions, nx * ny * nz, key);
+        let sorted = sort_into_cells(&mut self.cells, positions, length, periodic);
+        (self.counts, self.length) = (sorted.counts, sorted.length);
         self.then.resize(positions.len(), Lanes4::ZERO);
         let rows = (&mut self.then[..], &self.cells.rows[..]);
         sum_over_blocks(rows, &|_, (then, rows): (&mut [Lanes4], &[u32])| {

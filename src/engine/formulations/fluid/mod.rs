@@ -12,6 +12,7 @@ mod batch;
 mod blocks;
 mod body_motion;
 mod body_spin;
+mod cells;
 #[cfg(test)]
 mod channel_tests;
 mod checks;

@@ -134,13 +134,7 @@ impl FlowCloud {
         n: usize,
         rest: &mut &'a [u32],
     ) -> Fours<'a, A> {
-        let end = self.groups[n].cloud.end as u32;
-        let count = match rest.last() {
-            Some(&last) if last >= end => rest.partition_point(|&j| j < end),
-            _ => rest.len(),
-        };
-        let (row, tail) = rest.split_at(count);
-        *rest = tail;
+        let row = take_until(rest, self.groups[n].cloud.end);
         Fours { cloud: self, i, chunks: row.chunks(4), arithmetic: a }
     }
 
@@ -155,6 +149,19 @@ impl FlowCloud {
             run_hot_on(self.plane, Block { pass, first: first + start, out });
         });
     }
+}
+
+/// Takes the neighbours before row `end` of the cloud, where a group ends, out of what is left of a row that is ordered by groups.
+#[inline(always)]
+pub(super) fn take_until<'a>(rest: &mut &'a [u32], end: usize) -> &'a [u32] {
+    let end = end as u32;
+    let count = match rest.last() {
+        Some(&last) if last >= end => rest.partition_point(|&j| j < end),
+        _ => rest.len(),
+    };
+    let (row, tail) = rest.split_at(count);
+    *rest = tail;
+    row
 }
 
 /// The part of a row that lies in a range of whole bodies: rows are ordered by bodies.

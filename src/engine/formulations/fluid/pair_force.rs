@@ -10,6 +10,7 @@
 use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group};
+use super::near::take_until;
 use super::pair_sums::{Between, Forces, Pairs};
 use super::record::{Own, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
@@ -29,9 +30,9 @@ pub(super) struct PairForce<'a> {
 }
 
 /// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every particle.
-struct ForceRows<'a> {
-    written: TermRows<'a>,
-    parts: &'a mut [DVec3],
+pub(super) struct ForceRows<'a> {
+    pub written: TermRows<'a>,
+    pub parts: &'a mut [DVec3],
 }
 
 impl Split for ForceRows<'_> {
@@ -130,12 +131,11 @@ impl Rows<'_> {
             let mut forces = Forces::<D>::ZERO;
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
-                let Some(&last) = rest.last() else { break };
+                if rest.is_empty() {
+                    break;
+                }
                 let (other, viscosity) = (&groups[n], factor * viscosities[n]);
-                let end = other.cloud.end as u32;
-                let count = if last < end { rest.len() } else { rest.partition_point(|&j| j < end) };
-                let (row, tail) = rest.split_at(count);
-                rest = tail;
+                let row = take_until(&mut rest, other.cloud.end);
                 if row.is_empty() {
                     continue;
                 }

@@ -3,6 +3,7 @@
 use super::cloud::FlowCloud;
 use super::kernel::FluidKernel;
 use super::record::{Four, MASKS, Own, as_rows, dot, filled_up};
+use super::viscosities::{NONE, PLAIN, WITH_SPIN};
 use crate::pair::{FourPairs, Room};
 use crate::parallel::{FourLanes, Lanes4};
 
@@ -17,11 +18,6 @@ pub(super) struct Pairs<'a, const D: usize> {
     /// Viscosity between the two with the factor of friction, Pa s.
     pub viscosity: f64,
 }
-
-/// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
-const NONE: u8 = 0;
-const PLAIN: u8 = 1;
-const WITH_SPIN: u8 = 2;
 
 /// What the neighbours of a particle do to it, per volume of it and in the lanes of the fours.
 pub(super) struct Forces<const D: usize> {
@@ -132,11 +128,7 @@ impl<const D: usize> Pairs<'_, D> {
 
     /// The friction with these neighbours.
     fn friction(&self) -> u8 {
-        match (self.viscosity > 0.0, self.cloud.viscosities.spin) {
-            (false, _) => NONE,
-            (true, false) => PLAIN,
-            (true, true) => WITH_SPIN,
-        }
+        self.cloud.viscosities.friction(self.viscosity)
     }
 
     /// Adds all neighbours.

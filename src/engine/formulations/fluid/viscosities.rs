@@ -5,6 +5,11 @@ use super::cloud::{Group, Role};
 /// Least kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a flow has other losses.
 const LEAST: f64 = 1e-4;
 
+/// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
+pub(super) const NONE: u8 = 0;
+pub(super) const PLAIN: u8 = 1;
+pub(super) const WITH_SPIN: u8 = 2;
+
 /// The viscosity between each two groups, Pa s.
 #[derive(Debug)]
 pub(super) struct Viscosities {
@@ -35,6 +40,16 @@ impl Viscosities {
         let count = self.starts.len();
         let at = self.starts.iter().position(|&start| start == group.cloud.start).unwrap_or(0);
         &self.values[at * count..(at + 1) * count]
+    }
+
+    /// The friction of pairs with that viscosity, Pa s.
+    #[inline(always)]
+    pub fn friction(&self, viscosity: f64) -> u8 {
+        match (viscosity > 0.0, self.spin) {
+            (false, _) => NONE,
+            (true, false) => PLAIN,
+            (true, true) => WITH_SPIN,
+        }
     }
 
     /// Factor of mu_ij w_ij in the friction of a pair.

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use super::super::cloud::{FlowCloud, Group};
 use super::super::kernel::{KernelLoop, PairShape};
+use super::super::near::take_until;
 use super::land::{FIXED, Landing, stride};
 use super::pairs::{Pairs, Sums};
 use super::record::{Own, pack_states};
@@ -162,15 +163,12 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
             let mut rest = near.row(first + k);
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
-                let Some(&last) = rest.last() else { break };
-                let (other, end) = (&groups[n], groups[n].cloud.end as u32);
-                let in_group = if last < end { rest.len() } else { rest.partition_point(|&j| j < end) };
-                let (row, tail) = rest.split_at(in_group);
-                rest = tail;
-                of_block.viscosity = factor * viscosities[n];
-                if row.is_empty() {
-                    continue;
+                if rest.is_empty() {
+                    break;
                 }
+                let other = &groups[n];
+                let row = take_until(&mut rest, other.cloud.end);
+                of_block.viscosity = factor * viscosities[n];
                 let terms = terms.filter(|_| other.cloud.start == group.cloud.start);
                 for chunk in row.chunks(CHUNK) {
                     of_block.fill(a, chunk, terms.is_some_and(|terms| terms.reads.kernel), pairs);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::pair_force::PARTS;
+use super::super::pair_force::{ForceRows, PARTS};
 use super::table::Table;
 use crate::pair::TermRows;
 use crate::parallel::{Lanes8, Split, for_each_block};
@@ -25,30 +25,13 @@ pub(super) struct Landing<'a> {
     pub forces: &'a [Lanes8],
 }
 
-struct Rows<'a> {
-    written: TermRows<'a>,
-    parts: &'a mut [DVec3],
-}
-
-impl Split for Rows<'_> {
-    fn rows(&self) -> usize {
-        self.written.rows()
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let (written, written_rest) = self.written.split(at);
-        let (parts, parts_rest) = self.parts.split_at_mut(PARTS * at);
-        (Self { written, parts }, Self { written: written_rest, parts: parts_rest })
-    }
-}
-
 impl Landing<'_> {
     /// Writes the forces, [`PARTS`] parts of each, and what the terms make.
     pub fn run(&self, written: TermRows<'_>, parts: &mut [DVec3]) {
         let terms = written.terms();
         let stride = stride(terms);
-        for_each_block(Rows { written, parts }, &mut Vec::new(), &|first, rows: Rows<'_>| {
-            let Rows { mut written, parts } = rows;
+        for_each_block(ForceRows { written, parts }, &mut Vec::new(), &|first, rows: ForceRows<'_>| {
+            let ForceRows { mut written, parts } = rows;
             for k in 0..written.rows() {
                 let (block, lane) = self.table.place(self.first_row + first + k);
                 let sums = &self.forces[(block - self.first_block) * stride..][..stride];

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::super::cloud::FlowCloud;
 use super::super::kernel::PairShape;
+use super::super::viscosities::{NONE, PLAIN, WITH_SPIN};
 use super::record::{Other, Own, Packed, Units, dot};
 use super::table::Rows;
 use crate::pair::{BlockPairs, EightPairs};
@@ -41,11 +42,6 @@ impl Sums {
         Self { pressure: [Lanes8::ZERO; 3], viscous: [Lanes8::ZERO; 3], wall: [Lanes8::ZERO; 3] };
 }
 
-/// Friction that goes into the sums of a loop: none, without spins, and corrected by these.
-const NONE: u8 = 0;
-const PLAIN: u8 = 1;
-const WITH_SPIN: u8 = 2;
-
 impl<'a, K: PairShape> Pairs<'a, K> {
     #[inline(always)]
     pub fn new<A: EightLanes>(
@@ -70,11 +66,7 @@ impl<'a, K: PairShape> Pairs<'a, K> {
 
     #[inline(always)]
     fn friction(&self) -> u8 {
-        match (self.viscosity > 0.0, self.cloud.viscosities.spin) {
-            (false, _) => NONE,
-            (true, false) => PLAIN,
-            (true, true) => WITH_SPIN,
-        }
+        self.cloud.viscosities.friction(self.viscosity)
     }
 
     /// Puts the geometry of the pairs with some neighbours into `kept`.

@@ -64,8 +64,7 @@ pub(super) fn pack(packed: &mut Vec<Packed>, records: &[Record], units: &Units) 
     for_each_block((&mut packed[..], records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
         for (packed, record) in packed.iter_mut().zip(records) {
             packed.place = units.place(record.position());
-            packed.volume = record.volume() as f32;
-            packed.move_like(record);
+            packed.take_state(record);
         }
     });
 }
@@ -83,15 +82,15 @@ pub(super) fn pack_places(packed: &mut Vec<Packed>, positions: &[DVec3], units: 
 pub(super) fn pack_states(packed: &mut [Packed], records: &[Record]) {
     for_each_block((packed, records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
         for (packed, record) in packed.iter_mut().zip(records) {
-            packed.volume = record.volume() as f32;
-            packed.move_like(record);
+            packed.take_state(record);
         }
     });
 }
 
 impl Packed {
     #[inline(always)]
-    fn move_like(&mut self, record: &Record) {
+    fn take_state(&mut self, record: &Record) {
+        self.volume = record.volume() as f32;
         let [x, y, z, pressure] = record.motion.0;
         self.velocity = [x as f32, y as f32, z as f32];
         self.pressure = pressure as f32;

@@ -6,7 +6,8 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::neighbors::{Buckets, Periodic, bounds};
+use super::super::cells::sort_into_cells;
+use crate::neighbors::{Buckets, Periodic};
 use crate::parallel::EIGHT;
 
 /// Particles that are halved together.
@@ -116,31 +117,6 @@ impl Table {
     pub fn of_fluid(&self, n: usize) -> std::ops::Range<usize> {
         (if n == 0 { 0 } else { self.ends[n - 1] })..self.ends[n]
     }
-}
-
-/// Sorts positions into cells of at least that length, m, but not into more cells than there are particles.
-fn sort_into_cells(cells: &mut Buckets, positions: &[DVec3], length: f64, periodic: &Periodic) {
-    let (low, high) = bounds(positions);
-    let low = DVec3::select(glam::BVec3::from_array(periodic.axes()), periodic.min(), low);
-    let high = DVec3::select(glam::BVec3::from_array(periodic.axes()), low + periodic.lengths(), high);
-    let extent = (high - low).max(DVec3::ZERO);
-    let mut length = length;
-    let counts = loop {
-        let counts = (extent / length).to_array().map(|cells| cells.floor() as usize + 1);
-        let product = counts.iter().fold(1_usize, |product, &n| product.saturating_mul(n));
-        if product <= positions.len() + 64 {
-            break counts;
-        }
-        length *= 2.0;
-    };
-    let [nx, ny, nz] = counts;
-    let key = |x: DVec3| {
-        let x = if periodic.any() { periodic.wrap(x) } else { x };
-        let at = (x - low) / length;
-        let [i, j, k] = [(at.x, nx), (at.y, ny), (at.z, nz)].map(|(at, n)| (at as usize).min(n - 1));
-        ((k * ny + j) * nx + i) as u32
-    };
-    cells.sort(positions, nx * ny * nz, key);
 }
 
 /// Halves points until eight are left, in a box of edges up to `limit`, m.

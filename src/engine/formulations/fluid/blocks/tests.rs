@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::super::tests::{column, simulation};
 use crate::simulation::Simulation;
-use crate::world::{Density, Force, ParticleId, Position};
+use crate::world::{Density, Force, Mass, ParticleId, Position, Velocity};
 
 /// A fluid that moves in a tank: friction goes without the spin, with it, or there is none.
 fn tank(dimension: &str, viscosity: f64, wall: &str, fluid: &str) -> String {
@@ -130,6 +130,7 @@ fn sparse_and_distant_flows_go_on() {
         let (a, b) = (by_id::<Position>(&double), by_id::<Position>(&single));
         let worst = a.iter().zip(&b).map(|(a, b)| a.0.distance(b.0)).fold(0.0, f64::max);
         assert!(worst < 1e-5, "{x}: {worst:e}");
+        assert!(single.summary().removed_of.contains_key("water"), "some have left the domain");
     }
 }
 
@@ -168,9 +169,41 @@ fn still_water_stays_still() {
     let double = scene.replace("precision: Mixed, ", "");
     let speed = |scene: &str| {
         let sim = after(scene, 200);
-        column::<crate::world::Velocity>(&sim, 0).iter().map(|v| v.0.length()).fold(0.0, f64::max)
+        column::<Velocity>(&sim, 0).iter().map(|v| v.0.length()).fold(0.0, f64::max)
     };
     let (double, single) = (speed(&double), speed(&scene));
     // Twelve layers: 1.2e-6 of gravity in a second.
     assert!((single - double).abs() < 1.2e-5, "{single:e} {double:e}");
+}
+
+/// A drop that flies and turns keeps its momenta and its energy, and turns its motion into heat of friction alone.
+#[test]
+fn a_drop_that_turns_keeps_momenta_and_energy() {
+    for viscosity in [0.0, 2.0] {
+        let mut sim = simulation(&format!(
+            r#"(precision: Mixed, dimension: Two,
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0, viscosity: {viscosity:?})}},
+                bodies: [(name: "water", material: "water", shape: Sphere(center: (0, 0), radius: 0.5), spacing: 0.05, formulation: Fluid)],
+                conditions: [InitialVelocity(on: Select(body: "water"), value: ("3 - 2*y", "2*x"))],
+                time: (end: 1.0))"#
+        ));
+        let momenta = |sim: &Simulation| {
+            let (x, v) = (column::<Position>(sim, 0), column::<Velocity>(sim, 0));
+            let m = column::<Mass>(sim, 0);
+            let sum = |of: &dyn Fn(usize) -> DVec3| (0..x.len()).map(of).sum::<DVec3>();
+            let mass: f64 = m.iter().map(|m| m.0).sum();
+            let (middle, mean) = (sum(&|k| m[k].0 * x[k].0) / mass, sum(&|k| m[k].0 * v[k].0) / mass);
+            (mean, sum(&|k| m[k].0 * (x[k].0 - middle).cross(v[k].0 - mean)).z)
+        };
+        sim.run(|sim| sim.clock().step < 1).expect("a run");
+        let (velocity, spin) = momenta(&sim);
+        sim.run(|sim| sim.clock().step < 200).expect("a run");
+        let (later_velocity, later_spin) = momenta(&sim);
+        // Roundings of the forces of 200 steps.
+        assert!(velocity.distance(later_velocity) < 1e-7 * velocity.length(), "{velocity} {later_velocity}");
+        assert!((later_spin / spin - 1.0).abs() < 1e-6, "{spin} {later_spin}");
+        let error = sim.ledger().relative_error().abs();
+        assert!(error < 1e-4, "{error:e}");
+        assert!(sim.ledger().total_named("viscosity") >= 0.0);
+    }
 }
