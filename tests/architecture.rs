@@ -275,9 +275,23 @@ const LAYERS: &[&str] = &[
     "notation",
 ];
 
-/// Folders whose files must not import each other in circles.
-const WITHOUT_CIRCLES: &[&str] =
-    &["formulations/total_lagrangian", "contact", "solids", "symmetry", "assembly"];
+/// Folders whose files and folders must not import each other in circles.
+const WITHOUT_CIRCLES: &[&str] = &[
+    "formulations/total_lagrangian",
+    "contact",
+    "contact/laws",
+    "contact/response",
+    "contact/bodies",
+    "contact/active",
+    "contact/particles",
+    "contact/tools",
+    "contact/skins",
+    "contact/system",
+    "contact/plan",
+    "solids",
+    "symmetry",
+    "assembly",
+];
 
 /// The text of a file of the engine without comments and tests; none for a file of tests.
 fn without_tests(path: &Path) -> Option<String> {
@@ -330,19 +344,40 @@ fn imports_of_the_engine_go_down_the_list_of_modules() {
     assert!(imports > 500, "only {imports} imports are found");
 }
 
-#[test]
-fn files_of_a_folder_import_each_other_without_circles() {
-    for folder in WITHOUT_CIRCLES {
-        let folder = root().join("src/engine").join(folder);
-        let mut open: Vec<(String, Vec<String>)> = Vec::new();
-        for path in
-            entries(&folder).iter().filter(|path| name(path).ends_with(".rs") && name(path) != "mod.rs")
-        {
-            if let Some(text) = without_tests(path) {
-                let imports = words_after(&text, "super::").into_iter().map(str::to_owned).collect();
-                open.push((name(path).trim_end_matches(".rs").to_owned(), imports));
-            }
+/// The modules of `folder` that a file of it imports: `path` leads there from the folder.
+fn imports_within(folder: &str, path: &Path) -> Vec<String> {
+    let Some(text) = without_tests(path) else { return Vec::new() };
+    let inside = path.strip_prefix(root().join("src/engine").join(folder)).expect("a file of the folder");
+    let above = "super::".repeat(inside.components().count());
+    let absolute = format!("crate::{}::", folder.replace('/', "::"));
+    let relative = words_after(&text, &above).into_iter().filter(|word| *word != "super");
+    relative.chain(words_after(&text, &absolute)).map(str::to_owned).collect()
+}
+
+/// Every file and folder in a folder of the engine, without the extension, and what it imports of the others.
+fn modules_and_imports(folder: &str) -> Vec<(String, Vec<String>)> {
+    let mut modules = Vec::new();
+    for path in entries(&root().join("src/engine").join(folder)) {
+        let own = name(&path).trim_end_matches(".rs").to_owned();
+        if own == "mod" || own.ends_with("tests") {
+            continue;
         }
+        let mut files = Vec::new();
+        if path.is_dir() {
+            collect_sources(&path, &mut files)
+        } else {
+            files.push(path)
+        }
+        let imports = files.iter().flat_map(|file| imports_within(folder, file)).collect();
+        modules.push((own, imports));
+    }
+    modules
+}
+
+#[test]
+fn modules_of_a_folder_import_each_other_without_circles() {
+    for folder in WITHOUT_CIRCLES {
+        let mut open = modules_and_imports(folder);
         // What imports nothing that is still open is closed, until all are closed or wait for each other.
         loop {
             let names: Vec<String> = open.iter().map(|(name, _)| name.clone()).collect();
@@ -355,6 +390,24 @@ fn files_of_a_folder_import_each_other_without_circles() {
             }
         }
         let waiting: Vec<&str> = open.iter().map(|(name, _)| name.as_str()).collect();
-        assert!(waiting.is_empty(), "{}: circles among {}", shown(&folder), waiting.join(", "));
+        assert!(waiting.is_empty(), "{folder}: circles among {}", waiting.join(", "));
     }
+}
+
+#[test]
+fn folders_of_contact_import_only_those_above_them_in_its_list() {
+    let list = read(&root().join("src/engine/contact/mod.rs"));
+    let folders: Vec<&str> =
+        list.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';')).collect();
+    let place = |name: &str| folders.iter().position(|folder| *folder == name);
+    let mut imports = 0;
+    for (own, others) in modules_and_imports("contact") {
+        for other in others.iter().filter(|other| **other != own) {
+            // What the list itself exports has no place in it.
+            let Some(at) = place(other) else { continue };
+            imports += 1;
+            assert!(Some(at) < place(&own), "`{own}` stands above `{other}` and imports it");
+        }
+    }
+    assert!(imports > 30, "only {imports} imports are found");
 }

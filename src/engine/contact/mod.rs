@@ -1,50 +1,41 @@
 //! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of [`register`].
+//!
+//! Folders stand in the order in which they use each other, and import only those above them.
 
-mod hertz;
-mod images;
-mod law;
-mod least;
-mod meetings;
-mod members;
-mod memory;
-mod nearby;
-mod node_view;
-mod pace;
-mod particles;
-mod penalty;
-mod plan;
-mod reaction;
-mod registry;
+/// Normal forces as functions of the overlap.
+mod laws;
+
+/// The force of one contact with damping and friction, its history and energy, and the time step that it allows.
 mod response;
-mod restitution;
-mod search;
-mod shape;
-mod sides;
-mod sieve;
-mod skin_between;
-mod skin_foot;
-mod skin_near;
-mod skin_on_tool;
-mod skin_pair;
-mod skin_points;
-mod skin_region;
-mod skins_of;
-mod start;
-mod stiffness;
-mod surface;
+
+/// Particles, points of rigid bodies and their surfaces in their current state.
+mod bodies;
+
+/// The active contacts among the candidates of a step, and the sums of their forces on particles.
+mod active;
+
+/// Contact of particles with particles.
+mod particles;
+
+/// Contact of particles, and of the points of rigid bodies, with the surfaces of rigid bodies.
+mod tools;
+
+/// Contact of the surfaces of deformable bodies with each other and with rigid bodies.
+mod skins;
+
+/// The systems of the step.
 mod system;
-mod tally;
+
+/// From the contacts of a scene to these systems.
+mod plan;
+
 #[cfg(test)]
 mod tests;
-mod touched;
-mod touching;
 
-pub use hertz::{Hertz, PlaneForce};
-pub use law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
-pub use penalty::Penalty;
+pub use bodies::CONTACT;
+pub use laws::{ContactLaw, ContactPair, Hertz, NormalForce, Penalty, PlaneForce, Spring, Touch};
+pub use laws::{damping_ratio, restitution};
 pub use plan::{MakeLaw, add_systems};
-pub use restitution::{damping_ratio, restitution};
-pub use system::CONTACT;
 
 use crate::plugin::Registry;
 

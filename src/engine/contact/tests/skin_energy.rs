@@ -5,10 +5,9 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::simulation;
-use crate::contact::law::{ContactLaw, ContactPair};
-use crate::contact::penalty::Penalty;
+use crate::contact::laws::{ContactLaw, ContactPair, Penalty};
 use crate::contact::response::Interaction;
-use crate::contact::skin_pair::SkinPair;
+use crate::contact::skins::SkinPair;
 use crate::scene::{ContactSurface, Dimension};
 use crate::simulation::Simulation;
 use crate::skins::SkinColumns;

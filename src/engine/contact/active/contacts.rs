@@ -1,0 +1,217 @@
+//! The active contacts of a step and their forces. Both are computed in parallel and kept in the order of the
+//! candidates. Sums are taken over blocks of contacts, so that nothing depends on the number of threads or on the age of the list of candidates.
+
+use super::filter::{BLOCKS_OF_TEST, Found, keep};
+use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
+use crate::parallel::{BLOCK, BlockSum, block_count, for_each_block_in_tasks, for_each_heavy_block};
+
+/// In the place of a number for candidates that do not touch.
+const NONE: u32 = u32::MAX;
+
+/// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is what else the candidates tell.
+pub(in crate::contact) struct ActiveContacts<T, P, E> {
+    /// As long as the list of candidates; in each block those that touch come first.
+    slots: Vec<(PairKey, T)>,
+    found: Vec<Found<E>>,
+    met: Vec<(PairKey, T)>,
+    numbers: Numbers,
+    pub histories: Histories,
+    pushes: Vec<P>,
+    sums: Vec<ContactEnergy>,
+}
+
+/// Which contact belongs to a candidate.
+#[derive(Default)]
+pub(in crate::contact) struct Numbers {
+    /// Of every candidate its number among those of its block that touch.
+    within: Vec<u32>,
+    /// Of every block the number of its first contact.
+    first: Vec<u32>,
+}
+
+impl Numbers {
+    /// Number of the contact of a candidate, if it touches.
+    #[inline]
+    pub fn of(&self, candidate: u32) -> Option<usize> {
+        let candidate = candidate as usize;
+        let within = self.within[candidate];
+        (within != NONE).then(|| (self.first[candidate / BLOCK] + within) as usize)
+    }
+}
+
+impl<T, P, E> Default for ActiveContacts<T, P, E> {
+    fn default() -> Self {
+        Self {
+            slots: Vec::new(),
+            found: Vec::new(),
+            met: Vec::new(),
+            numbers: Numbers::default(),
+            histories: Histories::default(),
+            pushes: Vec::new(),
+            sums: Vec::new(),
+        }
+    }
+}
+
+impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockSum + Sync>
+    ActiveContacts<T, P, E>
+{
+    /// Makes room for that many candidates. What is not used is not touched: it takes addresses, and no memory.
+    pub fn reserve(&mut self, count: usize) {
+        fn room<V>(list: &mut Vec<V>, count: usize) {
+            list.reserve(count.saturating_sub(list.len()));
+        }
+        let blocks = block_count(count);
+        room(&mut self.slots, count);
+        room(&mut self.met, count);
+        room(&mut self.pushes, count);
+        room(&mut self.numbers.within, count);
+        room(&mut self.numbers.first, blocks);
+        room(&mut self.found, blocks);
+        room(&mut self.sums, blocks);
+        self.histories.reserve(count);
+    }
+
+    /// Finds out which candidates, ascending, touch. Returns what `test` adds up.
+    pub fn find(&mut self, candidates: &[PairKey], test: impl Fn(PairKey, &mut E) -> Option<T> + Sync) -> E {
+        if self.slots.capacity() < candidates.len() {
+            self.reserve(2 * candidates.len());
+        }
+        let Self { slots, found, numbers, .. } = self;
+        slots.resize(slots.len().max(candidates.len()), Default::default());
+        numbers.within.resize(candidates.len(), NONE);
+        let slots = &mut slots[..candidates.len()];
+        let rows = (candidates, &mut slots[..], &mut numbers.within[..]);
+        type Rows<'a, T> = (&'a [PairKey], &'a mut [(PairKey, T)], &'a mut [u32]);
+        let all = for_each_block_in_tasks(BLOCKS_OF_TEST, rows, found, &|_, rows: Rows<'_, T>| {
+            let mut found = Found { count: 0, extra: E::default() };
+            let (candidates, slots, within) = rows;
+            for (&key, number) in candidates.iter().zip(within) {
+                *number = NONE;
+                if let Some(met) = test(key, &mut found.extra) {
+                    slots[found.count] = (key, met);
+                    *number = found.count as u32;
+                    found.count += 1;
+                }
+            }
+            found
+        });
+        numbers.first.clear();
+        let mut first = 0;
+        for found in &*found {
+            numbers.first.push(first);
+            first += found.count as u32;
+        }
+        keep(slots, found, all.count, &mut self.met);
+        all.extra
+    }
+
+    /// The contacts of the step.
+    pub fn met(&self) -> &[(PairKey, T)] {
+        &self.met
+    }
+
+    /// Which of them belongs to a candidate.
+    pub fn numbers(&self) -> &Numbers {
+        &self.numbers
+    }
+
+    /// What they do.
+    pub fn pushes(&self) -> &[P] {
+        &self.pushes
+    }
+
+    /// Works out what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
+    /// lose.
+    pub fn respond(
+        &mut self,
+        each: impl Fn(PairKey, &T, &History, &mut ContactEnergy) -> (History, P) + Sync,
+        end: impl Fn(PairKey, &History, &mut ContactEnergy) + Sync,
+    ) -> ContactEnergy {
+        let Self { met, pushes, histories, sums, .. } = self;
+        pushes.resize(met.len(), P::default());
+        let (old, new) = histories.generations(met.len());
+        let rows = (&met[..], new, &mut pushes[..]);
+        type Rows<'a, T, P> = (&'a [(PairKey, T)], &'a mut [(PairKey, History)], &'a mut [P]);
+        let mut energies = for_each_heavy_block(rows, sums, &|_, (met, new, pushes): Rows<'_, T, P>| {
+            let mut energies = ContactEnergy::default();
+            let mut old = Passing::new(old, met[0].0);
+            for (((key, met), new), push) in met.iter().zip(new).zip(pushes) {
+                let before = old.at(*key).map_or(History::default(), |entry| entry.1);
+                let (history, pushed) = each(*key, met, &before, &mut energies);
+                (*new, *push) = ((*key, history), pushed);
+            }
+            energies
+        });
+        let ended = for_each_heavy_block(old, sums, &|_, old: &[(PairKey, History)]| {
+            let mut energies = ContactEnergy::default();
+            let mut met = Passing::new(met, old[0].0);
+            for (key, history) in old {
+                if met.at(*key).is_none() {
+                    end(*key, history, &mut energies);
+                }
+            }
+            energies
+        });
+        energies.add(&ended);
+        self.histories.turn();
+        energies
+    }
+}
+
+/// A list, ascending by pair, that is passed through in its order.
+struct Passing<'a, V>(&'a [(PairKey, V)]);
+
+impl<'a, V> Passing<'a, V> {
+    /// From that pair on.
+    fn new(list: &'a [(PairKey, V)], from: PairKey) -> Self {
+        Self(&list[list.partition_point(|entry| entry.0 < from)..])
+    }
+
+    /// The entry of a pair, if there is one. Pairs that are asked for ascend.
+    fn at(&mut self, key: PairKey) -> Option<&'a (PairKey, V)> {
+        while self.0.first().is_some_and(|entry| entry.0 < key) {
+            self.0 = &self.0[1..];
+        }
+        self.0.first().filter(|entry| entry.0 == key)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A step in which these pairs touch; returns which were remembered, and which have ended.
+    fn step(contacts: &mut ActiveContacts<u32, u32, ()>, touching: &[PairKey]) -> (Vec<PairKey>, usize) {
+        let candidates: Vec<PairKey> = (0..200).flat_map(|i| [(i, 0), (i, 2)]).collect();
+        contacts.find(&candidates, |key, ()| touching.contains(&key).then_some(key.0 + key.1));
+        assert!(contacts.met().iter().map(|met| met.0).eq(touching.iter().copied()));
+        for (candidate, key) in (0..).zip(&candidates) {
+            let number = contacts.numbers().of(candidate);
+            assert_eq!(number, touching.iter().position(|touching| touching == key));
+        }
+        let energies = contacts.respond(
+            |key, found, before, _| {
+                assert_eq!(*found, key.0 + key.1);
+                let overlap = if before.is_none() { 1.0 } else { before.overlap + 1.0 };
+                (History { overlap, ..History::default() }, *found)
+            },
+            |_, _, energies| energies.stored += 1.0,
+        );
+        assert!(contacts.pushes().iter().copied().eq(touching.iter().map(|key| key.0 + key.1)));
+        let entries = contacts.histories.entries().iter();
+        let again = entries.filter(|entry| entry.1.overlap > 1.0).map(|entry| entry.0);
+        (again.collect(), energies.stored as usize)
+    }
+
+    #[test]
+    fn contacts_that_end_are_met_once_and_others_are_remembered() {
+        let mut contacts = ActiveContacts::default();
+        assert_eq!(step(&mut contacts, &[(1, 0), (3, 2), (7, 0)]), (vec![], 0));
+        assert_eq!(step(&mut contacts, &[(2, 2), (3, 2), (70, 0), (199, 2)]), (vec![(3, 2)], 2));
+        assert_eq!(step(&mut contacts, &[]), (vec![], 4));
+        let all: Vec<PairKey> = (0..200).map(|i| (i, 2)).collect();
+        assert_eq!(step(&mut contacts, &all), (vec![], 0));
+        assert_eq!(step(&mut contacts, &all[50..]), (all[50..].to_vec(), 50));
+    }
+}

@@ -1,0 +1,14 @@
+//! The active contacts among the candidates of a step, with their histories and forces, and the sums of the forces on particles.
+
+mod least;
+
+mod filter;
+
+mod contacts;
+
+mod nodes;
+
+pub(super) use contacts::ActiveContacts;
+pub(super) use filter::Filter;
+pub(super) use least::Least;
+pub(super) use nodes::{ContactNodes, End, Pull};

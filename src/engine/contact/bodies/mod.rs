@@ -1,0 +1,21 @@
+//! The bodies in contact in their current state: their motion bounds, particles with the ellipsoids into which they deform, points and surfaces.
+
+mod error;
+
+mod motion;
+
+pub(super) mod shape;
+
+mod members;
+
+mod node_view;
+
+mod sides;
+
+pub use error::CONTACT;
+pub(super) use error::failed;
+pub(super) use members::{MemberColumns, Members, Particles};
+pub(super) use motion::MotionBounds;
+pub(super) use node_view::{NodeMotion, NodeView};
+pub(super) use shape::{Nearness, of_pair};
+pub(super) use sides::{Nodes, Sides};

@@ -1,0 +1,120 @@
+//! Nodes that touch a surface: particles of a deformable body, or points of a rigid one.
+
+use glam::DVec3;
+
+use super::members::Members;
+use super::shape::{Nearness, on_surface};
+use crate::rigid::RigidBody;
+use crate::solids::LocalMotion;
+
+/// The nodes of a body as they are now.
+pub(in crate::contact) enum NodeView<'a> {
+    /// Particles.
+    Particles(Members<'a>),
+    /// The points of a rigid body.
+    Rigid(&'a RigidBody),
+}
+
+impl NodeView<'_> {
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Particles(members) => members.len(),
+            Self::Rigid(body) => body.nodes.points.len(),
+        }
+    }
+
+    /// Whether a node takes part: a removed particle does not.
+    pub fn is_there(&self, i: usize) -> bool {
+        match self {
+            Self::Particles(members) => members.is_there(i),
+            Self::Rigid(_) => true,
+        }
+    }
+
+    /// Whether nothing moves a node but conditions, such as a particle of a wall.
+    pub fn is_held(&self, i: usize) -> bool {
+        match self {
+            Self::Particles(members) => members.is_held(i),
+            Self::Rigid(_) => false,
+        }
+    }
+
+    /// Where a node is, m.
+    pub fn position(&self, i: usize) -> DVec3 {
+        match self {
+            Self::Particles(members) => members.position(i),
+            Self::Rigid(body) => body.place(body.nodes.points[i]),
+        }
+    }
+
+    /// Radius of a node in the reference configuration, m.
+    pub fn radius(&self, i: usize) -> f64 {
+        match self {
+            Self::Particles(members) => members.radius(i),
+            Self::Rigid(body) => body.nodes.radius,
+        }
+    }
+
+    /// Length that a node stands for, m.
+    pub fn size(&self, i: usize) -> f64 {
+        match self {
+            Self::Particles(members) => 2.0 * members.radius(i),
+            Self::Rigid(body) => body.nodes.spacing,
+        }
+    }
+
+    /// How near a node is to a surface at a signed distance, m, with that outward normal.
+    pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Nearness {
+        let shape = match self {
+            Self::Particles(members) => members.shape(i),
+            Self::Rigid(body) => (body.nodes.radius, None),
+        };
+        on_surface(distance, normal, shape)
+    }
+
+    /// The place at which both bodies are pushed: where the material touches, `arm` beside the particle in the reference configuration. A sphere
+    /// has no spin: it is pushed where it is, so that angular momentum is kept; a rigid body is pushed at the surface.
+    pub fn place(&self, i: usize, position: DVec3, arm: DVec3, on_surface: impl FnOnce() -> DVec3) -> DVec3 {
+        match self {
+            Self::Particles(members) => position + members.carry(i, arm),
+            Self::Rigid(_) => on_surface(),
+        }
+    }
+
+    /// How the material of a node moves, if that is asked for.
+    pub fn motion(&self, i: usize, moving: bool) -> NodeMotion<'_> {
+        match self {
+            Self::Particles(members) => NodeMotion::Particle(members.local_motion(i, moving)),
+            Self::Rigid(body) => NodeMotion::Rigid(body),
+        }
+    }
+}
+
+/// How the material of a node moves.
+pub(in crate::contact) enum NodeMotion<'a> {
+    Particle(LocalMotion),
+    Rigid(&'a RigidBody),
+}
+
+impl NodeMotion<'_> {
+    /// Velocity at `place`, which is `arm` beside a particle, m/s.
+    pub fn velocity(&self, arm: DVec3, place: DVec3) -> DVec3 {
+        match self {
+            Self::Particle(around) => around.velocity(arm),
+            Self::Rigid(body) => body.velocity_at(place),
+        }
+    }
+
+    /// The inverse mass there along a direction, 1/kg.
+    pub fn inverse_mass(&self, arm: DVec3, place: DVec3) -> impl Fn(DVec3) -> f64 {
+        let mobility = match self {
+            Self::Particle(around) => around.mobility(arm),
+            Self::Rigid(_) => DVec3::ZERO,
+        };
+        move |n: DVec3| match self {
+            Self::Particle(_) => mobility.dot(n * n),
+            Self::Rigid(body) => body.inverse_mass_at(place, n),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The two sides of a contact with a rigid body: nodes and a surface.
+
+use glam::DVec3;
+
+use super::error::failed;
+use super::members::{MemberColumns, Particles};
+use super::node_view::NodeView;
+use crate::neighbors::Periodic;
+use crate::rigid::RigidBody;
+use crate::schedule::{Resources, StepError};
+use crate::world::{BodyId, World};
+
+/// Where the nodes are.
+#[derive(Clone)]
+pub(in crate::contact) enum Nodes {
+    /// Particles.
+    Particles(Particles),
+    /// The points of a rigid body.
+    Rigid,
+}
+
+impl Nodes {
+    /// The particles, if they are.
+    pub fn particles(&self) -> Option<&Particles> {
+        match self {
+            Self::Particles(particles) => Some(particles),
+            Self::Rigid => None,
+        }
+    }
+}
+
+/// The nodes of one body and the surface of another.
+#[derive(Clone)]
+pub(in crate::contact) struct Sides {
+    /// Body with the nodes.
+    pub first: BodyId,
+    pub nodes: Nodes,
+    /// Rigid body with the surface.
+    pub second: BodyId,
+    /// Periodic axes: the image of a node that is nearest to the centre of the surface's body touches it.
+    pub periodic: Periodic,
+}
+
+/// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without radius.
+const RADIUS_SHARE: f64 = 0.5;
+const SPACING_SHARE: f64 = 0.05;
+
+impl Sides {
+    /// Calls `f` with the nodes and the body with the surface.
+    pub fn with<T>(
+        &self,
+        world: &World,
+        resources: &Resources,
+        bodies: &[RigidBody],
+        f: impl FnOnce(&NodeView<'_>, &RigidBody) -> T,
+    ) -> Result<T, StepError> {
+        let tool = find(bodies, self.second)?;
+        Ok(match &self.nodes {
+            Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
+            Nodes::Particles(particles) => {
+                let columns = MemberColumns::new(particles, world, resources)?;
+                f(&NodeView::Particles(columns.members()), tool)
+            }
+        })
+    }
+
+    /// The image of a place that is nearest to the body with the surface, m.
+    pub fn near(&self, x: DVec3, tool: &RigidBody) -> DVec3 {
+        if self.periodic.any() {
+            tool.state.center + self.periodic.minimal_image(x - tool.state.center)
+        } else {
+            x
+        }
+    }
+
+    /// Place of the first node that is deeper inside the other body than one may start, m.
+    pub fn inside(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
+        let deep = |i: usize, x: DVec3| {
+            let x = tool.reference(self.near(x, tool));
+            let overlap = nodes.radius(i) - tool.surface.closest(x).signed_distance;
+            let radius = nodes.radius(i);
+            overlap > if radius > 0.0 { RADIUS_SHARE * radius } else { SPACING_SHARE * nodes.size(i) }
+        };
+        (0..nodes.len()).map(|i| (i, nodes.position(i))).find(|&(i, x)| deep(i, x)).map(|(_, x)| x)
+    }
+}
+
+fn find(bodies: &[RigidBody], id: BodyId) -> Result<&RigidBody, StepError> {
+    let missing = || failed(format!("body {} is not rigid", id.0));
+    bodies.iter().find(|body| body.id == id).ok_or_else(missing)
+}

@@ -1,0 +1,57 @@
+//! The bodies that touch with their skins.
+
+use std::sync::Arc;
+
+use crate::contact::bodies::Particles;
+use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
+use crate::scene::ContactSurface;
+use crate::skins::Skin;
+use crate::symmetry::MirrorPlane;
+use crate::world::BodyId;
+
+/// The skins that have been made, each once for all contacts of its body.
+#[derive(Default)]
+pub(in crate::contact) struct Skins {
+    known: Vec<(BodyId, Option<Arc<Skin>>)>,
+}
+
+/// Why a body touches with its particles.
+type Reason = &'static str;
+
+impl Skins {
+    /// The skin of a body that is not rigid; of those that have none, what the user is to be told of it.
+    pub fn of(
+        &mut self,
+        body: &BodyPlan,
+        surface: ContactSurface,
+        planes: &[MirrorPlane],
+        sim: &SimBuilder<'_>,
+    ) -> Result<Arc<Skin>, Option<Reason>> {
+        if surface == ContactSurface::Particles {
+            return Err(None);
+        }
+        if body.kind == BodyKind::Boundary {
+            return Err(Some(
+                "walls bound fluids with particles; a `Rigid` body that `Fix` holds touches with its exact surface",
+            ));
+        }
+        if !body.offers(Offer::DeformedContact) {
+            return Err(Some("its formulation carries no surface"));
+        }
+        if !Particles::of(body, sim.dimension()).deform {
+            return Err(Some("its material may fail, and cracks have no surface of their own"));
+        }
+        if sim.periodic().any() {
+            return Err(Some("the domain is periodic"));
+        }
+        if !self.known.iter().any(|(id, _)| *id == body.id) {
+            let shape = &sim.scene().bodies[body.id.0].shape;
+            let skin = Skin::of(body, shape, planes, (sim.dimension(), sim.folder()));
+            self.known.push((body.id, skin.map(Arc::new)));
+        }
+        let known = self.known.iter().find(|(id, _)| *id == body.id);
+        known
+            .and_then(|(_, skin)| skin.clone())
+            .ok_or(Some("the surface of its shape is not known in facets"))
+    }
+}

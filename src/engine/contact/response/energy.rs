@@ -1,0 +1,45 @@
+//! The energies of the contacts of two bodies.
+
+use super::interaction::Losses;
+use crate::parallel::BlockSum;
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{AccountKind, Step};
+use crate::world::BodyId;
+
+/// What the contacts of two bodies hold and have lost in a step, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::contact) struct ContactEnergy {
+    pub stored: f64,
+    pub losses: Losses,
+    /// What contacts of particles held that have been taken out.
+    pub removed: f64,
+}
+
+impl BlockSum for ContactEnergy {
+    fn add(&mut self, next: &Self) {
+        self.stored += next.stored;
+        self.losses.add(&next.losses);
+        self.removed += next.removed;
+    }
+}
+
+/// Books the contacts of all pairs: each body has half.
+pub(in crate::contact) fn book(step: &mut Step<'_>, energies: &[((BodyId, BodyId), ContactEnergy)]) {
+    let contact = step.ledger.account("contact", AccountKind::Stored);
+    let damping = step.ledger.account("contact_damping", AccountKind::Dissipated);
+    let friction = step.ledger.account("friction", AccountKind::Dissipated);
+    let bodies = || energies.iter().flat_map(|((a, b), energies)| [(*a, energies), (*b, energies)]);
+    for (body, _) in bodies() {
+        let stored =
+            bodies().filter(|(other, _)| *other == body).map(|(_, energies)| 0.5 * energies.stored).sum();
+        step.ledger.set(contact, body, stored);
+    }
+    for (body, energies) in bodies() {
+        step.ledger.add(damping, body, 0.5 * energies.losses.damping);
+        step.ledger.add(friction, body, 0.5 * energies.losses.friction);
+        if energies.removed != 0.0 {
+            let removed = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+            step.ledger.add(removed, body, 0.5 * energies.removed);
+        }
+    }
+}

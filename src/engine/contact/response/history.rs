@@ -1,0 +1,79 @@
+//! Contact history: values of a contact kept from one step to the next, by pair.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Which contact: number of a node of the first body, and number of a node of the second, or zero for its surface.
+pub(in crate::contact) type PairKey = (u32, u32);
+
+/// What a contact remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(in crate::contact) struct History {
+    /// Force of the tangential spring on the first side, N.
+    pub spring: DVec3,
+    /// Stiffness of that spring, N/m.
+    pub stiffness: f64,
+    /// Force of the dashpots on the first side, N.
+    pub dashpot: DVec3,
+    /// Depth of the overlap, m; zero where there was none.
+    pub overlap: f64,
+    /// From the particles of both sides to where the forces act, in the reference configuration, m.
+    pub arms: [DVec3; 2],
+    /// Force along the normal, N.
+    pub pressure: f64,
+}
+
+impl History {
+    /// Energy in the tangential spring, J.
+    pub fn energy(&self) -> f64 {
+        if self.stiffness > 0.0 { 0.5 * self.spring.length_squared() / self.stiffness } else { 0.0 }
+    }
+
+    /// Whether the contact was not there.
+    pub fn is_none(&self) -> bool {
+        self.overlap == 0.0
+    }
+
+    /// Whether there is nothing but an elastic force.
+    pub fn is_elastic(&self) -> bool {
+        self.spring == DVec3::ZERO && self.dashpot == DVec3::ZERO
+    }
+}
+
+/// The histories of all contacts of two bodies, ascending by pair. A new generation is written while the old one is
+/// read: what is not written again has ended.
+#[derive(Clone, Debug, Default)]
+pub(in crate::contact) struct Histories {
+    now: Vec<(PairKey, History)>,
+    next: Vec<(PairKey, History)>,
+}
+
+impl Histories {
+    /// Makes room for that many contacts.
+    pub fn reserve(&mut self, count: usize) {
+        for entries in [&mut self.now, &mut self.next] {
+            entries.reserve(count.saturating_sub(entries.len()));
+        }
+    }
+
+    /// The contacts of the last step, and room for those of this one.
+    pub fn generations(&mut self, count: usize) -> (&[(PairKey, History)], &mut [(PairKey, History)]) {
+        self.next.resize(count, Default::default());
+        (&self.now, &mut self.next)
+    }
+
+    /// Ends the step.
+    pub fn turn(&mut self) {
+        std::mem::swap(&mut self.now, &mut self.next);
+    }
+
+    /// The contacts of the last step.
+    pub fn entries(&self) -> &[(PairKey, History)] {
+        &self.now
+    }
+
+    /// Takes up the contacts of a checkpoint.
+    pub fn set(&mut self, entries: Vec<(PairKey, History)>) {
+        self.now = entries;
+    }
+}

@@ -1,0 +1,222 @@
+//! The force of one contact: spring and dashpot along the normal; spring, dashpot and Coulomb's limit in the tangential direction.
+//!
+//! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at the end of the
+//! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time step, and the
+//! restitution does not depend on the step to first order. A particle of a body is also held by its bonds, which balance the contact force f of the
+//! last step: only the change of f moves the particle. Otherwise a dashpot would pull at pressed bodies at rest, and its heat would be negative.
+
+use glam::DVec3;
+
+use super::history::History;
+use crate::contact::laws::{NormalForce, Spring, Touch};
+
+/// How two bodies act on each other where they touch.
+pub(in crate::contact) struct Interaction {
+    pub law: Box<dyn NormalForce>,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// Damping ratio of an impact.
+    pub damping_ratio: f64,
+    /// Tangential over normal stiffness (Mindlin): 2 (1 - nu)/(2 - nu).
+    pub tangential: f64,
+    /// Shares of the sides in the heat of friction.
+    pub heat: [f64; 2],
+}
+
+/// A contact as it is now.
+pub(in crate::contact) struct ContactState {
+    pub touch: Touch,
+    /// Unit vector from the second side to the first.
+    pub normal: DVec3,
+    /// d(overlap)/d(normal approach).
+    pub scale: f64,
+    /// Area of the contact over that for which the law holds.
+    pub area: f64,
+    /// From the particles of both sides to the point of contact, in the reference configuration, m.
+    pub arms: [DVec3; 2],
+    /// Velocity of the first side relative to the second at that point at mid-step, m/s.
+    pub velocity: DVec3,
+}
+
+/// What a contact does.
+pub(in crate::contact) struct Response {
+    /// Force on the first side, N.
+    pub force: DVec3,
+    pub spring: Spring,
+    pub history: History,
+}
+
+/// What a contact has turned into heat in a step, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::contact) struct Losses {
+    pub damping: f64,
+    pub friction: f64,
+}
+
+impl Interaction {
+    /// Whether nothing but the overlap counts.
+    pub fn is_elastic(&self) -> bool {
+        self.friction == 0.0 && self.damping_ratio == 0.0
+    }
+
+    /// The force; `inverse_mass` is that of both sides together along a direction, 1/kg.
+    pub fn respond(
+        &self,
+        state: &ContactState,
+        inverse_mass: impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &History,
+    ) -> Response {
+        let ContactState { touch, normal, velocity, scale, area, .. } = state;
+        let mut spring = self.law.at(touch).along(*scale).over(*area);
+        let approach = -velocity.dot(*normal);
+        spring.force *= share_of_step(touch, scale * approach * dt, before);
+        self.beside(spring, state, inverse_mass, dt, before)
+    }
+
+    /// What a contact held at the end of the last step that ends because a particle is taken out, and what its force there would have taken from the motion in the last
+    /// kick, J; the sides move against each other at that velocity, m/s.
+    pub fn held(&self, state: &ContactState, dt: f64, before: &History) -> f64 {
+        let touch = Touch { overlap: before.overlap, ..state.touch };
+        let force = before.pressure - before.dashpot.dot(state.normal);
+        self.law.at(&touch).energy - 0.5 * dt * force * state.normal.dot(state.velocity)
+    }
+
+    /// The spring of a point of a surface that remembers nothing, of an area over that for which the law holds: where it was in the last step and will be in the
+    /// next follows from the speed at which it approaches, m/s.
+    #[inline]
+    pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
+        let mut spring = self.law.at(touch).over(area);
+        let way = approach.abs() * dt;
+        spring.force *= share_of_way(touch, way);
+        spring
+    }
+
+    /// The force of a spring with all that is beside it.
+    pub fn beside(
+        &self,
+        spring: Spring,
+        state: &ContactState,
+        inverse_mass: impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &History,
+    ) -> Response {
+        let ContactState { touch, normal, velocity, scale, arms, .. } = state;
+        // Without a dashpot nobody asks for masses.
+        let inverse_mass = |n: DVec3| if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(n) };
+        let across = inverse_mass(*normal);
+        let approach = -velocity.dot(*normal);
+        let begun = self.share_of_first_step(touch, scale * approach, dt, before);
+        let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
+        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force - taken_up, dt);
+        let pressure = (spring.force + pull).max(0.0);
+        let (tangential, drag) =
+            self.tangential(state, spring.stiffness, pressure, &inverse_mass, dt, before);
+        let stiffness = self.tangential * spring.stiffness;
+        let dashpot = (pressure - spring.force) * *normal + drag;
+        let (overlap, arms) = (touch.overlap, *arms);
+        Response {
+            force: pressure * *normal + tangential + drag,
+            spring,
+            history: History { spring: tangential, stiffness, dashpot, overlap, arms, pressure },
+        }
+    }
+
+    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the share of a
+    /// step for which it is to act in the kicks around the end of its first one.
+    fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &History) -> f64 {
+        if before.is_none()
+            && approach * dt > 0.0
+            && self.law.at(&Touch { overlap: 0.0, ..*touch }).stiffness > 0.0
+        {
+            0.5 + (touch.overlap / (approach * dt)).min(1.0)
+        } else {
+            1.0
+        }
+    }
+
+    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is what the spring does to it.
+    fn dashpot(&self, stiffness: f64, inverse_mass: f64, speed: f64, force: f64, dt: f64) -> f64 {
+        if self.damping_ratio == 0.0 || inverse_mass <= 0.0 {
+            return 0.0;
+        }
+        let c = 2.0 * self.damping_ratio * self.law.damping_factor() * (stiffness / inverse_mass).sqrt();
+        let half = 0.5 * dt * inverse_mass;
+        c * (speed - half * force) / (1.0 + half * c)
+    }
+
+    /// Forces of the tangential spring and dashpot on the first side, N.
+    fn tangential(
+        &self,
+        state: &ContactState,
+        stiffness: f64,
+        pressure: f64,
+        inverse_mass: &impl Fn(DVec3) -> f64,
+        dt: f64,
+        before: &History,
+    ) -> (DVec3, DVec3) {
+        if self.friction == 0.0 {
+            return (DVec3::ZERO, DVec3::ZERO);
+        }
+        let ContactState { normal, velocity, .. } = state;
+        let stiffness = self.tangential * stiffness;
+        let slip = velocity - velocity.dot(*normal) * normal;
+        let mut spring = before.spring - before.spring.dot(*normal) * normal;
+        // A spring that gets softer keeps its stretch, one that gets stiffer its force: neither makes energy.
+        if stiffness < before.stiffness {
+            spring *= stiffness / before.stiffness;
+        }
+        spring -= stiffness * dt * slip;
+        let limit = self.friction * pressure;
+        let held = spring.length();
+        if held >= limit {
+            return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
+        }
+        let along = slip.normalize_or(spring.normalize_or_zero());
+        let taken_up = if is_held(&state.touch) { before.spring } else { DVec3::ZERO };
+        let pull = (taken_up - spring).dot(along);
+        let drag = -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), pull, dt) * along;
+        let room = limit - held;
+        (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
+    }
+}
+
+/// Whether what touches has bonds: rigid bodies have none.
+fn is_held(touch: &Touch) -> bool {
+    touch.depth.is_finite()
+}
+
+/// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a contact has acted since the sides met, with
+/// half of that force in the mean; in its last it acts until they part. Without this share a touch would miss up to an eighth of
+/// `k (v dt)^2` of its energy at either end. Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
+fn share_of_step(touch: &Touch, approach: f64, before: &History) -> f64 {
+    share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
+}
+
+/// The same, for an overlap that began or ends within the way of a step, m.
+#[inline]
+fn share_of_way(touch: &Touch, way: f64) -> f64 {
+    let overlap = touch.overlap;
+    if way > overlap && is_held(touch) { 0.5 + 0.5 * overlap / way } else { 1.0 }
+}
+
+impl Losses {
+    /// Adds those of another contact.
+    pub fn add(&mut self, other: &Self) {
+        self.damping += other.damping;
+        self.friction += other.friction;
+    }
+
+    /// Adds what the forces of a contact took at one end of the step, where the first side moves against the second at that velocity, m/s:
+    /// one of the two kicks puts half of each force into the motion.
+    pub fn add_work(&mut self, share: f64, history: &History, velocity: DVec3, dt: f64) {
+        let half = 0.5 * share * dt * velocity;
+        self.damping -= history.dashpot.dot(half);
+        self.friction -= history.spring.dot(half);
+    }
+
+    /// Adds that the tangential spring keeps a part of it.
+    pub fn keep(&mut self, share: f64, before: &History, now: &History) {
+        self.friction -= share * (now.energy() - before.energy());
+    }
+}

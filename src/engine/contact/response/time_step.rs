@@ -1,0 +1,117 @@
+//! The stable time step of contact.
+
+use crate::contact::laws::{NormalForce, Touch};
+use crate::schedule::Step;
+use crate::world::BodyId;
+
+/// A third of the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts together stay stable, and what
+/// the first and the last step of a touch miss of its energy, which goes with the square of this, stays small.
+const FREQUENCY_FACTOR: f64 = 0.7;
+/// Share of the distance of two particles that just touch by which they may approach in a step.
+const SWEPT_FACTOR: f64 = 0.25;
+
+/// Factor for a touch of skins that begins or ends, two fifths of the critical step of the contact of a skin alone, which is 1.33 over the root of stiffness over the mass
+/// of a layer of particles: what a touch misses at its ends is a share of `k (v dt)^2` of a spring that begins, and bodies that bounce then keep their energy to a thousandth.
+const OF_LANDING: f64 = 0.55;
+/// Factor for skins that are pressed: together with bonds, which have used up 0.65 of theirs, nine tenths of the critical step. What hardens as it is pressed is stiff where nothing begins.
+const OF_PRESSED: f64 = 0.85;
+/// Ways in a step over the depth at which the centre of a particle is at the surface, up to which the spring stays what it is within a step, and from which on it changes
+/// so much that the step is that of a touch that begins.
+const STEADY: [f64; 2] = [0.01, 0.04];
+
+/// Steps of the present length within which skins that are apart may touch: from then on the step is that of a touch. A step that is longer than the contact
+/// allows would put a point that touches for the first time too deep, and make energy.
+const AHEAD: f64 = 3.0;
+/// Overlap over the spacing whose stiffness stands for that of a touch to come: laws may begin with none.
+const EXPECTED: f64 = 0.05;
+
+/// What decides how long the steps of two skins may be.
+pub(in crate::contact) struct OfSkins<'a> {
+    pub law: &'a dyn NormalForce,
+    /// The law at an overlap of zero, and the area for which it holds, m2 (m).
+    pub touch: Touch,
+    pub usual: f64,
+    /// Largest stiffness over an area of points that touch, N/m3 (N/m2 in two dimensions).
+    pub stiffest: f64,
+    /// Gap of the nearest point that does not touch, m.
+    pub gap: f64,
+    /// Sum of the largest speeds, m/s, and length of the step, s.
+    pub speed: f64,
+    pub dt: f64,
+    /// Whether the reference of all that deforms stays. A reference that follows wants the steps of a touch for as long as it lasts: where the edge of a tool squeezes particles to
+    /// a quarter of their volume, they lose their order in longer ones.
+    pub keeps_reference: bool,
+}
+
+impl OfSkins<'_> {
+    /// The stiffness over an area that [`propose`] is to go by, N/m3 (N/m2).
+    pub fn stiffness(&self) -> f64 {
+        let of = |factor: f64| (FREQUENCY_FACTOR / factor).powi(2);
+        (of(OF_LANDING) * self.landing()).max(of(self.factor()) * self.stiffest)
+    }
+
+    /// The stiffness of touches that begin or end, or may do so soon; zero if that takes longer.
+    fn landing(&self) -> f64 {
+        // Nothing is known yet of the length of the first step.
+        let is_near = self.gap.is_finite() && (self.dt == 0.0 || self.gap < AHEAD * self.speed * self.dt);
+        if self.stiffest > 0.0 || is_near && self.speed > 0.0 {
+            let touch = Touch { overlap: EXPECTED * self.touch.length, ..self.touch };
+            self.law.at(&touch).stiffness / self.usual
+        } else {
+            0.0
+        }
+    }
+
+    /// The factor for what is pressed.
+    fn factor(&self) -> f64 {
+        if !self.keeps_reference {
+            return OF_LANDING;
+        }
+        let way = self.speed * self.dt / self.touch.depth;
+        let fast =
+            if self.dt > 0.0 { ((way - STEADY[0]) / (STEADY[1] - STEADY[0])).clamp(0.0, 1.0) } else { 1.0 };
+        OF_PRESSED + fast * (OF_LANDING - OF_PRESSED)
+    }
+}
+
+/// Proposes the limits of two bodies: for contacts of a squared frequency, 1/s2, and for an approach at `speed`, m/s,
+/// of particles that touch at a distance of `reach`, m.
+pub(in crate::contact) fn propose(
+    step: &mut Step<'_>,
+    pair: (BodyId, BodyId),
+    squared: f64,
+    speed: f64,
+    reach: f64,
+) {
+    let world = step.world;
+    let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
+    if squared > 0.0 {
+        step.limits.propose(
+            FREQUENCY_FACTOR / squared.sqrt(),
+            format_args!("stiffness of contact of `{one}` and `{other}`"),
+        );
+    }
+    if speed > 0.0 {
+        let limit = SWEPT_FACTOR * reach / speed;
+        step.limits.propose(limit, format_args!("speed of approach of `{one}` and `{other}`"));
+    }
+}
+
+/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy.
+const IMPACT_FACTOR: f64 = 0.05;
+
+/// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
+pub(in crate::contact) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {
+    if squared > 0.0 {
+        let world = step.world;
+        let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
+        let limit = IMPACT_FACTOR / squared.sqrt();
+        step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
+    }
+}
+
+/// Whether the reference of a body stays.
+pub(in crate::contact) fn keeps_reference(step: &Step<'_>, body: BodyId) -> bool {
+    let solid = step.resources.solid(step.world.body(body).phase);
+    solid.is_some_and(|solid| solid.keeps_reference())
+}

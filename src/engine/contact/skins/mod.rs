@@ -1,0 +1,18 @@
+//! Contact of the skins of deformable bodies, with rigid bodies and with each other.
+
+mod region;
+
+mod near_tool;
+
+mod points;
+
+mod on_tool;
+
+mod near_skins;
+
+mod foot;
+
+mod pair;
+
+pub(super) use on_tool::SkinOnTool;
+pub(super) use pair::SkinPair;

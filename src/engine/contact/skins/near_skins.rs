@@ -1,0 +1,211 @@
+//! Facets of two skins that may touch each other, searched again when the bodies may have moved by the skin of the search.
+//!
+//! The search covers regions of the skins, which are searched again when the bodies may have moved a few spacings.
+
+use glam::DVec3;
+
+use super::near_tool::{FASTER, MARGIN};
+use super::region::Region;
+use crate::contact::response::PairKey;
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::parallel::{Picked, for_each_block};
+use crate::shapes::Aabb;
+use crate::skins::{Skin, SkinView};
+
+/// Gap over the spacing up to which facets are candidates.
+const NEAR: f64 = 1.5;
+
+/// The facets of two skins that are near each other.
+pub(super) struct NearSkins {
+    /// How far the bodies may still move until there are others, m.
+    left: f64,
+    /// Whether there is room for all that facets near each other need.
+    has_room: bool,
+    regions: [Region; 2],
+    /// Where the vertices are, m.
+    places: [Vec<DVec3>; 2],
+    /// Centres of the facets of the regions, m.
+    centers: [Vec<DVec3>; 2],
+    /// Facets that have others near them.
+    near: Vec<u32>,
+    search: NeighborSearch,
+    lists: [NeighborList; 2],
+    /// The facets of the other side near every facet, and where those of each begin.
+    starts: [Vec<u32>; 2],
+    others: [Vec<u32>; 2],
+    /// Facets of each side that may touch, and those around them, ascending.
+    pub facets: [Vec<u32>; 2],
+    /// Points of the facets of each side that may touch.
+    pub candidates: [Vec<PairKey>; 2],
+}
+
+impl NearSkins {
+    /// None yet.
+    pub fn new(skins: [&Skin; 2]) -> Self {
+        let vertices = skins.map(|skin| vec![DVec3::ZERO; skin.vertices()]);
+        let of_facets = |more: usize| skins.map(|skin| Vec::with_capacity(skin.facets.corners.len() + more));
+        Self {
+            left: 0.0,
+            has_room: false,
+            regions: skins.map(Region::new),
+            places: vertices,
+            centers: skins.map(|skin| Vec::with_capacity(skin.facets.corners.len())),
+            near: Vec::new(),
+            search: NeighborSearch::default(),
+            lists: Default::default(),
+            starts: of_facets(1),
+            others: Default::default(),
+            facets: Default::default(),
+            candidates: Default::default(),
+        }
+    }
+
+    /// Takes in a step of that length, s, with a largest speed of both bodies together, m/s. Says whether the facets have to be found again.
+    pub fn is_old(&mut self, speed: f64, dt: f64) -> bool {
+        let way = FASTER * speed * dt;
+        self.left -= way;
+        self.regions.iter_mut().for_each(|region| region.left -= way);
+        // What is not a number must not keep old candidates.
+        self.left.is_nan() || self.left <= 0.0
+    }
+
+    /// The facets of the other side near a facet of this one.
+    pub fn facets_near(&self, side: usize, facet: u32) -> &[u32] {
+        match self.starts[side].get(facet as usize..facet as usize + 2) {
+            Some(&[start, end]) => &self.others[side][start as usize..end as usize],
+            _ => &[],
+        }
+    }
+
+    /// Finds the facets near each other, and the points on them.
+    pub fn find(
+        &mut self,
+        skins: [&Skin; 2],
+        views: &[SkinView<'_>; 2],
+        points: usize,
+    ) -> Result<(), NeighborError> {
+        let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
+        let near = NEAR * spacing;
+        let is_old = self.regions.iter().any(Region::is_old);
+        if is_old {
+            (0..2).for_each(|side| self.regions[side].take_all(skins[side]));
+        }
+        (0..2).for_each(|side| self.look(side, &views[side]));
+        let mut largest = [0, 1].map(|side| self.find_centers(side, skins[side]));
+        if !std::mem::replace(&mut self.has_room, true) {
+            self.make_room(skins, points, largest[0] + largest[1] + near)?;
+        }
+        if is_old {
+            let boxes = [0, 1].map(|side| self.around(side));
+            for side in 0..2 {
+                let Self { regions, centers, .. } = self;
+                let (other, centers) = (&boxes[1 - side], &centers[side]);
+                let gap = |facet: u32| distance(other, centers[facet as usize]) - largest[side];
+                regions[side].choose(skins[side], near, gap);
+            }
+            largest = [0, 1].map(|side| self.find_centers(side, skins[side]));
+        }
+        let [first, second] = [0, 1].map(|side| self.around(side));
+        let gap = if self.regions.iter().any(|region| region.facets.is_empty()) {
+            f64::INFINITY
+        } else {
+            (first.min - second.max).max(second.min - first.max).max(DVec3::ZERO).length()
+        };
+        let beyond = near + self.regions[0].left.min(self.regions[1].left);
+        self.left = gap.max(near).min(beyond) - MARGIN * spacing;
+        for side in 0..2 {
+            self.candidates[side].clear();
+            self.facets[side].clear();
+        }
+        if gap <= near {
+            self.pair(skins, largest[0] + largest[1] + near, points)?;
+        }
+        Ok(())
+    }
+
+    /// Pairs the facets of the regions whose centres are no farther apart than `reach`, m.
+    fn pair(&mut self, skins: [&Skin; 2], reach: f64, points: usize) -> Result<(), NeighborError> {
+        let clouds = [0, 1].map(|side| Cloud::uniform(&self.centers[side], reach));
+        for side in 0..2 {
+            self.search.between(
+                clouds[side],
+                clouds[1 - side],
+                0.0,
+                &Periodic::NONE,
+                &mut self.lists[side],
+            )?;
+        }
+        for side in 0..2 {
+            let (skin, list) = (skins[side], &self.lists[side]);
+            let (own, other) = (&self.regions[side].facets, &self.regions[1 - side].facets);
+            let (starts, others) = (&mut self.starts[side], &mut self.others[side]);
+            starts.clear();
+            others.clear();
+            self.near.clear();
+            for (row, &facet) in own.iter().enumerate() {
+                starts.resize(facet as usize + 1, others.len() as u32);
+                others.extend(list.row(row).iter().map(|&k| other[k as usize]));
+                if !list.row(row).is_empty() {
+                    self.near.push(facet);
+                }
+            }
+            starts.resize(skin.facets.corners.len() + 1, others.len() as u32);
+            let count = points as u32;
+            let points = self.near.iter().flat_map(|facet| (0..count).map(move |k| (facet * count + k, 0)));
+            self.candidates[side].extend(points);
+            let vertices = self.near.iter().flat_map(|&facet| skin.corners_of(facet));
+            self.facets[side].extend(vertices.flat_map(|&vertex| skin.facets_at(vertex)));
+            self.facets[side].sort_unstable();
+            self.facets[side].dedup();
+        }
+        Ok(())
+    }
+
+    /// Asks for memory before the bodies meet: each facet may have as many of the other skin near it as it has of its own.
+    fn make_room(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
+        for side in 0..2 {
+            let facets = skins[side].facets.corners.len();
+            let vertices = 0..skins[side].vertices() as u32;
+            let around: usize = vertices.map(|vertex| skins[side].facets_at(vertex).len().pow(2)).sum();
+            self.near.reserve(facets);
+            self.candidates[side].reserve(facets * points);
+            self.facets[side].reserve(around);
+            let own = Cloud::uniform(&self.centers[side], reach);
+            self.search.between(own, own, 0.0, &Periodic::NONE, &mut self.lists[side])?;
+            self.others[side].reserve((0..facets).map(|row| self.lists[side].row(row).len()).sum());
+        }
+        Ok(())
+    }
+
+    /// Looks where the vertices of the region of a side are.
+    fn look(&mut self, side: usize, view: &SkinView<'_>) {
+        let rows = Picked::new(&self.regions[side].vertices, &mut self.places[side]);
+        for_each_block(rows, &mut Vec::new(), &|_, mut rows: Picked<'_, DVec3>| {
+            view.places(rows.numbers(), &mut |k, place, _| *rows.row(k) = place);
+        });
+    }
+
+    /// Finds the centres of the facets of the region of a side; returns how far the vertices of one are from its centre at most, m.
+    fn find_centers(&mut self, side: usize, skin: &Skin) -> f64 {
+        let (centers, places) = (&mut self.centers[side], &self.places[side]);
+        centers.clear();
+        let mut largest = 0.0_f64;
+        for &facet in &self.regions[side].facets {
+            let ends = || skin.corners_of(facet).iter().map(|&vertex| places[vertex as usize]);
+            let center = ends().sum::<DVec3>() / skin.facets.axes as f64;
+            largest = ends().map(|end| end.distance(center)).fold(largest, f64::max);
+            centers.push(center);
+        }
+        largest
+    }
+
+    /// The box around the region of a side.
+    fn around(&self, side: usize) -> Aabb {
+        Aabb::around(self.regions[side].vertices.iter().map(|&vertex| self.places[side][vertex as usize]))
+    }
+}
+
+/// How far a place is from a box, m.
+fn distance(around: &Aabb, x: DVec3) -> f64 {
+    (around.min - x).max(x - around.max).max(DVec3::ZERO).length()
+}

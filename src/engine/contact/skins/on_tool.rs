@@ -1,0 +1,282 @@
+//! Contact of the skin of a deformable body with the exact surface of a rigid one.
+//!
+//! The energy is the integral of the law's energy over the skin, by points with areas of the reference configuration; the overlap is the exact distance of
+//! a point from the surface. `skin_points` places the points. Forces act on both bodies at the vertices of the skin, summed from the points around each; dashpot and
+//! friction belong to vertices as well.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::near_tool::NearTool;
+use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen};
+use crate::contact::active::{ActiveContacts, Least};
+use crate::contact::bodies::{MotionBounds, Sides, failed};
+use crate::contact::laws::Touch;
+use crate::contact::response::time_step::{self, OfSkins};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, PairKey};
+use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
+use crate::rigid::{RigidBodies, RigidBody, Wrench};
+use crate::schedule::{Step, StepError};
+use crate::skins::{Patch, Skin, SkinColumns, Vertex, Wanted};
+use crate::world::BodyId;
+
+/// Contact of a skin with a rigid body.
+pub(in crate::contact) struct SkinOnTool {
+    interaction: Interaction,
+    pub patch: Patch,
+    pub tool: BodyId,
+    /// The particles and the surface, which must not overlap at the start.
+    pub sides: Sides,
+    points: Points,
+    near: NearTool,
+    /// What every vertex of the patch sees of the tool, and which points of every facet near it may touch.
+    seen: Vec<Seen>,
+    reached: Vec<Reached>,
+    /// What presses on the vertices of every facet near the tool, and on every vertex of the patch.
+    on_facets: Vec<[Pressed; 3]>,
+    pressed: Vec<Pressed>,
+    /// Of every vertex of the patch the area of even facets that is its own, m2 (m).
+    even: Vec<f64>,
+    /// Vertices that touch, with their numbers in the patch, and what dashpot and friction add there, N.
+    touching: Vec<PairKey>,
+    pub contacts: ActiveContacts<u32, DVec3, ()>,
+}
+
+/// The sums over all vertices that touch.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    on_tool: Wrench,
+    of_tool: f64,
+    stored: f64,
+}
+
+impl BlockSum for Sums {
+    fn add(&mut self, next: &Self) {
+        self.on_tool.add(&next.on_tool);
+        self.of_tool += next.of_tool;
+        self.stored += next.stored;
+    }
+}
+
+impl SkinOnTool {
+    /// Contact of a skin with the surface of a rigid body.
+    pub fn new(interaction: Interaction, skin: Arc<Skin>, sides: Sides) -> Self {
+        let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
+        let mut contacts = ActiveContacts::default();
+        if !interaction.is_elastic() {
+            contacts.reserve(vertices);
+        }
+        Self {
+            interaction,
+            tool: sides.second,
+            sides,
+            points: Points::new(skin.facets.axes),
+            near: NearTool::new(&skin),
+            seen: Vec::with_capacity(vertices),
+            reached: Vec::with_capacity(facets),
+            on_facets: Vec::with_capacity(facets),
+            pressed: Vec::with_capacity(vertices),
+            even: Vec::with_capacity(vertices),
+            touching: Vec::with_capacity(vertices),
+            patch: Patch::new(skin),
+            contacts,
+        }
+    }
+
+    /// Works out the forces of all points that touch, and pushes the rigid body.
+    pub fn run(
+        &mut self,
+        step: &mut Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<ContactEnergy, StepError> {
+        let resources = step.resources;
+        let mut bodies = resources.get_mut::<RigidBodies>();
+        let missing = || failed("no rigid body");
+        let tool = bodies.iter_mut().find(|body| body.id == self.tool).ok_or_else(missing)?;
+        let dt = step.clock.dt;
+        let skin = Arc::clone(&self.patch.skin);
+        let columns = SkinColumns::new(&skin, step.world)?;
+        let view = columns.view();
+        let speeds = [motion[0].speed, motion[1].speed];
+        if self.near.is_old(speeds, dt) {
+            self.near.find(&skin, &view, tool);
+            self.patch.select(self.near.facets.iter().copied());
+        }
+        let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
+        self.patch.update(&view, dt, wanted);
+        let Extremes { gap, stiffest } = self.press(tool, dt);
+        let mut energies =
+            if self.interaction.is_elastic() { ContactEnergy::default() } else { self.rub(tool, dt) };
+        let Sums { on_tool, of_tool, stored } = self.push(tool);
+        energies.stored += stored;
+        tool.push(&on_tool);
+        self.patch.hand_on();
+        let (touch, usual) = self.touch(tool);
+        let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
+        let (stiffest, gap) = (stiffest.0, gap.0);
+        let keeps_reference = time_step::keeps_reference(step, skin.body);
+        let stiffness = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference }.stiffness();
+        let squared = stiffness * skin.lightness + of_tool;
+        time_step::propose(step, (skin.body, self.tool), squared, speed, skin.spacing);
+        Ok(energies)
+    }
+
+    /// The law at an overlap of zero, and the area for which it holds, m2 (m).
+    fn touch(&self, tool: &RigidBody) -> (Touch, f64) {
+        let length = self.patch.skin.spacing;
+        let own = 0.5 * length;
+        let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
+        (
+            Touch { overlap: 0.0, radius, length, depth: own },
+            length.powi(self.patch.skin.facets.axes as i32 - 1),
+        )
+    }
+
+    /// Works out what presses on the vertices.
+    fn press(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+        let (touch, usual) = self.touch(tool);
+        let Self { interaction, patch, points, near, seen, reached, on_facets, pressed, even, .. } = self;
+        let (interaction, patch, points) = (&*interaction, &*patch, &*points);
+        let on = Pressing { interaction, patch, tool, touch, usual, dt };
+        let vertices = patch.vertices();
+        seen.resize(vertices.len(), Seen::default());
+        let rows = (&mut seen[..], vertices);
+        for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [Seen], &[Vertex])| {
+            for (seen, vertex) in seen.iter_mut().zip(vertices) {
+                let (distance, normal, approach) = on.look(vertex.place, vertex.velocity);
+                *seen = Seen { distance, normal, approach };
+            }
+        });
+        reached.resize(near.facets.len(), Reached::Partly);
+        on_facets.resize(near.facets.len(), Default::default());
+        let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
+        type Rows<'a> = (&'a [u32], &'a mut [Reached], &'a mut [[Pressed; 3]]);
+        let mut extremes = sum_over_blocks(rows, &|_, (facets, reached, on_facets): Rows<'_>| {
+            let mut extremes = Extremes::default();
+            for ((&facet, reached), on_facet) in facets.iter().zip(reached).zip(on_facets) {
+                let corners = patch.corners(facet);
+                let [a, b, c] = patch.numbers(facet);
+                let seen = [&seen[a], &seen[b], &seen[c]];
+                let [a, b, c] = corners;
+                *reached = if a.is_there && b.is_there && c.is_there {
+                    Reached::of([a.place, b.place, c.place], seen)
+                } else {
+                    Reached::No(f64::INFINITY)
+                };
+                match *reached {
+                    Reached::No(distance) => extremes.gap.add(&Least(distance)),
+                    Reached::Evenly => {}
+                    reached => *on_facet = points.press(&on, facet, (reached, seen), &mut extremes),
+                }
+            }
+            extremes
+        });
+        gather(patch, (&near.facets, reached, on_facets), pressed, even);
+        let rows = (&mut pressed[..], &seen[..], &even[..]);
+        type Ends<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
+        let at_vertices = sum_over_blocks(rows, &|_, (pressed, seen, even): Ends<'_>| {
+            let mut extremes = Extremes::default();
+            for ((pressed, seen), &area) in
+                pressed.iter_mut().zip(seen).zip(even).filter(|(_, area)| **area > 0.0)
+            {
+                pressed.add(1.0, &on.spring(seen, area, &mut extremes), seen.normal, area, -seen.distance);
+            }
+            extremes
+        });
+        extremes.add(&at_vertices);
+        extremes
+    }
+
+    /// Works out dashpot and friction at the vertices that are pressed.
+    fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
+        let (usual, _) = self.touch(tool);
+        let Self { interaction, patch, pressed, touching, contacts, .. } = self;
+        let (patch, pressed) = (&*patch, &*pressed);
+        touching.clear();
+        let numbers = patch.vertex_numbers().iter().zip(0..);
+        touching.extend(
+            numbers.filter(|(_, k)| pressed[*k as usize].spring.force > 0.0).map(|(vertex, _)| (*vertex, 0)),
+        );
+        contacts.find(touching, |(vertex, _), ()| Some(patch.number(vertex)));
+        let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(vertex.place);
+        let respond = |_: PairKey, number: &u32, before: &History, energies: &mut ContactEnergy| {
+            let (vertex, pressed) = (&patch.vertices()[*number as usize], &pressed[*number as usize]);
+            let velocity = velocity(vertex);
+            if !before.is_elastic() {
+                energies.losses.add_work(1.0, before, velocity, dt);
+            }
+            let normal = pressed.force.normalize_or_zero();
+            let state = ContactState {
+                touch: Touch { overlap: pressed.depth / pressed.area, ..usual },
+                normal,
+                scale: 1.0,
+                area: 1.0,
+                arms: [DVec3::ZERO; 2],
+                velocity,
+            };
+            let mobility = vertex.mobility / pressed.area;
+            let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(vertex.place, n);
+            let response = interaction.beside(pressed.spring, &state, inverse_mass, dt, before);
+            energies.losses.add_work(1.0, &response.history, velocity, dt);
+            energies.losses.keep(1.0, before, &response.history);
+            energies.stored += response.history.energy();
+            (response.history, response.force - pressed.spring.force * normal)
+        };
+        let end = |(vertex, _): PairKey, history: &History, energies: &mut ContactEnergy| {
+            if !history.is_elastic() && patch.has(vertex) {
+                energies.losses.add_work(1.0, history, velocity(patch.vertex(vertex)), dt);
+            }
+            energies.losses.keep(1.0, history, &History::default());
+        };
+        contacts.respond(respond, end)
+    }
+
+    /// Pushes the vertices; returns what is on the tool about its centre.
+    fn push(&mut self, tool: &RigidBody) -> Sums {
+        let Self { patch, pressed, contacts, .. } = self;
+        for ((_, number), beside) in contacts.met().iter().zip(contacts.pushes()) {
+            pressed[*number as usize].force += *beside;
+        }
+        for (number, pressed) in pressed.iter().enumerate().filter(|(_, pressed)| pressed.spring.force > 0.0)
+        {
+            patch.push_vertex(number, pressed.force);
+        }
+        let rows = (patch.vertices(), &pressed[..]);
+        sum_over_blocks(rows, &|_, (vertices, pressed): (&[Vertex], &[Pressed])| {
+            let mut sums = Sums::default();
+            for (vertex, Pressed { force, spring, .. }) in vertices.iter().zip(pressed) {
+                if spring.force > 0.0 {
+                    sums.on_tool.push(vertex.place - tool.state.center, -*force);
+                    sums.of_tool +=
+                        spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
+                    sums.stored += spring.energy;
+                }
+            }
+            sums
+        })
+    }
+}
+
+/// Adds up what the facets press on every vertex, and the area of even facets that is its own.
+fn gather(
+    patch: &Patch,
+    (facets, reached, on_facets): (&[u32], &[Reached], &[[Pressed; 3]]),
+    pressed: &mut Vec<Pressed>,
+    even: &mut Vec<f64>,
+) {
+    let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
+    pressed.clear();
+    pressed.resize(vertices, Pressed::default());
+    even.clear();
+    even.resize(vertices, 0.0);
+    for ((&facet, reached), on) in facets.iter().zip(reached).zip(on_facets) {
+        let numbers = patch.numbers(facet);
+        let part = patch.skin.measure[facet as usize] / axes as f64;
+        match reached {
+            Reached::No(_) => {}
+            Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
+            _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The system of all contacts of a scene.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::touching::{Saved, Touching};
+use crate::contact::bodies::{CONTACT, MotionBounds};
+use crate::contact::response::{ContactEnergy, energy};
+use crate::plugin::SimBuilder;
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::world::{
+    Body, BodyId, BodySet, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition, Removed,
+    Temperature, Velocity,
+};
+
+/// Label of the system that adds them to the particles.
+const CONTACT_FORCE: &str = "contact_force";
+
+/// Adds the system of the pairs.
+pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, bodies: &BodySet) {
+    let phases = sim.phases_of(bodies);
+    // Where no contact heats anything, temperatures are left alone.
+    let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
+    let warm = |body: BodyId| Some((body, sim.body(body).specific_heat().filter(|_| heats)?));
+    let contacts = Contacts {
+        specific_heats: bodies.iter().filter_map(warm).collect(),
+        bodies: bodies.iter().map(|body| (body, MotionBounds::NONE)).collect(),
+        energies: Vec::with_capacity(touching.len()),
+        touching,
+    };
+    let deforms = contacts.touching.iter().any(Touching::deforms);
+    let shared = Arc::new(Mutex::new(contacts));
+    let mut system = System::new(Stage::Boundary, CONTACT, Meet(Arc::clone(&shared)));
+    if deforms {
+        system = system.reads::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
+    }
+    sim.add_system(
+        system
+            .on_phases(phases.clone())
+            .reads::<Position>()
+            .reads::<ReferencePosition>()
+            .reads::<Velocity>()
+            .reads::<Mobility>()
+            .reads::<Removed>()
+            .touches("rigid_bodies", Mode::Adds),
+    );
+    let push = move |step: &mut Step<'_>| lock(&shared).push(step);
+    let system = System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>();
+    sim.add_system(if heats { system.reads::<Mass>().adds::<Temperature>() } else { system });
+}
+
+/// The contacts of the scene: two systems share them, which run one after the other.
+type Shared = Arc<Mutex<Contacts>>;
+
+fn lock(contacts: &Shared) -> MutexGuard<'_, Contacts> {
+    contacts.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+struct Contacts {
+    bodies: Vec<(BodyId, MotionBounds)>,
+    /// Bodies that friction may warm, with their specific heat, J/(kg K).
+    specific_heats: Vec<(BodyId, f64)>,
+    touching: Vec<Touching>,
+    energies: Vec<((BodyId, BodyId), ContactEnergy)>,
+}
+
+impl Contacts {
+    fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for (body, motion) in &mut self.bodies {
+            let mut particles = self.touching.iter().flat_map(Touching::particles);
+            let deform = particles.any(|particles| particles.deform && particles.body == *body);
+            *motion = MotionBounds::of(*body, deform, step)?;
+        }
+        let motion_of = |body: BodyId| {
+            let known = self.bodies.iter().find(|(id, _)| *id == body);
+            known.map_or(MotionBounds::NONE, |entry| entry.1)
+        };
+        self.energies.clear();
+        for pair in &mut self.touching {
+            let [first, second] = pair.bodies();
+            let energies = pair.run(step, [motion_of(first), motion_of(second)])?;
+            self.energies.push(((first, second), energies));
+        }
+        energy::book(step, &self.energies);
+        self.add_couples(step);
+        Ok(())
+    }
+
+    /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.
+    fn add_couples(&self, step: &Step<'_>) {
+        let mut deforming = self.touching.iter().filter(|touching| touching.deforms()).peekable();
+        if deforming.peek().is_none() {
+            return;
+        }
+        for touching in deforming {
+            for (body, contact_nodes) in touching.contact_nodes() {
+                let Body { phase, rows, .. } = step.world.body(body);
+                if let Some(mut solid) = step.resources.solid_mut(*phase) {
+                    contact_nodes.add_couples(&mut *solid, rows.start);
+                }
+            }
+            for patch in touching.patches() {
+                let Body { phase, rows, .. } = step.world.body(patch.skin.body);
+                if let Some(mut solid) = step.resources.solid_mut(*phase) {
+                    patch.add_couples(&mut *solid, rows.start);
+                }
+            }
+        }
+        for phase in step.world.phases() {
+            if let Some(mut solid) = step.resources.solid_mut(phase) {
+                solid.renew_ghosts();
+            }
+        }
+    }
+
+    /// Adds the forces on particles.
+    fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
+        for (body, contact_nodes) in self.touching.iter().flat_map(Touching::contact_nodes) {
+            let (view, rows) = step.world.body_view(body);
+            contact_nodes.add_forces(&mut view.write::<Force>()?[rows.clone()]);
+            if let Some((_, specific_heat)) = self.specific_heats.iter().find(|(id, _)| *id == body) {
+                let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
+                contact_nodes.warm(*specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+            }
+        }
+        for patch in self.touching.iter().flat_map(Touching::patches) {
+            let (view, rows) = step.world.body_view(patch.skin.body);
+            patch.add_forces(&mut view.write::<Force>()?[rows]);
+        }
+        Ok(())
+    }
+}
+
+/// The system that works out the forces.
+struct Meet(Shared);
+
+impl Run for Meet {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        lock(&self.0).meet(step)
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let contacts = lock(&self.0);
+        let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
+        postcard::to_stdvec(&saved).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
+        let mut contacts = lock(&self.0);
+        saved.len() == contacts.touching.len()
+            && contacts.touching.iter_mut().zip(saved).all(|(pair, saved)| pair.restore(saved))
+    }
+}
