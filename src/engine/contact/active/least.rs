@@ -12,8 +12,16 @@ impl Default for Least {
     }
 }
 
+impl Least {
+    /// Takes in a length, m.
+    #[inline]
+    pub fn add_length(&mut self, length: f64) {
+        self.0 = self.0.min(length);
+    }
+}
+
 impl BlockSum for Least {
     fn add(&mut self, next: &Self) {
-        self.0 = self.0.min(next.0);
+        self.add_length(next.0);
     }
 }

@@ -2,6 +2,8 @@
 
 mod search;
 
+mod pairs;
+
 mod contact;
 
 pub(super) use contact::ParticleContact;

@@ -1,5 +1,9 @@
 //! From the contacts of a scene to the systems that compute them.
 
+mod body;
+
+mod checks;
+
 mod images;
 
 mod skins_of;
@@ -8,4 +12,7 @@ mod pairs;
 
 mod start;
 
-pub use pairs::{MakeLaw, add_systems};
+mod systems;
+
+pub use pairs::MakeLaw;
+pub use systems::add_systems;

@@ -53,6 +53,15 @@ pub(in crate::contact) struct Losses {
     pub friction: f64,
 }
 
+/// What limits the tangential force of a contact.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Stiffness of the tangential spring, N/m.
+    stiffness: f64,
+    /// Coulomb's limit, N.
+    force: f64,
+}
+
 impl Interaction {
     /// Whether nothing but the overlap counts.
     pub fn is_elastic(&self) -> bool {
@@ -110,9 +119,9 @@ impl Interaction {
         let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
         let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force - taken_up, dt);
         let pressure = (spring.force + pull).max(0.0);
-        let (tangential, drag) =
-            self.tangential(state, spring.stiffness, pressure, &inverse_mass, dt, before);
         let stiffness = self.tangential * spring.stiffness;
+        let limits = Limits { stiffness, force: self.friction * pressure };
+        let (tangential, drag) = self.tangential(state, limits, &inverse_mass, dt, before);
         let dashpot = (pressure - spring.force) * *normal + drag;
         let (overlap, arms) = (touch.overlap, *arms);
         Response {
@@ -149,8 +158,7 @@ impl Interaction {
     fn tangential(
         &self,
         state: &ContactState,
-        stiffness: f64,
-        pressure: f64,
+        Limits { stiffness, force: limit }: Limits,
         inverse_mass: &impl Fn(DVec3) -> f64,
         dt: f64,
         before: &History,
@@ -159,7 +167,6 @@ impl Interaction {
             return (DVec3::ZERO, DVec3::ZERO);
         }
         let ContactState { normal, velocity, .. } = state;
-        let stiffness = self.tangential * stiffness;
         let slip = velocity - velocity.dot(*normal) * normal;
         let mut spring = before.spring - before.spring.dot(*normal) * normal;
         // A spring that gets softer keeps its stretch, one that gets stiffer its force: neither makes energy.
@@ -167,7 +174,6 @@ impl Interaction {
             spring *= stiffness / before.stiffness;
         }
         spring -= stiffness * dt * slip;
-        let limit = self.friction * pressure;
         let held = spring.length();
         if held >= limit {
             return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);

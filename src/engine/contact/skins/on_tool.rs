@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::near_tool::NearTool;
 use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen};
-use crate::contact::active::{ActiveContacts, Least};
+use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{MotionBounds, Sides, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins};
@@ -165,7 +165,7 @@ impl SkinOnTool {
                     Reached::No(f64::INFINITY)
                 };
                 match *reached {
-                    Reached::No(distance) => extremes.gap.add(&Least(distance)),
+                    Reached::No(distance) => extremes.gap.add_length(distance),
                     Reached::Evenly => {}
                     reached => *on_facet = points.press(&on, facet, (reached, seen), &mut extremes),
                 }

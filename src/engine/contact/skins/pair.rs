@@ -43,12 +43,12 @@ pub(in crate::contact) struct SkinPair {
     /// Around the facets of each side that are near the other.
     balls: [Vec<Ball>; 2],
     /// The points of each side against the facets of the other.
-    pub passes: [ActiveContacts<Meet, Push, Least>; 2],
+    pub passes: [ActiveContacts<PointTouch, PointPush, Least>; 2],
 }
 
 /// A point that touches.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct Meet {
+pub(in crate::contact) struct PointTouch {
     x: DVec3,
     foot: Foot,
     /// Share of the integral.
@@ -57,7 +57,7 @@ pub(in crate::contact) struct Meet {
 
 /// What a point does.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct Push {
+pub(in crate::contact) struct PointPush {
     /// Force on the point, N, and how much of it is across the normal.
     force: DVec3,
     across: DVec3,
@@ -170,32 +170,33 @@ impl SkinPair {
         });
         let axes = at.own.skin.facets.axes;
         let usual = length.powi(axes as i32 - 1);
-        let respond = |(point, _): PairKey, meet: &Meet, before: &History, energies: &mut ContactEnergy| {
-            let Meet { x, foot, weight } = *meet;
-            let (velocity, arm, mobility) = at.motion(point, meet);
-            if !before.is_elastic() {
-                energies.losses.add_work(1.0, before, velocity, dt);
-            }
-            let area = at.area(point);
-            let touch = Touch { overlap: -foot.distance, radius: 0.5 * length, length, depth: length };
-            let state = ContactState {
-                touch,
-                normal: foot.normal,
-                scale: 1.0,
-                area: weight * area / usual,
-                arms: [x - at.place(&foot), DVec3::ZERO],
-                velocity,
+        let respond =
+            |(point, _): PairKey, meet: &PointTouch, before: &History, energies: &mut ContactEnergy| {
+                let PointTouch { x, foot, weight } = *meet;
+                let (velocity, arm, mobility) = at.motion(point, meet);
+                if !before.is_elastic() {
+                    energies.losses.add_work(1.0, before, velocity, dt);
+                }
+                let area = at.area(point);
+                let touch = Touch { overlap: -foot.distance, radius: 0.5 * length, length, depth: length };
+                let state = ContactState {
+                    touch,
+                    normal: foot.normal,
+                    scale: 1.0,
+                    area: weight * area / usual,
+                    arms: [x - at.place(&foot), DVec3::ZERO],
+                    velocity,
+                };
+                let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
+                let response = interaction.respond(&state, inverse_mass, dt, before);
+                energies.losses.add_work(1.0, &response.history, velocity, dt);
+                energies.losses.keep(1.0, before, &response.history);
+                energies.stored += response.spring.energy + response.history.energy();
+                let across = response.force - response.force.dot(foot.normal) * foot.normal;
+                let stiffness = response.spring.stiffness / area;
+                let energy = response.spring.energy / weight;
+                (response.history, PointPush { force: response.force, across, arm, energy, stiffness })
             };
-            let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
-            let response = interaction.respond(&state, inverse_mass, dt, before);
-            energies.losses.add_work(1.0, &response.history, velocity, dt);
-            energies.losses.keep(1.0, before, &response.history);
-            energies.stored += response.spring.energy + response.history.energy();
-            let across = response.force - response.force.dot(foot.normal) * foot.normal;
-            let stiffness = response.spring.stiffness / area;
-            let energy = response.spring.energy / weight;
-            (response.history, Push { force: response.force, across, arm, energy, stiffness })
-        };
         let end = |(point, _): PairKey, history: &History, energies: &mut ContactEnergy| {
             if !history.is_elastic() {
                 let meet = at.nearest(point, near.facets_near(side, point / at.rule.len() as u32));
@@ -223,7 +224,7 @@ impl SkinPair {
             other.push(there, below, -push.force, (f != DVec3::ZERO).then_some(&couple));
             shift_foot(own, other, (facet, shares), meet, push.energy);
         }
-        sum_over_blocks(pass.pushes(), &|_, pushes: &[Push]| {
+        sum_over_blocks(pass.pushes(), &|_, pushes: &[PointPush]| {
             Largest::of(pushes.iter().map(|push| push.stiffness))
         })
     }
@@ -234,7 +235,7 @@ fn shift_foot(
     own: &mut Patch,
     other: &mut Patch,
     (facet, shares): (u32, [f64; 3]),
-    meet: &Meet,
+    meet: &PointTouch,
     energy: f64,
 ) {
     let Foot { facet: there, shares: below, normal, distance } = meet.foot;
@@ -275,24 +276,24 @@ impl Side<'_> {
     }
 
     /// The point of the other skin nearest to a point of this one, on either side.
-    fn nearest(&self, point: u32, facets: &[u32]) -> Option<Meet> {
+    fn nearest(&self, point: u32, facets: &[u32]) -> Option<PointTouch> {
         let (facet, shares) = self.corners(point);
         let corners = self.own.corners(facet);
         let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
         let foot = foot(self.other, self.balls, facets, x, DEPTH * self.length)?;
-        Some(Meet { x, foot, weight: 0.0 })
+        Some(PointTouch { x, foot, weight: 0.0 })
     }
 
     /// A point that touches; else it takes in how far it is from that.
-    fn meet(&self, point: u32, facets: &[u32], gap: &mut Least) -> Option<Meet> {
+    fn meet(&self, point: u32, facets: &[u32], gap: &mut Least) -> Option<PointTouch> {
         let (facet, shares) = self.corners(point);
-        let Meet { x, foot, .. } = self.nearest(point, facets)?;
+        let PointTouch { x, foot, .. } = self.nearest(point, facets)?;
         let there = self.other.corners(foot.facet);
         if !self.own.corners(facet).iter().chain(&there).all(|corner| corner.is_there) {
             return None;
         }
         if foot.distance >= 0.0 {
-            gap.add(&Least(foot.distance));
+            gap.add_length(foot.distance);
             return None;
         }
         let corner = |patch: &Patch, facet: u32, shares: [f64; 3]| -> f64 {
@@ -301,7 +302,7 @@ impl Side<'_> {
         };
         let own = corner(self.own, facet, shares);
         let weight = 0.5 * (1.0 + own - corner(self.other, foot.facet, foot.shares));
-        (weight > 0.0).then_some(Meet { x, foot, weight })
+        (weight > 0.0).then_some(PointTouch { x, foot, weight })
     }
 
     /// Velocity of a point, m/s.
@@ -313,7 +314,7 @@ impl Side<'_> {
 
     /// Velocity of a point relative to the material of the other body, along the normal that at the foot and across it that at the point, m/s, how that is reached from the foot in the reference configuration, m, and
     /// how much a traction moves both, m2/kg.
-    fn motion(&self, point: u32, meet: &Meet) -> (DVec3, DVec3, DVec3) {
+    fn motion(&self, point: u32, meet: &PointTouch) -> (DVec3, DVec3, DVec3) {
         let (facet, shares) = self.corners(point);
         let (own, other) = (self.own.corners(facet), self.other.corners(meet.foot.facet));
         let below = meet.foot.shares;

@@ -177,7 +177,7 @@ impl Points {
                 p * a.velocity + q * b.velocity + r * c.velocity,
             );
             if distance >= 0.0 {
-                extremes.gap.add(&Least(distance));
+                extremes.gap.add_length(distance);
             } else if distance < 0.0 {
                 // What is not a number does not touch.
                 let spring = on.spring(&Seen { distance, normal, approach }, area, extremes);

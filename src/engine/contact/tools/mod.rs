@@ -2,8 +2,10 @@
 
 mod nearby;
 
-mod contact;
-
 mod reaction;
+
+mod on_surface;
+
+mod contact;
 
 pub(super) use contact::SurfaceContact;

@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::contact::active::{Filter, Least};
 use crate::contact::bodies::{NodeView, Sides};
 use crate::contact::response::PairKey;
-use crate::parallel::BlockSum;
 use crate::rigid::RigidBody;
 
 /// Skin over the size of a node.
@@ -70,10 +69,10 @@ impl Nearby {
             let (reach, skin, near) = (largest_stretch * nodes.radius(i), SKIN * size, NEAR * size);
             let gap = (bounds.min - x).max(x - bounds.max).max(DVec3::ZERO).length() - reach;
             if gap < skin {
-                budget.add(&Least(skin - near));
+                budget.add_length(skin - near);
                 (tool.surface.closest(x).signed_distance - reach < skin).then_some((i as u32, 0))
             } else {
-                budget.add(&Least(gap - near));
+                budget.add_length(gap - near);
                 None
             }
         });

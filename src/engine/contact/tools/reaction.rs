@@ -8,7 +8,7 @@ use crate::rigid::{RigidBody, Wrench};
 
 /// What a contact does to both sides.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct Push {
+pub(in crate::contact) struct NodePush {
     /// From the node to where it is pushed, in the reference configuration, m.
     pub arm: DVec3,
     /// Where the surface is pushed, m.
@@ -43,13 +43,13 @@ impl BlockSum for Pushes {
 }
 
 /// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place. Returns the sums of stiffness over mass of both sides, 1/s2.
-pub(in crate::contact) fn push(sides: &Sides, pushes: &[Push], bodies: &mut [RigidBody]) -> [f64; 2] {
+pub(in crate::contact) fn push(sides: &Sides, pushes: &[NodePush], bodies: &mut [RigidBody]) -> [f64; 2] {
     let of = |id| bodies.iter().position(|body: &RigidBody| body.id == id);
     let both = [of(sides.first), of(sides.second)];
     let middle = both.map(|k| k.map_or(DVec3::ZERO, |k| bodies[k].state.center));
-    let Pushes { on, stiffness } = sum_over_blocks(pushes, &|_, pushes: &[Push]| {
+    let Pushes { on, stiffness } = sum_over_blocks(pushes, &|_, pushes: &[NodePush]| {
         let mut sum = Pushes::default();
-        for Push { place, center, shift, force, turning, stiffness, .. } in pushes {
+        for NodePush { place, center, shift, force, turning, stiffness, .. } in pushes {
             sum.on[0].push(*place + *shift - middle[0], *force);
             sum.on[1].push(*place - middle[1], -*force);
             sum.on[1].push(*center - middle[1], -*turning);

@@ -1,0 +1,88 @@
+//! Contacts of a scene that cannot be.
+
+use super::body::{find, is_rigid};
+use crate::contact::particles::ParticleContact;
+use crate::plugin::{BodyPlan, Offer, SimBuilder};
+use crate::scene::{Contact, Problem};
+
+/// A pair of bodies of a scene, and the number of the contact that names it.
+pub(super) struct Named<'a> {
+    pub contact: &'a Contact,
+    pub number: usize,
+}
+
+impl Named<'_> {
+    /// A problem with the bodies that the contact is between.
+    fn problem(&self, message: String, help: &str) -> Problem {
+        Problem::at_path(format!("contacts[{}].between", self.number), message).help(help)
+    }
+
+    /// Why there cannot be such a contact after `others`.
+    pub fn refused(&self, others: &[(usize, Contact)], sim: &SimBuilder<'_>) -> Option<Problem> {
+        self.named_before(others)
+            .or_else(|| self.rigid_with_itself(sim))
+            .or_else(|| self.heat_without_temperature(sim))
+            .or_else(|| self.own_contact_not_offered(sim))
+    }
+
+    fn named_before(&self, others: &[(usize, Contact)]) -> Option<Problem> {
+        let (a, b) = &self.contact.between;
+        let same = |(_, other): &(usize, Contact)| {
+            other.between == (a.clone(), b.clone()) || other.between == (b.clone(), a.clone())
+        };
+        others.iter().any(same).then(|| {
+            let message = format!("the contact between `{a}` and `{b}` is given twice");
+            self.problem(message, "give each pair of bodies once")
+        })
+    }
+
+    fn rigid_with_itself(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
+        let (a, b) = &self.contact.between;
+        (a == b && is_rigid(find(sim, a)))
+            .then(|| self.problem(format!("rigid body `{a}` cannot touch itself"), "leave this contact out"))
+    }
+
+    /// The problem of a contact whose friction is to heat bodies that have no temperature.
+    fn heat_without_temperature(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
+        let (a, b) = &self.contact.between;
+        let is_cold = [a, b].into_iter().all(|name| find(sim, name).specific_heat().is_none());
+        (self.contact.friction_heat.is_some() && is_cold).then(|| {
+            let message = format!("neither `{a}` nor `{b}` is of a material with a specific heat");
+            Problem::at_path(format!("contacts[{}].friction_heat", self.number), message)
+                .help("give one of them a material with `specific_heat`, or leave `friction_heat` out")
+        })
+    }
+
+    /// The problem of a body that is to touch itself and whose formulation has no such contact.
+    fn own_contact_not_offered(&self, sim: &SimBuilder<'_>) -> Option<Problem> {
+        let (a, b) = &self.contact.between;
+        let body = find(sim, a);
+        if a != b || body.offers(Offer::SelfContact) {
+            return None;
+        }
+        let BodyPlan { name, formulation, .. } = body;
+        let message =
+            format!("`{formulation}`, by which body `{name}` moves, has no {}", Offer::SelfContact.words());
+        let help = "leave this contact out: where its kernels overlap, the body joins with itself";
+        Some(self.problem(message, help))
+    }
+
+    /// A particle must not see two images of another.
+    pub fn refuse_short_periods(
+        &self,
+        pair: &ParticleContact,
+        sim: &SimBuilder<'_>,
+    ) -> Result<(), Vec<Problem>> {
+        let (periodic, least) = (sim.periodic(), pair.least_period());
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let length = periodic.lengths()[axis];
+            if periodic.axes()[axis] && length < least {
+                let message = format!(
+                    "the period along {name} must be at least {least} m for this contact, found {length} m"
+                );
+                return Err(vec![self.problem(message, "use a longer domain, or smaller particles")]);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,50 @@
+//! Adds the systems of all contacts of a scene.
+
+use super::checks::Named;
+use super::pairs::{MakeLaw, Planner};
+use super::skins_of::Skins;
+use super::start::refuse_bodies_within_others;
+use crate::contact::system;
+use crate::contact::system::Touching;
+use crate::plugin::SimBuilder;
+use crate::scene::{Contact, Problem};
+use crate::symmetry::MirrorPlane;
+use crate::world::BodySet;
+
+/// Adds the contacts of the scene.
+///
+/// # Errors
+/// Two contacts of one pair, a law whose parameters are wrong, bodies that cannot touch.
+pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
+    let planes: Vec<MirrorPlane> = sim.take_extensions();
+    let contacts: Vec<(usize, Contact)> = sim.scene().contact_pairs().collect();
+    let mut planner = Planner { sim, make, planes: &planes, skins: Skins::default(), warnings: Vec::new() };
+    let (mut touching, mut problems) = (Vec::new(), Vec::new());
+    // The contact of the scene that each pair belongs to.
+    let mut numbers = Vec::new();
+    for (n, (number, contact)) in contacts.iter().enumerate() {
+        let named = Named { contact, number: *number };
+        if let Some(problem) = named.refused(&contacts[..n], planner.sim) {
+            problems.push(problem);
+            continue;
+        }
+        match planner.pairs_of(&named) {
+            Ok(pairs) => {
+                numbers.resize(numbers.len() + pairs.len(), *number);
+                touching.extend(pairs);
+            }
+            Err(found) => problems.extend(found),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let Planner { warnings, .. } = planner;
+    warnings.into_iter().for_each(|warning| sim.warn(warning));
+    if !touching.is_empty() {
+        let bodies = BodySet::new(touching.iter().flat_map(Touching::bodies));
+        refuse_bodies_within_others(sim, &touching, numbers);
+        system::add(sim, touching, &bodies);
+    }
+    Ok(())
+}

@@ -1,0 +1,191 @@
+//! Nodes of one body on the surface of another in a step: which of them touch, and their forces.
+
+use glam::DVec3;
+
+use super::nearby::NEAR;
+use super::reaction::NodePush;
+use crate::contact::active::Least;
+use crate::contact::bodies::{Nearness, NodeMotion, NodeView, Sides};
+use crate::contact::laws::Touch;
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
+use crate::parallel::BlockSum;
+use crate::rigid::RigidBody;
+
+/// A node that touches.
+#[derive(Clone, Copy, Default)]
+pub(in crate::contact) struct NodeTouch {
+    /// The image of the node that is near the surface, m, and from there to the node: zero, or a period.
+    x: DVec3,
+    shift: DVec3,
+    /// Nearest point of the surface, m.
+    point: DVec3,
+    near: Nearness,
+}
+
+/// What the nodes near the surface say of the time step.
+#[derive(Clone, Copy, Default)]
+pub(in crate::contact) struct NearNodes {
+    /// Least way to the centre of a particle near the surface that just touches, m.
+    pub least: Least,
+    /// The first particle near the surface that nothing moves but conditions.
+    pub held: Option<usize>,
+}
+
+impl BlockSum for NearNodes {
+    fn add(&mut self, next: &Self) {
+        self.least.add(&next.least);
+        self.held = self.held.or(next.held);
+    }
+}
+
+/// The nodes of one body, the surface of another, and how they act on each other in a step.
+pub(super) struct OnSurface<'a> {
+    pub interaction: &'a Interaction,
+    pub sides: &'a Sides,
+    pub nodes: &'a NodeView<'a>,
+    pub tool: &'a RigidBody,
+    /// Length of the step, s.
+    pub dt: f64,
+}
+
+impl OnSurface<'_> {
+    /// Where a node touches, if it does. Takes in what it says of the time step.
+    #[inline(always)]
+    pub fn touching(&self, node: u32, near_nodes: &mut NearNodes) -> Option<NodeTouch> {
+        let Self { nodes, tool, .. } = self;
+        let i = node as usize;
+        let own_place = nodes.position(i);
+        let x = self.sides.near(own_place, tool);
+        let nearest = tool.surface.closest(tool.reference(x));
+        let normal = tool.state.rotation * nearest.normal;
+        let near = nodes.nearness(i, nearest.signed_distance, normal);
+        if near.overlap <= -NEAR * near.scale * nodes.size(i) || !nodes.is_there(i) {
+            return None;
+        }
+        let held = nodes.is_held(i).then_some(i);
+        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held });
+        let touches = near.overlap > 0.0;
+        // Where the body of the node has it, a period away from the image that touches.
+        touches.then(|| NodeTouch { x, shift: own_place - x, point: nearest.point, near })
+    }
+
+    /// The force of a node that touches, with its history.
+    #[inline(always)]
+    pub fn respond(
+        &self,
+        node: u32,
+        touch: &NodeTouch,
+        before: &History,
+        energies: &mut ContactEnergy,
+    ) -> (History, NodePush) {
+        let Self { interaction, nodes, tool, dt, .. } = self;
+        let i = node as usize;
+        let motion = nodes.motion(i, !interaction.is_elastic() || before.is_none());
+        let mut losses = Losses::default();
+        self.add_work_before(node, &motion, before, &mut losses);
+        let NodeTouch { x, shift, point, near } = *touch;
+        let (arm, normal) = (near.arms[0], near.normal);
+        let place = nodes.place(i, x, arm, || tool.place(point));
+        let state = ContactState {
+            touch: self.touch(i, near.overlap),
+            normal,
+            scale: near.scale,
+            area: 1.0,
+            arms: near.arms,
+            velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
+        };
+        let own = motion.inverse_mass(arm, place + shift);
+        let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
+        let response = interaction.respond(&state, inverse_mass, *dt, before);
+        losses.add_work(1.0, &response.history, state.velocity, *dt);
+        losses.keep(1.0, before, &response.history);
+        energies.losses.add(&losses);
+        energies.stored += response.spring.energy + response.history.energy();
+        let turning = if arm == DVec3::ZERO {
+            DVec3::ZERO
+        } else {
+            -response.spring.force * turn_of_normal(tool, x, normal, x - place)
+        };
+        let stiffness = [own(normal), tool.inverse_mass_at(place, normal)];
+        let stiffness = stiffness.map(|inverse_mass| response.spring.stiffness * inverse_mass);
+        let (force, heat) = (response.force, losses.friction);
+        (response.history, NodePush { arm, place, shift, force, center: x, turning, heat, stiffness })
+    }
+
+    /// Takes in the energy of a contact that has ended.
+    pub fn end(&self, node: u32, history: &History, energies: &mut ContactEnergy) {
+        let Self { interaction, sides, nodes, tool, dt } = self;
+        let i = node as usize;
+        let motion = nodes.motion(i, !interaction.is_elastic());
+        self.add_work_before(node, &motion, history, &mut energies.losses);
+        energies.losses.keep(1.0, history, &History::default());
+        if !nodes.is_there(i) {
+            let x = sides.near(nodes.position(i), tool);
+            let nearest = tool.surface.closest(tool.reference(x));
+            let state = ContactState {
+                touch: self.touch(i, history.overlap),
+                normal: tool.state.rotation * nearest.normal,
+                scale: 1.0,
+                area: 1.0,
+                arms: history.arms,
+                velocity: motion.velocity(DVec3::ZERO, x) - tool.velocity_at(x),
+            };
+            energies.removed += interaction.held(&state, *dt, history);
+        }
+    }
+
+    /// Adds the work of the forces of the last step on the motion of this one, where they act: at the node and, for a particle, `arm` beside it.
+    #[inline(always)]
+    fn add_work_before(&self, node: u32, motion: &NodeMotion<'_>, history: &History, losses: &mut Losses) {
+        if history.is_elastic() {
+            return;
+        }
+        let Self { sides, nodes, tool, .. } = self;
+        let (i, arm) = (node as usize, history.arms[0]);
+        let own_place = nodes.position(i);
+        let x = sides.near(own_place, tool);
+        let surface = || tool.place(tool.surface.closest(tool.reference(x)).point);
+        let place = nodes.place(i, x, arm, surface);
+        let velocity = motion.velocity(arm, place + (own_place - x)) - tool.velocity_at(place);
+        losses.add_work(1.0, history, velocity, self.dt);
+    }
+
+    /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, of which one is
+    /// `held`, 1/s2: a spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise.
+    pub fn expected(&self, held: Option<usize>, speed: f64, gravity: f64) -> f64 {
+        let Self { interaction, nodes, tool, .. } = self;
+        let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
+        let pull = |body: &RigidBody| (body.state.force / body.mass).length();
+        let (node, inverse_mass, own_pull) = match (nodes, held) {
+            (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), pull(body)),
+            (NodeView::Particles(_), Some(node)) => (node, inverse(tool), 0.0),
+            (NodeView::Particles(_), None) => return 0.0,
+        };
+        if inverse_mass == 0.0 {
+            return 0.0;
+        }
+        let touch = self.touch(node, 0.0);
+        // A body at rest may fall: what it gains over the length of a node counts as its speed.
+        let gain = gravity.max(own_pull).max(pull(tool));
+        let speed = speed + (2.0 * gain * touch.length).sqrt();
+        interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass
+    }
+
+    fn touch(&self, i: usize, overlap: f64) -> Touch {
+        let length = self.nodes.size(i);
+        let own = if self.nodes.radius(i) > 0.0 { self.nodes.radius(i) } else { 0.5 * length };
+        let radius = self.tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
+        let depth = if matches!(self.nodes, NodeView::Particles(_)) { own } else { f64::INFINITY };
+        Touch { overlap, radius, length, depth }
+    }
+}
+
+/// How the normal of a surface turns as a particle moves along the part of `p` that is across it: on curved surfaces and beside edges the overlap
+/// depends on that, because the reach of the particle does. Half-way inside a body normals jump, and there is no such thing.
+fn turn_of_normal(tool: &RigidBody, x: DVec3, normal: DVec3, p: DVec3) -> DVec3 {
+    const STEP: f64 = 1e-4;
+    let across = p - p.dot(normal) * normal;
+    let at = |s: f64| tool.surface.closest(tool.reference(x + s * across)).normal;
+    let change = at(STEP) - at(-STEP);
+    if change.length_squared() < 0.01 { tool.state.rotation * change / (2.0 * STEP) } else { DVec3::ZERO }
+}
