@@ -6,10 +6,10 @@ use thiserror::Error;
 
 use crate::notation::{number, quantity};
 use crate::record::probe::Probe;
-use crate::record::{OutputHandle, StateHash};
+use crate::record::{Output, StateHash};
 use crate::scene::{self, Precision, Scene, Source};
 use crate::schedule::{
-    Clock, Ledger, Limit, Resources, Schedule, Stage, Step, StepError, TimeStepLimits, Turn,
+    Clock, Ledger, Limit, Resources, Schedule, Shared, Stage, Step, StepError, TimeStepLimits, Turn,
 };
 use crate::world::{MissingColumn, PhaseId, World};
 
@@ -43,7 +43,7 @@ pub struct Simulation {
     warnings: Vec<String>,
     references: Vec<String>,
     started: bool,
-    output: Option<OutputHandle>,
+    output: Option<Shared<Output>>,
     probes: Vec<Probe>,
     checkpoint_at_end: bool,
     source: Source,
@@ -64,7 +64,7 @@ pub(crate) struct SimulationParts {
     /// Phases that take sub-steps in the steps of the rest.
     pub sub_cycled: Vec<PhaseId>,
     /// What it writes; none if it writes nothing.
-    pub output: Option<OutputHandle>,
+    pub output: Option<Shared<Output>>,
     /// Probes of the scene.
     pub probes: Vec<Probe>,
     /// The text of its scene.

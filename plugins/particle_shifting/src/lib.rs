@@ -7,15 +7,13 @@ mod displacement;
 mod local;
 mod response;
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use meshless_engine::formulations::fluid::{
     DensityShift, FlowCloud, Repayment, SHIFTING_ENERGY, displace, keep_rows,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{AccountKind, Run, Shared, Stage, Step, StepError, System};
 use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -66,20 +64,20 @@ impl Plugin for ParticleShifting {
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));
         // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies, however many have the plugin.
-        if let Some(shared) = sim.take_extensions::<Arc<Mutex<Shifted>>>().pop() {
-            shared.lock().unwrap_or_else(PoisonError::into_inner).extend(own);
-            sim.extend(shared);
+        if let Some(shifted) = sim.take_extensions::<Shared<Shifted>>().pop() {
+            sim.shared_mut(shifted).extend(own);
+            sim.extend(shifted);
             return Ok(());
         }
-        let shared = Arc::new(Mutex::new(own.collect::<Shifted>()));
+        let shifted = sim.share(own.collect::<Shifted>());
         let phases = sim.phases_of(&bodies);
         let work = Shifting {
             gravity: sim.gravity(),
-            bodies: Arc::clone(&shared),
+            bodies: shifted,
             fields: Fields::default(),
             repayment: Repayment::default(),
         };
-        sim.extend(shared);
+        sim.extend(shifted);
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_phases(phases)
@@ -99,7 +97,7 @@ impl Plugin for ParticleShifting {
 
 struct Shifting {
     gravity: DVec3,
-    bodies: Arc<Mutex<Shifted>>,
+    bodies: Shared<Shifted>,
     fields: Fields,
     repayment: Repayment,
 }
@@ -131,7 +129,7 @@ impl Run for Shifting {
         let resources = step.resources;
         let cloud = resources.get::<FlowCloud>();
         let cloud: &FlowCloud = &cloud;
-        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let bodies = resources.of(self.bodies);
         self.fields.resize(cloud.fluid);
         let Fields { locals, near_surface, shifts, moves, pending, responses } = &mut self.fields;
         let dt = step.clock.dt;

@@ -12,9 +12,9 @@ use super::spawn;
 use super::{clamps, lattice_edges, supports};
 use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::Probe;
-use crate::record::{OutputHandle, OutputPlan, Recorder};
+use crate::record::{Output, OutputPlan, Recorder};
 use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
-use crate::schedule::{Resources, Schedule};
+use crate::schedule::{Resources, Schedule, Shared};
 use crate::simulation::{Simulation, SimulationParts};
 use crate::world::{BodyId, BodySet};
 
@@ -86,7 +86,7 @@ fn build_in(
 
 /// What a simulation writes.
 struct Outputs {
-    output: Option<OutputHandle>,
+    output: Option<Shared<Output>>,
     probes: Vec<Probe>,
 }
 
@@ -108,8 +108,8 @@ fn start(
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
         .map_err(|e| vec![Problem::new(e.to_string())])?;
-    if let Some(output) = &output {
-        output.lock().prepare(&sim.references).map_err(|problem| vec![*problem])?;
+    if let Some(output) = output {
+        resources.of_mut(output).prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }
     let sound_speeds = sim.bodies().iter().map(|body| body.material.sound_speed()).collect();
     let parts = SimulationParts {

@@ -190,6 +190,11 @@ impl<'s> SimBuilder<'s> {
         self.shared.add(value)
     }
 
+    /// The value in a place that [`SimBuilder::share`] gave, while the simulation is put together.
+    pub fn shared_mut<T: Send + 'static>(&mut self, place: Shared<T>) -> &mut T {
+        self.shared.of_mut(place)
+    }
+
     /// Adds something to do once, after the particles are spawned and before the first step.
     pub fn add_setup(&mut self, step: impl FnOnce(&mut Setup<'_>) -> Result<(), SetupError> + 'static) {
         self.setup.push(Box::new(step));

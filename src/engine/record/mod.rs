@@ -18,7 +18,7 @@ pub use crate::fields::{ChosenField, Field, FieldInput, FieldTable};
 pub use atomic::{Existing, WriteError, write_atomically};
 pub use container::{Container, ContainerError, ContainerWriter, Section};
 pub use hash::{StateHash, StateHasher};
-pub use output::{Output, OutputHandle, OutputOptions, OutputPlan};
+pub use output::{Output, OutputOptions, OutputPlan};
 pub use recorder::{
     BodyFrame, BodyInfo, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 };

@@ -38,6 +38,11 @@ impl SharedValues {
         self.0.push(Box::new(value));
         Shared { number: self.0.len() - 1, of: PhantomData }
     }
+
+    /// The value in its place. Panics where the place is that of another simulation.
+    pub fn of_mut<T: Send + 'static>(&mut self, place: Shared<T>) -> &mut T {
+        self.0[place.number].downcast_mut().unwrap_or_else(|| panic!("no {place:?}"))
+    }
 }
 
 /// Values by their type, or by their type and a phase. What is not derived from the scene and the columns is kept

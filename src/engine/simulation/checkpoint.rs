@@ -114,8 +114,8 @@ impl Simulation {
     /// Writes a checkpoint, in one piece or not at all; `source` is the scene that the simulation was built from.
     pub fn save(&self, path: &Path, source: &Source) -> Result<(), SaveError> {
         // The state of the output speaks of bytes that must be there.
-        if let Some(output) = &self.output {
-            output.lock().sync()?;
+        if let Some(mut output) = self.output() {
+            output.sync()?;
         }
         let header = Header {
             scene_name: source.name.clone(),
@@ -189,8 +189,8 @@ impl Simulation {
         self.warnings = warnings.clone();
         self.started = true;
         self.pace.begin(self.clock.step);
-        if let Some(output) = &self.output {
-            output.lock().open(&self.world, &self.ledger, self.clock)?;
+        if let Some(mut output) = self.output() {
+            output.open(&self.world, &self.ledger, self.clock)?;
         }
         Ok(())
     }

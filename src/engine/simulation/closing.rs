@@ -1,35 +1,42 @@
 //! Checkpoints during a run, and its end: files closed, summary written.
 
+use std::cell::RefMut;
 use std::path::{Path, PathBuf};
 
 use super::{RunError, SaveError, Simulation, Summary};
 use crate::notation::quantity;
-use crate::record::{Existing, RecordError, write_atomically};
+use crate::record::{Existing, Output, RecordError, write_atomically};
 use crate::scene::Source;
 
 /// Relative balance error of the energy ledger at the end that is worth a warning.
 const BALANCE_WARNING: f64 = 1e-2;
 
 impl Simulation {
+    /// What it writes, if it writes anything.
+    pub(super) fn output(&self) -> Option<RefMut<'_, Output>> {
+        self.output.map(|place| self.resources.of_mut(place))
+    }
+
     /// Writes a checkpoint into the output folder, in place of the last one; returns its file, or none if the run
     /// writes nothing.
     ///
     /// # Errors
     /// It cannot be written.
     pub fn checkpoint(&mut self) -> Result<Option<PathBuf>, SaveError> {
-        let Some(output) = &self.output else { return Ok(None) };
-        let file = output.lock().checkpoint_file();
+        let Some(file) = self.output().map(|output| output.checkpoint_file()) else { return Ok(None) };
         // Files that a scene names are relative to its folder, also for a run that goes on from elsewhere.
         let name = std::path::absolute(&self.source.name)
             .map_or_else(|_| self.source.name.clone(), |path| path.display().to_string());
         self.save(&file, &Source::new(name, self.source.text.clone()))?;
         // The state is safe: a recorder that fails can no longer take it along.
-        output.lock().flush_recorders()?;
+        if let Some(mut output) = self.output() {
+            output.flush_recorders()?;
+        }
         Ok(Some(file))
     }
 
     pub(super) fn checkpoint_if_due(&mut self) -> Result<(), RunError> {
-        let due = self.output.as_ref().is_some_and(|output| output.lock().take_checkpoint_due());
+        let due = self.output().is_some_and(|mut output| output.take_checkpoint_due());
         if due {
             self.checkpoint()?;
         }
@@ -39,9 +46,9 @@ impl Simulation {
     /// Notes why the run cannot go on, and makes readable what was recorded.
     pub(super) fn fail(&mut self, error: &RunError) {
         self.failure = Some(error.to_string());
-        if let Some(output) = &self.output {
+        if let Some(mut output) = self.output() {
             // The failure of the run is told; one of this attempt would hide it.
-            let _ = output.lock().flush();
+            let _ = output.flush();
         }
     }
 
@@ -53,17 +60,18 @@ impl Simulation {
     /// Something cannot be written.
     pub fn finish(&mut self) -> Result<Summary, RunError> {
         self.warn_of_balance();
-        let begun = self.output.as_ref().filter(|output| output.lock().has_begun()).cloned();
-        let Some(output) = begun else { return Ok(self.summary()) };
+        if !self.output().is_some_and(|output| output.has_begun()) {
+            return Ok(self.summary());
+        }
         // Each part is tried, whatever has become of the others; the first fault is told.
         let kept = match self.failure.is_none() && (self.clock.time < self.end || self.checkpoint_at_end) {
             true => self.checkpoint().map(drop),
             false => Ok(()),
         };
-        let recorded = output.lock().finish(&self.warnings);
+        let recorded = self.output().map_or(Ok(()), |mut output| output.finish(&self.warnings));
         let summary = self.summary();
-        let file = output.lock().summary_file();
-        let written = write_summary(&file, &summary);
+        let file = self.output().map(|output| output.summary_file());
+        let written = file.map_or(Ok(()), |file| write_summary(&file, &summary));
         kept?;
         recorded?;
         written?;

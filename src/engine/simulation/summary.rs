@@ -117,8 +117,7 @@ impl Simulation {
         let accounts = self.ledger.accounts();
         let bodies = || self.world.bodies().iter().enumerate();
         let of_body = |k| accounts.iter().map(|a| (a.name.clone(), a.of(BodyId(k)))).collect();
-        let probes = self.output.as_ref().map(|output| {
-            let output = output.lock();
+        let probes = self.output().map(|output| {
             output.extremes().map(|(name, extremes)| (name.to_owned(), extremes.to_vec())).collect()
         });
         Summary {

@@ -1,12 +1,10 @@
 //! The system of all contacts of a scene.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds};
 use crate::contact::response::{ContactEnergy, energy};
 use crate::plugin::SimBuilder;
-use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::world::{
     Body, BodyId, BodySet, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition, Removed,
     Temperature, Velocity,
@@ -28,8 +26,8 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
         touching,
     };
     let deforms = contacts.touching.iter().any(Touching::deforms);
-    let shared = Arc::new(Mutex::new(contacts));
-    let mut system = System::new(Stage::Boundary, CONTACT, Meet(Arc::clone(&shared)));
+    let contacts = sim.share(contacts);
+    let mut system = System::new(Stage::Boundary, CONTACT, ContactSystem(contacts));
     if deforms {
         system = system.reads::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
     }
@@ -43,18 +41,12 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
             .reads::<Removed>()
             .touches("rigid_bodies", Mode::Adds),
     );
-    let push = move |step: &mut Step<'_>| lock(&shared).push(step);
+    let push = move |step: &mut Step<'_>| step.resources.of(contacts).push(step);
     let system = System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>();
     sim.add_system(if heats { system.reads::<Mass>().adds::<Temperature>() } else { system });
 }
 
-/// The contacts of the scene: two systems share them, which run one after the other.
-type Shared = Arc<Mutex<Contacts>>;
-
-fn lock(contacts: &Shared) -> MutexGuard<'_, Contacts> {
-    contacts.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
+/// The contacts of the scene, which two systems share.
 struct Contacts {
     bodies: Vec<(BodyId, MotionBounds)>,
     /// Bodies that friction may warm, with their specific heat, J/(kg K).
@@ -131,22 +123,23 @@ impl Contacts {
 }
 
 /// The system that works out the forces.
-struct Meet(Shared);
+struct ContactSystem(Shared<Contacts>);
 
-impl Run for Meet {
+impl Run for ContactSystem {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        lock(&self.0).meet(step)
+        let resources = step.resources;
+        resources.of_mut(self.0).meet(step)
     }
 
-    fn save(&self) -> Vec<u8> {
-        let contacts = lock(&self.0);
+    fn save_with(&self, resources: &Resources) -> Vec<u8> {
+        let contacts = resources.of(self.0);
         let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
         postcard::to_stdvec(&saved).unwrap_or_default()
     }
 
-    fn restore(&mut self, state: &[u8]) -> bool {
+    fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
         let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
-        let mut contacts = lock(&self.0);
+        let mut contacts = resources.of_mut(self.0);
         saved.len() == contacts.touching.len()
             && contacts.touching.iter_mut().zip(saved).all(|(pair, saved)| pair.restore(saved))
     }

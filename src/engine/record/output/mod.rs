@@ -17,7 +17,7 @@ pub use due::Output;
 pub use folder::{CHECKPOINT, ENERGY, OutputFolder, SUMMARY};
 pub use options::OutputOptions;
 pub use plan::OutputPlan;
-pub use system::{OUTPUT, OutputHandle};
+pub use system::OUTPUT;
 pub use table::Extreme;
 
 #[cfg(test)]

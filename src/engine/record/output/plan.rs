@@ -7,13 +7,14 @@ use super::due::{Output, OutputParts, SceneInfo};
 use super::folder::{ENERGY, OutputFolder};
 use super::frames::Frames;
 use super::options::OutputOptions;
-use super::system::{OutputHandle, output_system};
+use super::system::output_system;
 use super::track::Track;
 use crate::fields::{ChosenField, FieldTable};
 use crate::plugin::SimBuilder;
 use crate::record::probe::{EnergyColumns, Gauge, Probe};
 use crate::record::{Recorder, stop};
 use crate::scene::{Item, Place, Problem, Source};
+use crate::schedule::Shared;
 use crate::world::BodySet;
 
 /// What will be written, if anything is.
@@ -81,8 +82,13 @@ impl OutputPlan {
         self.probes.clone()
     }
 
-    /// Makes the output that writes it, and adds its system.
-    pub fn attach(self, sim: &mut SimBuilder<'_>, source: &Source, options: &OutputOptions) -> OutputHandle {
+    /// Makes the output that writes it, and adds its system; returns its place among what systems share.
+    pub fn attach(
+        self,
+        sim: &mut SimBuilder<'_>,
+        source: &Source,
+        options: &OutputOptions,
+    ) -> Shared<Output> {
         let scene = sim.scene();
         let name = Path::new(&source.name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let scene_name = name.unwrap_or_else(|| "scene".to_owned());
@@ -115,9 +121,9 @@ impl OutputPlan {
             end: scene.time.end,
             checkpoint_every: scene.record.checkpoint_every,
         });
-        let handle = OutputHandle::new(output);
-        sim.add_system(output_system(&handle, &needs));
-        handle
+        let output = sim.share(output);
+        sim.add_system(output_system(output, &needs));
+        output
     }
 }
 

@@ -1,46 +1,30 @@
-//! The system of the output, and the handle by which the simulation reaches what it writes.
-
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+//! The system of the output, which the simulation reaches by its place among what systems share.
 
 use super::due::Output;
-use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 
 /// Label of the system that writes, at the end of every step.
 pub const OUTPUT: &str = "output";
 
-/// The output, shared by its system and the simulation; only one of them runs at a time.
-#[derive(Clone)]
-pub struct OutputHandle(Arc<Mutex<Output>>);
-
-impl OutputHandle {
-    pub(super) fn new(output: Output) -> Self {
-        Self(Arc::new(Mutex::new(output)))
-    }
-
-    /// The output.
-    pub fn lock(&self) -> MutexGuard<'_, Output> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-struct OutputSystem(OutputHandle);
+struct OutputSystem(Shared<Output>);
 
 impl Run for OutputSystem {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        self.0.lock().record(step)
+        let resources = step.resources;
+        resources.of_mut(self.0).record(step)
     }
 
-    fn save(&self) -> Vec<u8> {
-        self.0.lock().save()
+    fn save_with(&self, resources: &Resources) -> Vec<u8> {
+        resources.of(self.0).save()
     }
 
-    fn restore(&mut self, state: &[u8]) -> bool {
-        self.0.lock().restore(state)
+    fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
+        resources.of_mut(self.0).restore(state)
     }
 }
 
 /// The system, which reads the columns of that name.
-pub(super) fn output_system(handle: &OutputHandle, columns: &[&'static str]) -> System {
-    let system = System::new(Stage::Record, OUTPUT, OutputSystem(handle.clone()));
+pub(super) fn output_system(output: Shared<Output>, columns: &[&'static str]) -> System {
+    let system = System::new(Stage::Record, OUTPUT, OutputSystem(output));
     columns.iter().fold(system, |system, column| system.touches(column, Mode::Reads))
 }
