@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::world::Force;
+use crate::world::{Force, sum_by_row};
 
 /// Velocities at mid-step of the particles of a phase that are taken out in this step, m/s. The last kick of their motion is one of forces that are
 /// only made after they have gone, and whoever makes such forces books what that kick would have taken from them: a formulation that puts this into its phase,
@@ -23,14 +23,24 @@ impl Leaving {
         self.0.push((row, velocity));
     }
 
-    /// The velocity of a row, m/s; zero if it has not gone in this step.
-    pub fn velocity(&self, row: usize) -> DVec3 {
-        self.0.iter().find(|entry| entry.0 as usize == row).map_or(DVec3::ZERO, |entry| entry.1)
+    /// Ends the step, after all rules: rows ascend from now on.
+    pub fn sort(&mut self) {
+        self.0.sort_unstable_by_key(|entry| entry.0);
     }
 
-    /// The power of forces on those among some rows, W.
+    /// The velocity of a row, m/s; zero if it has not gone in this step.
+    pub fn velocity(&self, row: usize) -> DVec3 {
+        let found = self.0.binary_search_by_key(&row, |entry| entry.0 as usize);
+        found.map_or(DVec3::ZERO, |k| self.0[k].1)
+    }
+
+    /// The power of forces on those among the rows of a body, W.
     pub fn power(&self, rows: &Range<usize>, force: &[Force]) -> f64 {
-        let gone = self.0.iter().filter(|(row, _)| rows.contains(&(*row as usize)));
-        gone.map(|(row, velocity)| force[*row as usize].0.dot(*velocity)).sum()
+        let below = |end: usize| self.0.partition_point(|entry| (entry.0 as usize) < end);
+        let gone = &self.0[below(rows.start)..below(rows.end)];
+        sum_by_row(rows.len(), gone.len(), &|k| gone[k].0 as usize - rows.start, &|k| {
+            let (row, velocity) = gone[k];
+            force[row as usize].0.dot(velocity)
+        })
     }
 }

@@ -9,10 +9,11 @@ use glam::DVec3;
 
 use super::domain::{DomainBox, RemoveOutside};
 use super::leaving::Leaving;
+use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::scene::Outside;
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, Mass, Mobility, Position, Removed, Velocity};
+use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
 
 /// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of neighbours are
 /// made `.after(REMOVAL)`.
@@ -65,58 +66,95 @@ impl Run for Removal {
             // From the first step on, so that the tables of energies have a column for it.
             step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         }
-        for phase in step.world.phases() {
-            if let Some(mut leaving) = step.resources.try_get_mut_of::<Leaving>(phase) {
-                leaving.clear();
-            }
-        }
+        leaving_of_phases(step, Leaving::clear);
         for rule in &mut self.rules {
             for body in (0..step.world.bodies().len()).map(BodyId) {
                 self.rows.clear();
                 rule.rows(step, body, &mut self.rows)?;
-                remove(step, body, &self.rows)?;
+                if !self.rows.is_empty() {
+                    keep_present(step, body, &mut self.rows)?;
+                    remove(step, body, &self.rows)?;
+                }
             }
         }
+        leaving_of_phases(step, Leaving::sort);
         Ok(())
     }
 }
 
+/// Changes the list of what leaves of every phase that has one.
+fn leaving_of_phases(step: &Step<'_>, change: impl Fn(&mut Leaving)) {
+    for phase in step.world.phases() {
+        if let Some(mut leaving) = step.resources.try_get_mut_of::<Leaving>(phase) {
+            change(&mut leaving);
+        }
+    }
+}
+
+/// Leaves only rows of a body that are there, each once and ascending.
+fn keep_present(step: &Step<'_>, body: BodyId, rows: &mut Vec<u32>) -> Result<(), StepError> {
+    let removed = step.world.body_view(body).0.read::<Removed>()?;
+    rows.retain(|row| removed[*row as usize] == Removed::NO);
+    rows.sort_unstable();
+    rows.dedup();
+    Ok(())
+}
+
+/// Removes rows of a body, ascending, that are there.
 fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepError> {
     if rows.is_empty() {
         return Ok(());
     }
-    let (view, _) = step.world.body_view(body);
-    let mut leaving = step.resources.try_get_mut_of::<Leaving>(step.world.body(body).phase);
-    let mut removed = view.write::<Removed>()?;
-    let mut velocity = view.write::<Velocity>()?;
-    let mut force = view.write::<Force>()?;
-    let mut mobility = view.write::<Mobility>()?;
-    let mass = view.read::<Mass>()?;
+    let (view, own) = step.world.body_view(body);
     let due = step.turn.is_due(step.world, body);
-    let mut kinetic = 0.0;
-    for row in rows.iter().map(|&row| row as usize) {
-        if removed[row] == Removed::YES {
-            continue;
+    let mut leaving = step.resources.try_get_mut_of::<Leaving>(step.world.body(body).phase);
+    let kinetic = {
+        let (velocity, force) = (view.read::<Velocity>()?, view.read::<Force>()?);
+        let (mobility, mass) = (view.read::<Mobility>()?, view.read::<Mass>()?);
+        let (velocity, force, mobility, mass) = (&velocity[..], &force[..], &mobility[..], &mass[..]);
+        if let Some(leaving) = leaving.as_mut().filter(|_| due) {
+            rows.iter().for_each(|&row| leaving.push(row, velocity[row as usize].0));
         }
-        // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take sub-steps are there.
-        let kick = if due { 0.5 * step.clock.dt * (force[row].0 * mobility[row].0) } else { DVec3::ZERO };
-        let v = velocity[row].0;
-        kinetic += 0.5 * mass[row].0 * (v.length_squared() + kick.length_squared());
-        match &mut leaving {
-            // What the new forces would take from the motion is booked by those who make them.
-            Some(leaving) if due => leaving.push(row as u32, v),
-            _ => kinetic += mass[row].0 * v.dot(kick),
-        }
-        removed[row] = Removed::YES;
-        velocity[row] = Velocity(DVec3::ZERO);
-        force[row] = Force(DVec3::ZERO);
-        mobility[row] = Mobility(DVec3::ZERO);
-    }
+        // The last kick is that of forces which are only made after they have gone. Who makes them books what it would take from the motion, if they
+        // ask who leaves.
+        let kick_takes = leaving.is_none();
+        let half_step = 0.5 * step.clock.dt;
+        sum_by_row(own.len(), rows.len(), &|k| rows[k] as usize - own.start, &|k| {
+            let row = rows[k] as usize;
+            // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take sub-steps are there.
+            let v = velocity[row].0;
+            let kick = if due { half_step * (force[row].0 * mobility[row].0) } else { DVec3::ZERO };
+            let power = if kick_takes { 2.0 * v.dot(kick) } else { 0.0 };
+            0.5 * mass[row].0 * (v.length_squared() + kick.length_squared() + power)
+        })
+    };
+    clear(&view, rows)?;
     let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
     step.ledger.add(account, body, kinetic);
     if !due {
         let held = step.ledger.account("kinetic", AccountKind::Stored);
         step.ledger.add(held, body, -kinetic);
     }
+    Ok(())
+}
+
+/// Marks rows as removed: nothing moves them from now on.
+fn clear(view: &PhaseView<'_>, rows: &[u32]) -> Result<(), StepError> {
+    let (mut removed, mut velocity) = (view.write::<Removed>()?, view.write::<Velocity>()?);
+    let (mut force, mut mobility) = (view.write::<Force>()?, view.write::<Mobility>()?);
+    let kinematics = (Picked::new(rows, &mut removed), Picked::new(rows, &mut velocity));
+    let dynamics = (Picked::new(rows, &mut force), Picked::new(rows, &mut mobility));
+    type Kinematics<'a> = (Picked<'a, Removed>, Picked<'a, Velocity>);
+    type Dynamics<'a> = (Picked<'a, Force>, Picked<'a, Mobility>);
+    type Rows<'a> = (Kinematics<'a>, Dynamics<'a>);
+    sum_over_blocks((kinematics, dynamics), &|_, (kinematics, dynamics): Rows<'_>| {
+        let ((mut removed, mut velocity), (mut force, mut mobility)) = (kinematics, dynamics);
+        for k in 0..removed.len() {
+            *removed.row(k) = Removed::YES;
+            *velocity.row(k) = Velocity(DVec3::ZERO);
+            *force.row(k) = Force(DVec3::ZERO);
+            *mobility.row(k) = Mobility(DVec3::ZERO);
+        }
+    });
     Ok(())
 }

@@ -9,7 +9,7 @@ use super::columns::SkinView;
 use super::skin::Skin;
 use crate::parallel::{FourLanes, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::SolidPhase;
-use crate::world::Force;
+use crate::world::{Force, sum_by_row};
 
 /// In the place of a number for vertices that are not in the patch.
 const NONE: u32 = u32::MAX;
@@ -337,8 +337,10 @@ impl Patch {
         if last.len() != self.forces.len() {
             last.clone_from(&self.forces);
         }
-        let ways = self.now.iter().zip(last.iter().zip(&self.forces));
-        let power: f64 = ways.map(|(now, (last, force))| 0.5 * (*last + *force).dot(now.velocity)).sum();
+        let (numbers, old) = (&self.vertices[..], &last[..]);
+        let power = sum_by_row(self.skin.vertices(), numbers.len(), &|k| numbers[k] as usize, &|k| {
+            0.5 * (old[k] + self.forces[k]).dot(self.now[k].velocity)
+        });
         last.copy_from_slice(&self.forces);
         power * dt
     }

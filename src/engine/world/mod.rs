@@ -1,6 +1,7 @@
 //! The world: particles as hecs entities, component columns with symbol and unit, bodies as row ranges.
 
 mod body;
+mod by_row;
 mod column;
 mod permute;
 mod registry;
@@ -8,6 +9,7 @@ mod standard;
 mod state;
 
 pub use body::{Body, BodyId, BodySet};
+pub use by_row::sum_by_row;
 pub use column::{Column, Value};
 pub use registry::{ColumnInfo, ColumnSet};
 pub use standard::*;

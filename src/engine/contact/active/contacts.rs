@@ -1,9 +1,10 @@
 //! The active contacts of a step and their forces. Both are computed in parallel and kept in the order of the
-//! candidates. Sums are taken over blocks of contacts, so that nothing depends on the number of threads or on the age of the list of candidates.
+//! candidates. Energies are added by the nodes of the first body, in blocks of its rows, so that nothing depends on the number of threads or on the age of the list of candidates.
 
 use super::filter::{BLOCKS_OF_TEST, Found, keep};
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::parallel::{BLOCK, BlockSum, block_count, for_each_block_in_tasks, for_each_heavy_block};
+use crate::world::sum_by_row;
 
 /// In the place of a number for candidates that do not touch.
 const NONE: u32 = u32::MAX;
@@ -17,7 +18,7 @@ pub(in crate::contact) struct ActiveContacts<T, P, E> {
     numbers: Numbers,
     pub histories: Histories,
     pushes: Vec<P>,
-    sums: Vec<ContactEnergy>,
+    energies: Vec<ContactEnergy>,
 }
 
 /// Which contact belongs to a candidate.
@@ -48,7 +49,7 @@ impl<T, P, E> Default for ActiveContacts<T, P, E> {
             numbers: Numbers::default(),
             histories: Histories::default(),
             pushes: Vec::new(),
-            sums: Vec::new(),
+            energies: Vec::new(),
         }
     }
 }
@@ -68,7 +69,7 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         room(&mut self.numbers.within, count);
         room(&mut self.numbers.first, blocks);
         room(&mut self.found, blocks);
-        room(&mut self.sums, blocks);
+        room(&mut self.energies, count);
         self.histories.reserve(count);
     }
 
@@ -122,40 +123,45 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
     }
 
     /// Works out what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
-    /// lose.
+    /// lose, added by the `nodes` of the first body.
     pub fn respond(
         &mut self,
+        nodes: usize,
         each: impl Fn(PairKey, &T, &History, &mut ContactEnergy) -> (History, P) + Sync,
         end: impl Fn(PairKey, &History, &mut ContactEnergy) + Sync,
     ) -> ContactEnergy {
-        let Self { met, pushes, histories, sums, .. } = self;
+        let Self { met, pushes, histories, energies, .. } = self;
         pushes.resize(met.len(), P::default());
         let (old, new) = histories.generations(met.len());
-        let rows = (&met[..], new, &mut pushes[..]);
-        type Rows<'a, T, P> = (&'a [(PairKey, T)], &'a mut [(PairKey, History)], &'a mut [P]);
-        let mut energies = for_each_heavy_block(rows, sums, &|_, (met, new, pushes): Rows<'_, T, P>| {
-            let mut energies = ContactEnergy::default();
+        energies.clear();
+        energies.resize(met.len(), ContactEnergy::default());
+        let rows = (&met[..], new, &mut pushes[..], &mut energies[..]);
+        type Rows<'a, T, P> =
+            (&'a [(PairKey, T)], &'a mut [(PairKey, History)], &'a mut [P], &'a mut [ContactEnergy]);
+        for_each_heavy_block(rows, &mut Vec::new(), &|_, (met, new, pushes, energies): Rows<'_, T, P>| {
             let mut old = Passing::new(old, met[0].0);
-            for (((key, met), new), push) in met.iter().zip(new).zip(pushes) {
+            for ((((key, met), new), push), energy) in met.iter().zip(new).zip(pushes).zip(energies) {
                 let before = old.at(*key).map_or(History::default(), |entry| entry.1);
-                let (history, pushed) = each(*key, met, &before, &mut energies);
+                let (history, pushed) = each(*key, met, &before, energy);
                 (*new, *push) = ((*key, history), pushed);
             }
-            energies
         });
-        let ended = for_each_heavy_block(old, sums, &|_, old: &[(PairKey, History)]| {
-            let mut energies = ContactEnergy::default();
+        let mut sum = sum_by_row(nodes, met.len(), &|k| met[k].0.0 as usize, &|k| energies[k]);
+        energies.clear();
+        energies.resize(old.len(), ContactEnergy::default());
+        let rows = (old, &mut energies[..]);
+        type Ended<'a> = (&'a [(PairKey, History)], &'a mut [ContactEnergy]);
+        for_each_heavy_block(rows, &mut Vec::new(), &|_, (old, energies): Ended<'_>| {
             let mut met = Passing::new(met, old[0].0);
-            for (key, history) in old {
+            for ((key, history), energy) in old.iter().zip(energies) {
                 if met.at(*key).is_none() {
-                    end(*key, history, &mut energies);
+                    end(*key, history, energy);
                 }
             }
-            energies
         });
-        energies.add(&ended);
+        sum.add(&sum_by_row(nodes, old.len(), &|k| old[k].0.0 as usize, &|k| energies[k]));
         self.histories.turn();
-        energies
+        sum
     }
 }
 
@@ -191,6 +197,7 @@ mod tests {
             assert_eq!(number, touching.iter().position(|touching| touching == key));
         }
         let energies = contacts.respond(
+            200,
             |key, found, before, _| {
                 assert_eq!(*found, key.0 + key.1);
                 let overlap = if before.is_none() { 1.0 } else { before.overlap + 1.0 };
@@ -202,6 +209,28 @@ mod tests {
         let entries = contacts.histories.entries().iter();
         let again = entries.filter(|entry| entry.1.overlap > 1.0).map(|entry| entry.0);
         (again.collect(), energies.stored as usize)
+    }
+
+    /// The energies of contacts of these pairs; those of nodes below 100 hold nothing.
+    fn stored(pairs: &[PairKey]) -> ContactEnergy {
+        let mut contacts = ActiveContacts::<(), (), ()>::default();
+        contacts.find(pairs, |_, ()| Some(()));
+        contacts.respond(
+            4_000,
+            |(i, j), (), _, energies| {
+                energies.stored = if i < 100 { 0.0 } else { (f64::from(i + 7 * j) * 0.7).sin() * 1e3 };
+                Default::default()
+            },
+            |_, _, _| (),
+        )
+    }
+
+    #[test]
+    fn energies_do_not_depend_on_how_many_contacts_other_nodes_have() {
+        let own = |i: u32| (0..1 + i % 3).map(move |j| (i, j));
+        let some: Vec<PairKey> = (100..4_000).flat_map(own).collect();
+        let more: Vec<PairKey> = (0..37).flat_map(own).chain(some.iter().copied()).collect();
+        assert_eq!(stored(&some).stored.to_bits(), stored(&more).stored.to_bits());
     }
 
     #[test]

@@ -121,6 +121,7 @@ impl ParticleContact {
         contact_nodes[1].look(&pairs.second, contacts.numbers(), moving);
         let nodes = [&contact_nodes[0], &contact_nodes[usize::from(!of_itself)]];
         let energies = contacts.respond(
+            pairs.first.len(),
             |key, near, before, energies| pairs.respond(key, near, before, nodes, energies),
             |key, history, energies| pairs.end(key, history, energies),
         );

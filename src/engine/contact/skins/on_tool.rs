@@ -19,7 +19,7 @@ use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Patch, Skin, SkinColumns, Vertex, Wanted};
-use crate::world::BodyId;
+use crate::world::{BodyId, sum_by_row};
 
 /// Contact of a skin with a rigid body.
 pub(in crate::contact) struct SkinOnTool {
@@ -229,7 +229,7 @@ impl SkinOnTool {
             }
             energies.losses.keep(1.0, history, &History::default());
         };
-        contacts.respond(respond, end)
+        contacts.respond(patch.skin.vertices(), respond, end)
     }
 
     /// Pushes the vertices; returns what is on the tool about its centre.
@@ -242,19 +242,20 @@ impl SkinOnTool {
         {
             patch.push_vertex(number, pressed.force);
         }
-        let rows = (patch.vertices(), &pressed[..]);
-        sum_over_blocks(rows, &|_, (vertices, pressed): (&[Vertex], &[Pressed])| {
+        let (patch, pressed) = (&*patch, &*pressed);
+        let of_vertex = |k: usize| {
+            let (vertex, Pressed { force, spring, .. }) = (&patch.vertices()[k], &pressed[k]);
             let mut sums = Sums::default();
-            for (vertex, Pressed { force, spring, .. }) in vertices.iter().zip(pressed) {
-                if spring.force > 0.0 {
-                    sums.on_tool.push(vertex.place - tool.state.center, -*force);
-                    sums.of_tool +=
-                        spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
-                    sums.stored += spring.energy;
-                }
+            if spring.force > 0.0 {
+                sums.on_tool.push(vertex.place - tool.state.center, -*force);
+                sums.of_tool =
+                    spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
+                sums.stored = spring.energy;
             }
             sums
-        })
+        };
+        let numbers = patch.vertex_numbers();
+        sum_by_row(patch.skin.vertices(), numbers.len(), &|k| numbers[k] as usize, &of_vertex)
     }
 }
 

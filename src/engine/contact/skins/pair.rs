@@ -205,7 +205,8 @@ impl SkinPair {
             }
             energies.losses.keep(1.0, history, &History::default());
         };
-        (passes[side].respond(respond, end), gap)
+        let points = at.rule.len() * at.own.skin.facets.corners.len();
+        (passes[side].respond(points, respond, end), gap)
     }
 
     /// Pushes the vertices of both skins; returns the largest stiffness over an area.

@@ -50,30 +50,32 @@ impl SurfaceContact {
         let dt = step.clock.dt;
         let Self { interaction, sides, nearby, contacts, gravity, contact_nodes } = self;
         let of_particles = sides.nodes.particles();
-        let (energies, near, expected) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
-            let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
-            if is_new && of_particles.is_some() {
-                contact_nodes.renew(nearby.candidates(), &[End::First]);
-            }
-            if of_particles.is_none() {
-                contacts.reserve(nodes.len());
-            }
-            let on = OnSurface { interaction, sides, nodes, tool, dt };
-            let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
-                on.touching(node, near_nodes)
-            });
-            let energies = contacts.respond(
-                |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
-                |(node, _), history, energies| on.end(node, history, energies),
-            );
-            (energies, near, on.expected(near.held, speed, *gravity))
-        })?;
+        let (energies, near, expected, count) =
+            sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+                let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
+                if is_new && of_particles.is_some() {
+                    contact_nodes.renew(nearby.candidates(), &[End::First]);
+                }
+                if of_particles.is_none() {
+                    contacts.reserve(nodes.len());
+                }
+                let on = OnSurface { interaction, sides, nodes, tool, dt };
+                let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
+                    on.touching(node, near_nodes)
+                });
+                let energies = contacts.respond(
+                    nodes.len(),
+                    |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
+                    |(node, _), history, energies| on.end(node, history, energies),
+                );
+                (energies, near, on.expected(near.held, speed, *gravity), nodes.len())
+            })?;
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {
             let NodePush { force, arm, turning, stiffness, heat, .. } = pushes[number];
             Pull { force, arm, beside: turning, stiffness: stiffness[0], heat: interaction.heat[0] * heat }
         });
-        let [particle, rigid] = push(sides, pushes, &mut bodies);
+        let [particle, rigid] = push(sides, contacts.met(), pushes, count, &mut bodies);
         let squared = rigid + if of_particles.is_some() { contact_nodes.stiffest() } else { particle };
         let pair = (sides.first, sides.second);
         match of_particles {

@@ -3,8 +3,10 @@
 use glam::DVec3;
 
 use crate::contact::bodies::Sides;
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::contact::response::PairKey;
+use crate::parallel::BlockSum;
 use crate::rigid::{RigidBody, Wrench};
+use crate::world::sum_by_row;
 
 /// What a contact does to both sides.
 #[derive(Clone, Copy, Default)]
@@ -42,22 +44,26 @@ impl BlockSum for Pushes {
     }
 }
 
-/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place. Returns the sums of stiffness over mass of both sides, 1/s2.
-pub(in crate::contact) fn push(sides: &Sides, pushes: &[NodePush], bodies: &mut [RigidBody]) -> [f64; 2] {
+/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place; `count` is the number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
+pub(super) fn push<T: Sync>(
+    sides: &Sides,
+    met: &[(PairKey, T)],
+    pushes: &[NodePush],
+    count: usize,
+    bodies: &mut [RigidBody],
+) -> [f64; 2] {
     let of = |id| bodies.iter().position(|body: &RigidBody| body.id == id);
     let both = [of(sides.first), of(sides.second)];
     let middle = both.map(|k| k.map_or(DVec3::ZERO, |k| bodies[k].state.center));
-    let Pushes { on, stiffness } = sum_over_blocks(pushes, &|_, pushes: &[NodePush]| {
-        let mut sum = Pushes::default();
-        for NodePush { place, center, shift, force, turning, stiffness, .. } in pushes {
-            sum.on[0].push(*place + *shift - middle[0], *force);
-            sum.on[1].push(*place - middle[1], -*force);
-            sum.on[1].push(*center - middle[1], -*turning);
-            sum.stiffness[0] += stiffness[0];
-            sum.stiffness[1] += stiffness[1];
-        }
+    let of_contact = |k: usize| {
+        let NodePush { place, center, shift, force, turning, stiffness, .. } = pushes[k];
+        let mut sum = Pushes { stiffness, ..Pushes::default() };
+        sum.on[0].push(place + shift - middle[0], force);
+        sum.on[1].push(place - middle[1], -force);
+        sum.on[1].push(center - middle[1], -turning);
         sum
-    });
+    };
+    let Pushes { on, stiffness } = sum_by_row(count, pushes.len(), &|k| met[k].0.0 as usize, &of_contact);
     for (k, on) in both.into_iter().zip(on) {
         if let Some(k) = k {
             bodies[k].push(&on);
