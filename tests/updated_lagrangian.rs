@@ -107,7 +107,7 @@ fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
 
 #[test]
 fn a_thrown_body_keeps_its_momenta_and_its_energy_through_updates() {
-    let mut sim = simulation(&thrown("UpdatedLagrangian()"));
+    let mut sim = simulation(&thrown("UpdatedLagrangian(update: Adaptive(change: 0.25))"));
     sim.run(|sim| sim.clock().step < 1).expect("a step");
     let (linear, angular) = momenta(&sim);
     sim.run(|sim| sim.clock().time < 20.0).expect("a run");
@@ -177,6 +177,23 @@ fn frequent_updates_take_no_energy_out_of_the_motion() {
     }
 }
 
+/// Irregular particles are updated by few of them at the edge, whose strain is largest.
+#[test]
+fn a_body_of_random_particles_that_breathes_by_a_fifth_keeps_its_energy() {
+    let scene = include_str!("validation/patch/scene.ron")
+        .replace("StVenantKirchhoff", "NeoHookean")
+        .replace("TotalLagrangian(neighbors: 12)", "UpdatedLagrangian()")
+        .replace("0.1*", "0.2*")
+        .replace("end: 308.0", "end: 15.5");
+    let mut sim = simulation(&Source::new("patch.ron", scene));
+    sim.start().expect("a start");
+    let start = sim.ledger().stored();
+    sim.run(|_| true).expect("a run");
+    let drift = sim.ledger().stored() / start - 1.0;
+    assert!(drift.abs() < 0.06, "{drift}");
+    assert!(sim.ledger().total_named("reference_update") != 0.0, "it is updated");
+}
+
 #[test]
 fn a_gate_beside_water_moves_alike_in_every_formulation() {
     let scene = include_str!("validation/elastic_gate/scene.ron");
@@ -227,9 +244,10 @@ fn a_bar_that_is_squeezed_to_a_tenth_becomes_ten_times_as_wide() {
         assert!((volume - 1.0).abs() < 0.01, "{formulation}: volume {volume}");
         (widest(&sim) / (start * 2.3f64.exp()) - 1.0).abs()
     };
+    let often = error("UpdatedLagrangian(update: Adaptive(change: 0.25))");
     let (updated, total) = (error("UpdatedLagrangian"), error("TotalLagrangian"));
-    assert!(updated < 0.025, "the width is off by {updated}");
-    assert!(updated < total, "{updated}, {total} of a total-Lagrangian bar");
+    assert!(often < 0.025, "the width is off by {often}");
+    assert!(often < updated && updated < total, "{often}, {updated}, {total} of a total-Lagrangian bar");
 }
 
 /// A metal bar of 5 x 15 particles that hits a wall and flows.

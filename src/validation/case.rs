@@ -78,6 +78,7 @@ macro_rules! for_each_case {
             K6E solids::eulerian::THROWN;
             M4E solids::eulerian::SHEAR;
             S1E solids::patch::EULERIAN;
+            S1U solids::patch::UPDATED;
             S8E solids::eulerian::PLATE;
             S9E solids::eulerian::FLAG;
             S11E solids::eulerian::COLUMN;
