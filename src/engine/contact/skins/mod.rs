@@ -12,6 +12,8 @@ mod near_skins;
 
 mod foot;
 
+mod side;
+
 mod pair;
 
 pub(super) use on_tool::SkinOnTool;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::near_tool::NearTool;
-use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen};
+use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen, touch_of};
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{MotionBounds, Sides, failed};
 use crate::contact::laws::Touch;
@@ -112,7 +112,7 @@ impl SkinOnTool {
         energies.stored += stored;
         tool.push(&on_tool);
         self.patch.hand_on();
-        let (touch, usual) = self.touch(tool);
+        let (touch, usual) = touch_of(&skin, tool);
         let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
         let (stiffest, gap) = (stiffest.0, gap.0);
         let keeps_reference = time_step::keeps_reference(step, skin.body);
@@ -122,37 +122,38 @@ impl SkinOnTool {
         Ok(energies)
     }
 
-    /// The law at an overlap of zero, and the area for which it holds, m2 (m).
-    fn touch(&self, tool: &RigidBody) -> (Touch, f64) {
-        let length = self.patch.skin.spacing;
-        let own = 0.5 * length;
-        let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
-        (
-            Touch { overlap: 0.0, radius, length, depth: own },
-            length.powi(self.patch.skin.facets.axes as i32 - 1),
-        )
-    }
-
     /// Works out what presses on the vertices.
     fn press(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
-        let (touch, usual) = self.touch(tool);
-        let Self { interaction, patch, points, near, seen, reached, on_facets, pressed, even, .. } = self;
-        let (interaction, patch, points) = (&*interaction, &*patch, &*points);
-        let on = Pressing { interaction, patch, tool, touch, usual, dt };
-        let vertices = patch.vertices();
+        self.look(tool, dt);
+        let mut extremes = self.press_facets(tool, dt);
+        self.gather();
+        extremes.add(&self.press_vertices(tool, dt));
+        extremes
+    }
+
+    /// Works out what the vertices see of the tool.
+    fn look(&mut self, tool: &RigidBody, dt: f64) {
+        let Self { interaction, patch, seen, .. } = self;
+        let (on, vertices) = (Pressing::new(interaction, patch, tool, dt), patch.vertices());
         seen.resize(vertices.len(), Seen::default());
         let rows = (&mut seen[..], vertices);
         for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [Seen], &[Vertex])| {
             for (seen, vertex) in seen.iter_mut().zip(vertices) {
-                let (distance, normal, approach) = on.look(vertex.place, vertex.velocity);
-                *seen = Seen { distance, normal, approach };
+                *seen = on.look(vertex.place, vertex.velocity);
             }
         });
+    }
+
+    /// Works out what the points of every facet near the tool press on its vertices.
+    fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+        let Self { interaction, patch, points, near, seen, reached, on_facets, .. } = self;
+        let (patch, points, seen) = (&*patch, &*points, &*seen);
+        let on = Pressing::new(interaction, patch, tool, dt);
         reached.resize(near.facets.len(), Reached::Partly);
         on_facets.resize(near.facets.len(), Default::default());
         let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
         type Rows<'a> = (&'a [u32], &'a mut [Reached], &'a mut [[Pressed; 3]]);
-        let mut extremes = sum_over_blocks(rows, &|_, (facets, reached, on_facets): Rows<'_>| {
+        sum_over_blocks(rows, &|_, (facets, reached, on_facets): Rows<'_>| {
             let mut extremes = Extremes::default();
             for ((&facet, reached), on_facet) in facets.iter().zip(reached).zip(on_facets) {
                 let corners = patch.corners(facet);
@@ -167,15 +168,39 @@ impl SkinOnTool {
                 match *reached {
                     Reached::No(distance) => extremes.gap.add_length(distance),
                     Reached::Evenly => {}
-                    reached => *on_facet = points.press(&on, facet, (reached, seen), &mut extremes),
+                    reached => *on_facet = points.press(&on, facet, reached, seen, &mut extremes),
                 }
             }
             extremes
-        });
-        gather(patch, (&near.facets, reached, on_facets), pressed, even);
+        })
+    }
+
+    /// Adds up what the facets press on every vertex, and the area of even facets that is its own.
+    fn gather(&mut self) {
+        let Self { patch, near, reached, on_facets, pressed, even, .. } = self;
+        let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
+        pressed.clear();
+        pressed.resize(vertices, Pressed::default());
+        even.clear();
+        even.resize(vertices, 0.0);
+        for ((&facet, reached), on) in near.facets.iter().zip(&*reached).zip(&*on_facets) {
+            let numbers = patch.numbers(facet);
+            let part = patch.skin.measure[facet as usize] / axes as f64;
+            match reached {
+                Reached::No(_) => {}
+                Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
+                _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
+            }
+        }
+    }
+
+    /// Adds what the areas of even facets press on their vertices.
+    fn press_vertices(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
+        let Self { interaction, patch, seen, pressed, even, .. } = self;
+        let on = Pressing::new(interaction, patch, tool, dt);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
-        type Ends<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
-        let at_vertices = sum_over_blocks(rows, &|_, (pressed, seen, even): Ends<'_>| {
+        type Rows<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
+        sum_over_blocks(rows, &|_, (pressed, seen, even): Rows<'_>| {
             let mut extremes = Extremes::default();
             for ((pressed, seen), &area) in
                 pressed.iter_mut().zip(seen).zip(even).filter(|(_, area)| **area > 0.0)
@@ -183,14 +208,12 @@ impl SkinOnTool {
                 pressed.add(1.0, &on.spring(seen, area, &mut extremes), seen.normal, area, -seen.distance);
             }
             extremes
-        });
-        extremes.add(&at_vertices);
-        extremes
+        })
     }
 
     /// Works out dashpot and friction at the vertices that are pressed.
     fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
-        let (usual, _) = self.touch(tool);
+        let (usual, _) = touch_of(&self.patch.skin, tool);
         let Self { interaction, patch, pressed, touching, contacts, .. } = self;
         let (patch, pressed) = (&*patch, &*pressed);
         touching.clear();
@@ -256,28 +279,5 @@ impl SkinOnTool {
         };
         let numbers = patch.vertex_numbers();
         sum_by_row(patch.skin.vertices(), numbers.len(), &|k| numbers[k] as usize, &of_vertex)
-    }
-}
-
-/// Adds up what the facets press on every vertex, and the area of even facets that is its own.
-fn gather(
-    patch: &Patch,
-    (facets, reached, on_facets): (&[u32], &[Reached], &[[Pressed; 3]]),
-    pressed: &mut Vec<Pressed>,
-    even: &mut Vec<f64>,
-) {
-    let (axes, vertices) = (patch.skin.facets.axes, patch.vertices().len());
-    pressed.clear();
-    pressed.resize(vertices, Pressed::default());
-    even.clear();
-    even.resize(vertices, 0.0);
-    for ((&facet, reached), on) in facets.iter().zip(reached).zip(on_facets) {
-        let numbers = patch.numbers(facet);
-        let part = patch.skin.measure[facet as usize] / axes as f64;
-        match reached {
-            Reached::No(_) => {}
-            Reached::Evenly => numbers[..axes].iter().for_each(|&number| even[number] += part),
-            _ => numbers[..axes].iter().zip(on).for_each(|(&number, on)| pressed[number].join(on)),
-        }
     }
 }

@@ -11,7 +11,7 @@ use crate::contact::laws::{Spring, Touch};
 use crate::contact::response::Interaction;
 use crate::parallel::{BlockSum, Largest};
 use crate::rigid::RigidBody;
-use crate::skins::{Patch, Rule};
+use crate::skins::{Patch, Rule, Skin};
 
 /// No point of a facet is farther from its nearest vertex than that share of its longest side.
 const BEYOND: f64 = 0.6;
@@ -138,14 +138,14 @@ pub(super) struct Points {
 
 /// What all points of a step share.
 pub(super) struct Pressing<'a> {
-    pub interaction: &'a Interaction,
-    pub patch: &'a Patch,
-    pub tool: &'a RigidBody,
+    interaction: &'a Interaction,
+    patch: &'a Patch,
+    tool: &'a RigidBody,
     /// The law at an overlap of zero, and the area for which it holds, m2 (m).
-    pub touch: Touch,
-    pub usual: f64,
+    touch: Touch,
+    usual: f64,
     /// Length of the step, s.
-    pub dt: f64,
+    dt: f64,
 }
 
 impl Points {
@@ -159,7 +159,8 @@ impl Points {
         &self,
         on: &Pressing<'_>,
         facet: u32,
-        (reached, seen): (Reached, [&Seen; 3]),
+        reached: Reached,
+        seen: [&Seen; 3],
         extremes: &mut Extremes,
     ) -> [Pressed; 3] {
         if reached == Reached::Flat {
@@ -172,17 +173,17 @@ impl Points {
         for point in 0..rule.len() {
             let shares = rule.shares(point);
             let [p, q, r] = shares;
-            let (distance, normal, approach) = on.look(
+            let seen = on.look(
                 p * a.place + q * b.place + r * c.place,
                 p * a.velocity + q * b.velocity + r * c.velocity,
             );
-            if distance >= 0.0 {
-                extremes.gap.add_length(distance);
-            } else if distance < 0.0 {
+            if seen.distance >= 0.0 {
+                extremes.gap.add_length(seen.distance);
+            } else if seen.distance < 0.0 {
                 // What is not a number does not touch.
-                let spring = on.spring(&Seen { distance, normal, approach }, area, extremes);
+                let spring = on.spring(&seen, area, extremes);
                 for (pressed, share) in pressed.iter_mut().zip(shares) {
-                    pressed.add(share, &spring, normal, area, -distance);
+                    pressed.add(share, &spring, seen.normal, area, -seen.distance);
                 }
             }
         }
@@ -221,7 +222,21 @@ impl Points {
     }
 }
 
-impl Pressing<'_> {
+/// The law of a skin on a tool at an overlap of zero, and the area for which it holds, m2 (m).
+pub(super) fn touch_of(skin: &Skin, tool: &RigidBody) -> (Touch, f64) {
+    let length = skin.spacing;
+    let own = 0.5 * length;
+    let radius = tool.nodes.sphere().map_or(own, |other| own * other / (own + other));
+    (Touch { overlap: 0.0, radius, length, depth: own }, length.powi(skin.facets.axes as i32 - 1))
+}
+
+impl<'a> Pressing<'a> {
+    /// What the points of a patch on a tool share in a step of `dt`, s.
+    pub fn new(interaction: &'a Interaction, patch: &'a Patch, tool: &'a RigidBody, dt: f64) -> Self {
+        let (touch, usual) = touch_of(&patch.skin, tool);
+        Self { interaction, patch, tool, touch, usual, dt }
+    }
+
     /// The spring of a point that sees that and stands for an area, m2 (m).
     #[inline]
     pub fn spring(&self, seen: &Seen, area: f64, extremes: &mut Extremes) -> Spring {
@@ -231,11 +246,12 @@ impl Pressing<'_> {
         spring
     }
 
-    /// Distance of a place from the tool, m, the normal there, and the speed at which what moves at `velocity` approaches, m/s.
-    pub fn look(&self, x: DVec3, velocity: DVec3) -> (f64, DVec3, f64) {
+    /// Where the tool is as a place sees it that moves at `velocity`, m/s.
+    pub fn look(&self, x: DVec3, velocity: DVec3) -> Seen {
         let nearest = self.tool.surface.closest(self.tool.reference(x));
         let normal = self.tool.state.rotation * nearest.normal;
-        (nearest.signed_distance, normal, (self.tool.velocity_at(x) - velocity).dot(normal))
+        let approach = (self.tool.velocity_at(x) - velocity).dot(normal);
+        Seen { distance: nearest.signed_distance, normal, approach }
     }
 }
 
