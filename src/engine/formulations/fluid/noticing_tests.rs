@@ -247,6 +247,30 @@ fn lattices_that_do_not_fit_at_the_start_are_warned_of() {
 }
 
 #[test]
+fn a_fluid_that_starts_across_a_gap_from_its_floor_is_warned_of() {
+    let above = |bottom: f64| {
+        let scene = tank("", "", "time: (end: 1.0)").replace(
+            "Box(min: (0, 0), max: (0.6, 0.2))",
+            &format!("Box(min: (0, {bottom}), max: (0.6, {}))", bottom + 0.2),
+        );
+        let mut sim = simulation(&scene);
+        sim.run(|sim| sim.clock().step < 2).expect("a run");
+        warning(&sim, "`water` starts apart from `tank`").map(str::to_owned)
+    };
+    // Spacings of 0.02 m: the lowest row of 30 stands across .65 and 1.3 of them, less those in the corners that are nearer to the sides.
+    for (bottom, found) in [
+        (0.013, "28 of its particles face it across 0.65 spacings"),
+        (0.026, "26 of its particles face it across 1.30 spacings"),
+    ] {
+        let text = above(bottom).expect("a warning");
+        assert!(text.contains(found), "{text}");
+    }
+    assert_eq!(above(0.0), None);
+    // It is to fall.
+    assert_eq!(above(0.08), None);
+}
+
+#[test]
 fn walls_have_no_initial_velocity() {
     let more = r#"conditions: [InitialVelocity(on: Select(), value: (0.1, 0.0))], time: (end: 0.01)"#;
     let mut sim = simulation(&tank("", "", more));
