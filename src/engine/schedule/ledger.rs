@@ -38,6 +38,8 @@ pub struct Ledger {
     bodies: usize,
     stored_at_start: f64,
     largest: f64,
+    /// Energy below which all is round-off, J.
+    resolution: f64,
     /// Number of the system that runs.
     system: u32,
 }
@@ -133,6 +135,11 @@ impl Ledger {
         self.largest = turnover.fold(self.largest, f64::max);
     }
 
+    /// States the energy below which all is round-off, J.
+    pub fn set_resolution(&mut self, energy: f64) {
+        self.resolution = energy;
+    }
+
     /// The largest energy that any account has held, J.
     pub fn largest(&self) -> f64 {
         self.largest
@@ -143,9 +150,10 @@ impl Ledger {
         self.stored() - self.stored_at_start - self.supplied() + self.total_of(AccountKind::Dissipated)
     }
 
-    /// The balance error over the largest energy that any account has held.
+    /// The balance error over the largest energy that any account has held, or over the energy below which all is round-off where that is larger.
     pub fn relative_error(&self) -> f64 {
-        if self.largest > 0.0 { self.balance_error() / self.largest } else { 0.0 }
+        let scale = self.largest.max(self.resolution);
+        if scale > 0.0 { self.balance_error() / scale } else { 0.0 }
     }
 }
 
@@ -182,6 +190,20 @@ mod tests {
         ledger.add(gravity, BodyId(0), 0.7);
         assert!((ledger.relative_error() + 0.1).abs() < 1e-12);
         assert_eq!(ledger.account("kinetic", AccountKind::Stored), kinetic);
+    }
+
+    #[test]
+    fn round_off_is_no_balance_error() {
+        let mut ledger = Ledger::new(1);
+        let strain = ledger.account("strain", AccountKind::Stored);
+        ledger.set_resolution(1e-8);
+        ledger.open();
+        ledger.set(strain, BodyId(0), 2e-14);
+        ledger.close_step();
+        assert!(ledger.relative_error() < 1e-5);
+        ledger.set(strain, BodyId(0), 2.0);
+        ledger.close_step();
+        assert_eq!(ledger.relative_error(), 1.0);
     }
 
     #[test]

@@ -78,7 +78,7 @@ pub enum StepError {
     /// The bodies hold far more energy than they were given.
     #[error(
         "the stored energy has grown to {}, more than {factor} times the {} present at the start or supplied since, at step {step}, \
-         time {}; most of it is `{account}` energy of body `{body}`: the run is unstable, a smaller time step or a damping may help",
+         time {}; most of it is `{account}` energy of body `{body}`: the run is unstable, a smaller time step or a damping may help{advice}",
         quantity(*.stored, "J"),
         quantity(*.available, "J"),
         quantity_to(*.time, "s", 6)
@@ -98,6 +98,8 @@ pub enum StepError {
         step: u64,
         /// Time, s.
         time: f64,
+        /// What else may help; empty, or starting with `; `.
+        advice: String,
     },
     /// What the run writes could not be written.
     #[error("{0}")]

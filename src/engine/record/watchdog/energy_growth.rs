@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::remedies::Remedies;
 use crate::materials::Law;
 use crate::plugin::{BodyPlan, SimBuilder};
-use crate::schedule::{AccountKind, Clock, Ledger, StepError};
+use crate::schedule::{AccountKind, Ledger, Step, StepError};
 use crate::world::{BodyId, World};
 
 /// Stored energy over what was there at the start or supplied since, beyond which the run is stopped.
@@ -27,13 +28,8 @@ pub(super) struct EnergyGrowth {
 
 impl EnergyGrowth {
     /// Looks at a step; stored energy below `resolution`, J, is round-off.
-    pub fn look(
-        &mut self,
-        ledger: &Ledger,
-        world: &World,
-        clock: Clock,
-        resolution: f64,
-    ) -> Result<(), StepError> {
+    pub fn look(&mut self, step: &Step<'_>, resolution: f64, remedies: &Remedies) -> Result<(), StepError> {
+        let (ledger, clock) = (&*step.ledger, step.clock);
         let stored = ledger.stored();
         self.available = self.available.max(ledger.stored_at_start() + ledger.supplied());
         let sound = self.available <= 0.0 || stored <= (FACTOR * self.available).max(resolution);
@@ -41,7 +37,9 @@ impl EnergyGrowth {
         if self.beyond < PATIENCE {
             return Ok(());
         }
-        let (account, body) = largest(ledger, world);
+        let (account, body) = largest(ledger, step.world);
+        let advice =
+            remedies.of_tension(step, Some(&body)).map_or_else(String::new, |text| format!("; {text}"));
         Err(StepError::EnergyGrowth {
             stored,
             factor: FACTOR,
@@ -50,6 +48,7 @@ impl EnergyGrowth {
             body,
             step: clock.step,
             time: clock.time,
+            advice,
         })
     }
 }

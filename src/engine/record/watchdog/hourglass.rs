@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::notation::quantity;
+use crate::plugin::{BodyPlan, SimBuilder};
 use crate::schedule::{Ledger, Step};
 use crate::world::BodyId;
 
@@ -15,6 +16,10 @@ const SHARE: f64 = 0.2;
 /// the start of a run all that a body has may be kinetic.
 const LEAST: f64 = 0.02;
 
+/// Largest strain energy plus plastic work of a body per volume, over that of any body of the scene, below which its share says nothing: no wave has
+/// reached the body yet, and what it has comes before the front.
+const REACHED: f64 = 1e-4;
+
 /// Watches the hourglass energy of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct HourglassShare {
@@ -22,11 +27,19 @@ pub(super) struct HourglassShare {
     largest_internal: Vec<f64>,
     /// Largest energy of any other account of each body so far, J.
     largest: Vec<f64>,
+    /// Volume of each body, m3.
+    volumes: Vec<f64>,
     /// Bodies that the user has been warned of.
     warned: Vec<bool>,
 }
 
 impl HourglassShare {
+    /// Over the volumes of the bodies.
+    pub fn new(sim: &SimBuilder<'_>) -> Self {
+        let volume = |body: &BodyPlan| body.sites.iter().map(|site| site.volume).sum();
+        Self { volumes: sim.bodies().iter().map(volume).collect(), ..Self::default() }
+    }
+
     /// Takes in a step.
     pub fn look(&mut self, ledger: &Ledger, bodies: usize) {
         self.largest_internal.resize(bodies, 0.0);
@@ -44,10 +57,13 @@ impl HourglassShare {
 
     /// Warns once of every body whose share is too large now.
     pub fn warn(&mut self, step: &mut Step<'_>) {
+        let densities: Vec<f64> =
+            self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume).collect();
+        let densest = densities.iter().copied().fold(0.0, f64::max);
         for (k, body) in step.world.bodies().iter().enumerate() {
             let (hourglass, internal) = (energy(step.ledger, "hourglass", k), self.largest_internal[k]);
             let small = hourglass <= SHARE * internal || hourglass <= LEAST * self.largest[k];
-            if self.warned[k] || internal <= 0.0 || small {
+            if self.warned[k] || internal <= 0.0 || densities[k] <= REACHED * densest || small {
                 continue;
             }
             self.warned[k] = true;

@@ -3,6 +3,8 @@
 mod domain;
 mod energy_growth;
 mod hourglass;
+mod passing;
+mod remedies;
 mod system;
 mod wrong_sign;
 

@@ -3,6 +3,8 @@
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
+use super::passing::Passing;
+use super::remedies::Remedies;
 use super::wrong_sign::WrongSign;
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
@@ -23,6 +25,8 @@ struct Watchdog {
     resolution: f64,
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
+    passing: Passing,
+    remedies: Remedies,
     domain: Option<DomainCheck>,
     /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
     frames: Trigger,
@@ -35,8 +39,10 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     let watchdog = Watchdog {
         energy: EnergyGrowth::default(),
         resolution: resolution(sim),
-        hourglass: HourglassShare::default(),
+        hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
+        passing: Passing::new(sim),
+        remedies: Remedies::new(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
@@ -52,26 +58,37 @@ impl Run for Watchdog {
         {
             domain.look(step)?;
         }
-        self.energy.look(step.ledger, step.world, step.clock, self.resolution)?;
+        step.ledger.set_resolution(self.resolution);
+        self.energy.look(step, self.resolution, &self.remedies)?;
         self.hourglass.look(step.ledger, step.world.bodies().len());
         if self.frames.is_due(step.clock.time) || at_end {
             // Waves of the first load have the control carry a part of them that the result has not.
             if at_end || step.clock.time > START * self.end {
                 self.hourglass.warn(step);
             }
-            self.wrong_sign.warn(step, at_end);
+            self.passing.look(step)?;
+            self.wrong_sign.warn(step, &self.remedies, at_end);
         }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.energy, &self.hourglass, &self.wrong_sign, self.frames))
-            .unwrap_or_default()
+        postcard::to_stdvec(&(
+            self.energy,
+            &self.hourglass,
+            &self.wrong_sign,
+            &self.passing.told,
+            self.frames,
+        ))
+        .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((energy, hourglass, wrong_sign, frames)) = postcard::from_bytes(state) else { return false };
+        let Ok((energy, hourglass, wrong_sign, passing, frames)) = postcard::from_bytes(state) else {
+            return false;
+        };
         (self.energy, self.hourglass, self.wrong_sign) = (energy, hourglass, wrong_sign);
+        self.passing.told = passing;
         self.frames.resume(frames);
         true
     }

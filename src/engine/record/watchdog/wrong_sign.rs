@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::remedies::Remedies;
 use crate::formulations::fluid::{FlowCloud, Group};
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
@@ -43,7 +44,7 @@ impl WrongSign {
     }
 
     /// Warns of every account that has given energy; the warning keeps up with the largest share.
-    pub fn warn(&mut self, step: &mut Step<'_>, at_end: bool) {
+    pub fn warn(&mut self, step: &mut Step<'_>, remedies: &Remedies, at_end: bool) {
         if let Some(cloud) = step.resources.try_get::<FlowCloud>() {
             self.weight = self.weight.max(work_of_loads(&cloud));
         }
@@ -70,7 +71,7 @@ impl WrongSign {
                 quantity(-account.total(), "J"),
                 100.0 * share,
                 quantity(step.clock.end(), "s"),
-                advice(&account.name)
+                advice(&account.name, remedies, step)
             );
             match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
                 Some(warning) => *warning = text,
@@ -109,13 +110,10 @@ fn work_of_loads(cloud: &FlowCloud) -> f64 {
     cloud.groups.iter().map(of).sum()
 }
 
-fn advice(account: &str) -> &'static str {
-    match account {
-        "wall_pressure" => {
-            "the pressure of walls does not fit that of the flow: `density_diffusion()` for its noise, no particle inside of a wall, more particles"
-        }
-        _ => {
-            "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
-        }
+fn advice(account: &str, remedies: &Remedies, step: &Step<'_>) -> String {
+    if account == "wall_pressure" {
+        return remedies.of_walls(step);
     }
+    "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
+        .to_owned()
 }

@@ -1,0 +1,101 @@
+//! Solids and rigid bodies that pass through each other because no contact holds them apart.
+
+use glam::DVec3;
+
+use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
+use crate::notation::{place, quantity};
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::schedule::{Step, StepError};
+use crate::shapes::Aabb;
+use crate::world::{BodyId, Position, Removed};
+
+/// Distance of particles of two bodies, over their mean spacing, below which the bodies overlap: those that touch are one spacing apart.
+const OVERLAP: f64 = 0.6;
+
+/// Looks for particles of bodies inside of each other.
+pub(super) struct Passing {
+    pairs: Vec<[BodyId; 2]>,
+    spacings: Vec<f64>,
+    /// Pairs that the user has been warned of.
+    pub told: Vec<bool>,
+}
+
+impl Passing {
+    /// All pairs of solids and rigid bodies that have no contact.
+    pub fn new(sim: &SimBuilder<'_>) -> Self {
+        let contacts: Vec<(String, String)> =
+            sim.scene().contact_pairs().map(|(_, contact)| contact.between).collect();
+        let touch = |a: &BodyPlan, b: &BodyPlan| {
+            let is = |(one, other): &(String, String)| {
+                (*one == a.name && *other == b.name) || (*one == b.name && *other == a.name)
+            };
+            contacts.iter().any(is)
+        };
+        let solid = |body: &&BodyPlan| matches!(body.kind, BodyKind::Solid | BodyKind::Rigid);
+        let bodies = || sim.bodies().iter().filter(solid);
+        let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
+        let pairs: Vec<[BodyId; 2]> = all.filter(|(a, b)| !touch(a, b)).map(|(a, b)| [a.id, b.id]).collect();
+        let spacings = sim.bodies().iter().map(|body| body.spacing).collect();
+        Self { told: vec![false; pairs.len()], pairs, spacings }
+    }
+
+    /// Looks at all pairs.
+    ///
+    /// # Errors
+    /// A column is missing.
+    pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for (&[a, b], told) in self.pairs.iter().zip(&mut self.told).filter(|(_, told)| !**told) {
+            let mean_spacing = 0.5 * (self.spacings[a.0] + self.spacings[b.0]);
+            let Some(at) = overlap(step, [a, b], OVERLAP * mean_spacing)? else { continue };
+            *told = true;
+            let [first, second] = [a, b].map(|body| &step.world.body(body).name);
+            step.warnings.push(format!(
+                "`{first}` and `{second}` pass through each other, at {} and {}, and no contact holds them apart: add \
+                 `contacts: [Contact(between: (\"{first}\", \"{second}\"), law: Penalty())]`",
+                place(at),
+                quantity(step.clock.time, "s")
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Where particles of two bodies are nearer than `distance`.
+fn overlap(step: &Step<'_>, bodies: [BodyId; 2], distance: f64) -> Result<Option<DVec3>, StepError> {
+    let boxes = [bounds(step, bodies[0])?, bounds(step, bodies[1])?];
+    let common = Aabb {
+        min: boxes[0].min.max(boxes[1].min) - distance,
+        max: boxes[0].max.min(boxes[1].max) + distance,
+    };
+    if !common.min.cmple(common.max).all() {
+        return Ok(None);
+    }
+    let mut positions = Vec::new();
+    let mut firsts = 0;
+    for (k, &body) in bodies.iter().enumerate() {
+        let (view, rows) = step.world.body_view(body);
+        let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+        let is_there = |row: &usize| {
+            let x = position[*row].0;
+            removed[*row] == Removed::NO && x.cmpge(common.min).all() && x.cmple(common.max).all()
+        };
+        positions.extend(rows.filter(is_there).map(|row| position[row].0));
+        if k == 0 {
+            firsts = positions.len();
+        }
+    }
+    let cloud = Cloud { positions: &positions, support: Support::Uniform(distance) };
+    let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Ok(None) };
+    let meets = |i: &usize| list.row(*i).iter().any(|&j| j as usize >= firsts);
+    Ok((0..firsts).find(meets).map(|i| positions[i]))
+}
+
+/// The box around the particles of a body.
+fn bounds(step: &Step<'_>, body: BodyId) -> Result<Aabb, StepError> {
+    let (view, rows) = step.world.body_view(body);
+    let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
+    let there = rows.filter(|row| removed[*row] == Removed::NO).map(|row| position[row].0);
+    let (min, max) =
+        there.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
+    Ok(Aabb { min, max })
+}

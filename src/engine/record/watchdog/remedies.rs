@@ -1,0 +1,69 @@
+//! What may help a flow that goes wrong: never a plugin that it has.
+
+use crate::formulations::fluid::{FlowCloud, Record};
+use crate::notation::quantity;
+use crate::plugin::{BodyPlan, SimBuilder};
+use crate::scene::Item;
+use crate::schedule::Step;
+use crate::world::BodyId;
+
+/// Least pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as tension.
+const TENSION: f64 = 0.1;
+
+/// The plugins of all bodies.
+pub(super) struct Remedies {
+    /// Names of the plugins of each body, those of the scene included.
+    plugins: Vec<Vec<String>>,
+}
+
+impl Remedies {
+    /// The plugins that the scene names.
+    pub fn new(sim: &SimBuilder<'_>) -> Self {
+        let scene = sim.scene();
+        let of = |body: &BodyPlan| {
+            let all = scene.plugins.iter().chain(&scene.bodies[body.id.0].plugins);
+            all.map(|item: &Item| item.name().to_owned()).collect()
+        };
+        Self { plugins: sim.bodies().iter().map(of).collect() }
+    }
+
+    fn has(&self, body: BodyId, plugin: &str) -> bool {
+        self.plugins[body.0].iter().any(|name| name == plugin)
+    }
+
+    /// What walls want that give energy.
+    pub fn of_walls(&self, step: &Step<'_>) -> String {
+        let lacks_diffusion = step.resources.try_get::<FlowCloud>().is_some_and(|cloud| {
+            let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
+            fluids.any(|group| !self.has(group.body, "density_diffusion"))
+        });
+        let noise = if lacks_diffusion { "`density_diffusion()` for its noise, " } else { "" };
+        let rest = format!("{noise}no particle inside of a wall, more particles");
+        match self.of_tension(step, None) {
+            Some(text) => format!("{text}; else {rest}"),
+            None => format!("the pressure of walls does not fit that of the flow: {rest}"),
+        }
+    }
+
+    /// What a fluid under tension wants, or the one of that name; none if it has it.
+    pub fn of_tension(&self, step: &Step<'_>, name: Option<&str>) -> Option<String> {
+        let cloud = step.resources.try_get::<FlowCloud>()?;
+        let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
+        fluids.find_map(|group| {
+            let body = &step.world.body(group.body).name;
+            if name.is_some_and(|name| name != body) || self.has(group.body, "tensile_control") {
+                return None;
+            }
+            let pressures = cloud.records()[group.cloud.clone()].iter().map(Record::pressure);
+            let (least, largest) = pressures.fold((0.0_f64, 0.0_f64), |(least, largest), pressure| {
+                (least.min(pressure), largest.max(pressure.abs()))
+            });
+            (least < -TENSION * largest).then(|| {
+                format!(
+                    "`{body}` is under tension, down to {}, in which particles pair and tear: `tensile_control()` among its `plugins`, or, in a closed flow, a pressure at the start that keeps it above zero, `Fluid(pressure: ...)`",
+                    quantity(least, "Pa")
+                )
+            })
+        })
+    }
+}
