@@ -13,7 +13,8 @@ use super::systems;
 use crate::integrate::OwnMotion;
 use crate::parallel::sum_over_blocks;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
-use crate::scene::{Dimension, Vec3};
+use crate::scene::{Contact, Dimension, Vec3};
+use crate::shapes::{ByDistance, Shape, Surface};
 use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocity};
 
 /// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact surface of its
@@ -145,7 +146,7 @@ impl Rigid {
     ) -> Result<RigidBody, SetupError> {
         let plan = sim.body(id);
         let shape = &sim.scene().bodies[id.0].shape;
-        let surface = sim.surface(shape, &format!("bodies[{}].shape", id.0))?;
+        let surface = surface(plan, shape, sim)?;
         let of_shape = MassProperties::new(plan, &*surface, sim.dimension());
         let mass = self.mass.unwrap_or(of_shape.mass);
         self.check(plan, mass, &constraint, sim.dimension())?;
@@ -174,6 +175,22 @@ impl Rigid {
             torque: DVec3::ZERO,
         };
         Ok(RigidBody::new(parts, state))
+    }
+}
+
+/// The surface of a body. Where no contact names it, any shape will do.
+fn surface(plan: &BodyPlan, shape: &Shape, sim: &SimBuilder<'_>) -> Result<Box<dyn Surface>, SetupError> {
+    let exact = sim.surface(shape, &format!("bodies[{}].shape", plan.id.0));
+    let touches = |(_, contact): (usize, Contact)| {
+        let (a, b) = &contact.between;
+        [a, b].contains(&&plan.name)
+    };
+    if exact.is_ok() || sim.scene().contact_pairs().any(touches) {
+        return exact;
+    }
+    match shape.region(sim.dimension(), sim.folder(), "shape") {
+        Ok(region) => Ok(Box::new(ByDistance(region))),
+        Err(_) => exact,
     }
 }
 

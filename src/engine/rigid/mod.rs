@@ -7,6 +7,8 @@ mod inertia;
 mod nodes;
 mod rotation;
 mod systems;
+#[cfg(test)]
+mod tests;
 mod wrench;
 
 pub use body::{RigidBodies, RigidBody, RigidState};

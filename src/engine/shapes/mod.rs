@@ -3,6 +3,7 @@
 mod block;
 mod boolean;
 mod build;
+mod by_distance;
 mod cavity;
 mod cells;
 mod check;
@@ -31,6 +32,7 @@ mod tiling;
 mod transform;
 mod voronoi;
 
+pub(crate) use by_distance::ByDistance;
 pub use concentric::Rings;
 pub use error::{FillError, FillErrorKind};
 pub use facets::{Facets, directed_area};
