@@ -111,6 +111,27 @@ fn a_run_under_nohup_outlives_its_terminal() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_check_that_fails_tells_what_it_has_warned_of() {
+    let folder = folder();
+    // Steel in GPa.
+    let text = r#"(
+        dimension: Two,
+        materials: {"m": Steel(young: 210.0)},
+        bodies: [Body(name: "beam", material: "m", shape: Box(min: (-0.03, 0), max: (0.2, 0.02)), spacing: 0.0025, formulation: TotalLagrangian, plugins: [hourglass_control()])],
+        conditions: [
+            Fix(on: Select(body: "beam", within: Box(min: (-1, -1), max: (0, 1)))),
+            Traction(on: Select(body: "beam", face: MaxX), value: (0, "-1e5*smoothstep(t/0.005)")),
+        ],
+        time: (end: 0.01),
+    )"#;
+    std::fs::write(folder.path().join("steel.ron"), text).expect("a scene");
+    let output = meshless(folder.path(), &["check", "steel.ron"]);
+    let text = err(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("negative volume") && text.contains("check the unit of its stiffness"), "{text}");
+}
+
+#[test]
 fn output_that_cannot_be_written_is_an_error() {
     let folder = folder();
     for arguments in [

@@ -63,7 +63,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     sim.start().map_err(|error| Failure::Run(error.to_string()))?;
     let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
-    let trial = Trial::run(&mut sim)?;
+    let trial = Trial::run(&mut sim).inspect_err(|_| warn(&sim))?;
     let notes = review::notes(&bodies, &sim, &trial);
     if arguments.json {
         say(&json(&scene, &sim, &bodies, &trial, &notes)?);
@@ -79,10 +79,15 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
         let _ = write!(text, "\nschedule\n{}", sim.schedule().describe());
     }
     say(&text);
+    warn(&sim);
+    Ok(())
+}
+
+/// What the user should look at, also where the trial fails.
+fn warn(sim: &Simulation) {
     for warning in sim.warnings() {
         complain(&format!("warning: {warning}"));
     }
-    Ok(())
 }
 
 fn json(

@@ -10,6 +10,16 @@ const DENSITIES: std::ops::RangeInclusive<f64> = 1.0..=3.0e4;
 const LARGEST_YIELD: f64 = 0.1;
 /// Speeds of sound in solids, from gels to diamond, m/s.
 const SOUND: std::ops::RangeInclusive<f64> = 0.01..=2.0e4;
+/// Solids from this density on are metals, rocks and ceramics, kg/m3.
+const DENSE: f64 = 3.0e3;
+/// Least speed of sound in dense solids: a hundredth of that in lead, m/s.
+const DENSE_SOUND: f64 = 10.0;
+/// Gravity of a centrifuge, m/s2: more is a slip of units.
+const LARGEST_GRAVITY: f64 = 5.0e3;
+/// Gravity of the Earth, with room, m/s2, under which a liquid lighter than any has a density in other units.
+const EARTH: std::ops::RangeInclusive<f64> = 9.5..=10.5;
+/// Density of the lightest liquid, hydrogen, with room, kg/m3.
+const LIGHTEST_LIQUID: f64 = 50.0;
 /// Largest initial speed, in speeds of sound.
 const LARGEST_MACH: f64 = 10.0;
 /// Distance from the origin in spacings beyond which a double no longer tells neighbours apart well.
@@ -17,12 +27,32 @@ const FARTHEST: f64 = 1.0e10;
 
 /// Warns of what looks like a slip of units.
 pub(super) fn warn(sim: &mut SimBuilder<'_>) {
-    let warnings: Vec<String> = sim.bodies().iter().flat_map(of_body).collect();
+    let gravity = sim.gravity().length();
+    let of_gravity = (gravity > LARGEST_GRAVITY).then(|| {
+        format!("gravity is {} m/s2: check its unit, that of the Earth is 9.81 m/s2", number(gravity))
+    });
+    let of_bodies =
+        sim.bodies().iter().flat_map(|body| of_body(body).into_iter().chain(of_liquid(body, gravity)));
+    let warnings: Vec<String> = of_gravity.into_iter().chain(of_bodies).collect();
     for warning in warnings {
         if !sim.warnings.contains(&warning) {
             sim.warn(warning);
         }
     }
+}
+
+/// A liquid under gravity in SI whose density is not.
+fn of_liquid(body: &BodyPlan, gravity: f64) -> Option<String> {
+    let density = body.material.density;
+    let is_light = DENSITIES.contains(&density) && density < LIGHTEST_LIQUID;
+    (matches!(body.material.law, Law::Fluid(_)) && is_light && EARTH.contains(&gravity)).then(|| {
+        format!(
+            "material `{}` is a liquid with a density of {} kg/m3, under a gravity of {} m/s2: check its unit, water has 1000 kg/m3",
+            body.material_name,
+            number(density),
+            number(gravity)
+        )
+    })
 }
 
 fn of_body(body: &BodyPlan) -> Vec<String> {
@@ -52,6 +82,12 @@ fn of_body(body: &BodyPlan) -> Vec<String> {
                 "the speed of sound in material `{material}` is {}, outside 0.01 m/s to 20 km/s: check the units of its stiffness and density",
                 quantity(sound, "m/s")
             ));
+        } else if density >= DENSE && sound < DENSE_SOUND {
+            found.push(format!(
+                "the speed of sound in material `{material}`, of {} kg/m3, is {}, below 10 m/s: check the unit of its stiffness, which is in Pa",
+                number(density),
+                quantity(sound, "m/s")
+            ));
         }
         let speed = body.velocity.map_or(0.0, |velocity| velocity.0.length());
         if speed > LARGEST_MACH * sound {
@@ -72,4 +108,40 @@ fn of_body(body: &BodyPlan) -> Vec<String> {
         ));
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::assembly::build;
+    use crate::plugin::Registry;
+    use crate::scene::{Source, parse};
+
+    fn warnings(gravity: f64, material: &str, formulation: &str) -> Vec<String> {
+        let text = format!(
+            r#"(dimension: Two, gravity: (0.0, -{gravity:?}), materials: {{"m": {material}}},
+                bodies: [(name: "a", material: "m", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.01, formulation: {formulation})],
+                time: (end: 1.0))"#
+        );
+        let (scene, source) = parse(Source::new("units.ron", text)).expect("a scene");
+        let sim = build(&scene, &source, &Registry::standard()).expect("a simulation");
+        sim.warnings()
+            .iter()
+            .filter(|text| text.contains("check its unit") || text.contains("check the unit"))
+            .cloned()
+            .collect()
+    }
+
+    #[test]
+    fn slips_of_units_are_warned_of() {
+        let solid = |young: &str| format!("StVenantKirchhoff(density: 7850.0, young: {young}, poisson: 0.3)");
+        // Steel in GPa and MPa.
+        assert_eq!(warnings(9.81, &solid("210.0"), "TotalLagrangian").len(), 1);
+        assert_eq!(warnings(9.81, &solid("210000.0"), "TotalLagrangian").len(), 1);
+        assert!(warnings(9.81, &solid("210e9"), "TotalLagrangian").is_empty());
+        let fluid = |density: f64| format!("Fluid(density: {density:?}, sound_speed: 600.0)");
+        assert_eq!(warnings(9.81, &fluid(1.0), "Fluid").len(), 1);
+        assert!(warnings(0.0, &fluid(1.0), "Fluid").is_empty());
+        assert!(warnings(9.81, &fluid(1000.0), "Fluid").is_empty());
+        assert_eq!(warnings(9810.0, &fluid(1000.0), "Fluid").len(), 1);
+    }
 }

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::domain::{DomainBox, RemoveOutside};
 use super::leaving::Leaving;
+use crate::notation::quantity;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::scene::Outside;
@@ -129,6 +130,13 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         })
     };
     clear(&view, rows)?;
+    if view.read::<Removed>()?[own].iter().all(|row| *row == Removed::YES) {
+        step.warnings.push(format!(
+            "all particles of `{}` have been removed by {}: is there something that should have held them?",
+            step.world.body(body).name,
+            quantity(step.clock.end(), "s")
+        ));
+    }
     let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
     step.ledger.add(account, body, kinetic);
     if !due {

@@ -34,6 +34,22 @@ fn account(sim: &Simulation, name: &str) -> f64 {
 }
 
 #[test]
+fn a_body_that_has_left_as_a_whole_is_warned_of() {
+    let told = |end: f64| {
+        let moves = r#"conditions: [InitialVelocity(on: Select(body: "block"), value: ("2.0", "0.5"))]"#;
+        let mut sim = block(&format!("{DOMAIN} {moves}, time: (end: {end:?}),"));
+        sim.run(|_| true).unwrap();
+        sim.warnings()
+            .iter()
+            .filter(|text| text.contains("all particles of `block` have been removed"))
+            .count()
+    };
+    // It is 0.08 m long and starts 0.02 m before the side.
+    assert_eq!(told(0.03), 0);
+    assert_eq!(told(0.06), 1);
+}
+
+#[test]
 fn a_block_that_drifts_out_of_the_domain_leaves_column_by_column_and_feels_nothing() {
     let scene = "conditions: [InitialVelocity(on: Select(body: \"block\"), value: (\"2.0\", \"0.5\"))], time: (end: 0.025),";
     let mut sim = block(&format!("{DOMAIN} {scene}"));

@@ -60,6 +60,7 @@ impl Simulation {
     /// Something cannot be written.
     pub fn finish(&mut self) -> Result<Summary, RunError> {
         self.warn_of_balance();
+        self.warn_of_empty_probes();
         if !self.output().is_some_and(|output| output.has_begun()) {
             return Ok(self.summary());
         }
@@ -87,6 +88,25 @@ impl Simulation {
                 100.0 * error,
                 quantity(self.ledger.balance_error(), "J")
             );
+            if !self.warnings.contains(&text) {
+                self.warnings.push(text);
+            }
+        }
+    }
+
+    /// Probes have found nothing from the start to the end.
+    fn warn_of_empty_probes(&mut self) {
+        if self.failure.is_some() || self.clock.time < self.end {
+            return;
+        }
+        let of = |name: &str| {
+            format!(
+                "probe `{name}` has found nothing in any sample: is it where no particle comes? `may_be_empty: true` if that is meant"
+            )
+        };
+        let texts: Vec<String> =
+            self.output().map_or_else(Vec::new, |output| output.empty_probes().map(of).collect());
+        for text in texts {
             if !self.warnings.contains(&text) {
                 self.warnings.push(text);
             }

@@ -279,6 +279,11 @@ impl Output {
         self.tracks.iter().skip(1).map(|track| (track.name.as_str(), track.table.extremes.as_slice()))
     }
 
+    /// Names of the probes that have found nothing in any sample, though the scene does not say that they may.
+    pub fn empty_probes(&self) -> impl Iterator<Item = &str> {
+        self.tracks.iter().skip(1).filter(|track| track.has_found_nothing()).map(|track| track.name.as_str())
+    }
+
     /// Whether files are open or have been.
     pub fn has_begun(&self) -> bool {
         matches!(self.progress, Progress::Open | Progress::Finished)

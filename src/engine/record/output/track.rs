@@ -20,6 +20,7 @@ pub(super) struct Track {
     pub path: String,
     /// Name of the probe.
     pub name: String,
+    may_be_empty: bool,
     gauge: Arc<Gauge>,
     trigger: Trigger,
     pub table: Table,
@@ -53,6 +54,7 @@ impl Track {
         Self {
             path,
             name: probe.name,
+            may_be_empty: probe.may_be_empty,
             gauge: probe.gauge,
             trigger: Trigger::new(probe.interval),
             table: Table::new(file),
@@ -60,6 +62,13 @@ impl Track {
             accounts: None,
             held: None,
         }
+    }
+
+    /// Whether it has measured, and found nothing in any sample, which the user does not expect.
+    pub fn has_found_nothing(&self) -> bool {
+        let extremes = &self.table.extremes;
+        let is_empty = !extremes.is_empty() && extremes.iter().all(|extreme| extreme.min.is_nan());
+        !self.may_be_empty && self.last.is_some() && is_empty
     }
 
     /// Names of the particle columns that it reads.

@@ -39,6 +39,8 @@ pub struct Probe {
     pub name: String,
     /// Time between two samples, s.
     pub interval: f64,
+    /// Whether the user knows that it may find nothing.
+    pub may_be_empty: bool,
     /// What it measures with.
     pub gauge: Arc<Gauge>,
 }
@@ -122,7 +124,8 @@ impl Probe {
     fn new(probe: &scene::Probe, gauge: Gauge, sim: &SimBuilder<'_>) -> Self {
         let interval = sim.scene().probe_interval(probe);
         let gauge = if sim.dimension() == Dimension::Two { Planar::of(gauge) } else { gauge };
-        Self { name: probe.name.clone(), interval, gauge: Arc::new(gauge) }
+        let may_be_empty = probe.may_be_empty;
+        Self { name: probe.name.clone(), interval, may_be_empty, gauge: Arc::new(gauge) }
     }
 }
 

@@ -133,6 +133,26 @@ fn the_point_probe_interpolates() {
 }
 
 #[test]
+fn a_probe_that_finds_nothing_in_any_sample_is_warned_of() {
+    let warnings = |probe: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let text = format!(
+            r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [(name: "water", material: "water", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.02, formulation: Fluid)],
+                probes: [Probe(name: "p", {probe}, quantity: Field("pressure"))], time: (end: 0.001))"#
+        );
+        let warnings = run(built(&parse(Source::new("pond.ron", text)).unwrap(), folder.path()))
+            .finish()
+            .unwrap()
+            .warnings;
+        warnings.into_iter().filter(|text| text.contains("probe `p` has found nothing")).count()
+    };
+    assert_eq!(warnings("at: (0.05, 0.9)"), 1);
+    assert_eq!(warnings("at: (0.05, 0.9), may_be_empty: true"), 0);
+    assert_eq!(warnings("at: (0.05, 0.05)"), 0);
+}
+
+#[test]
 fn the_summary_tells_what_the_files_hold() {
     let folder = tempfile::tempdir().unwrap();
     let sim = run(built(&cantilever(|t| t), folder.path()));
