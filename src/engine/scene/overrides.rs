@@ -128,6 +128,12 @@ fn not_there(node: &Node, step: &Step, setting: &str) -> Problem {
             };
             if children.is_empty() {
                 problem
+            } else if let Kind::List(entries) = &node.kind {
+                let last = entries.len().saturating_sub(1);
+                problem.help(format!(
+                    "here are: {}; entries can be counted too, from [0] to [{last}]",
+                    children.join(", ")
+                ))
             } else {
                 problem.help(format!("here are: {}", children.join(", ")))
             }

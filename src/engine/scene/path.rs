@@ -1,7 +1,7 @@
 //! Places in a scene by path: `bodies[1].shape.min`, `bodies.plate.plugins.hourglass_control.alpha`.
 //!
 //! A step is the name of a field, the key of a map, or an index in brackets. In a list a step by name finds the entry
-//! whose field `name` is that text, or the entry that is itself called so, as plugins and conditions are.
+//! whose field `name` is that text, or the entry that is itself called so, as plugins and conditions are; a number there is an index.
 
 use std::ops::Range;
 
@@ -60,7 +60,8 @@ pub(super) fn child<'a>(node: &'a Node, step: &Step) -> Option<Found<'a>> {
             entries.get(*index).map(Found::Entry)
         }
         (Kind::List(entries), Step::Name(name)) => {
-            entries.iter().find(|entry| label(entry) == Some(name)).map(Found::Entry)
+            let by_place = || name.parse().ok().and_then(|place: usize| entries.get(place));
+            entries.iter().find(|entry| label(entry) == Some(name)).or_else(by_place).map(Found::Entry)
         }
         (Kind::Tuple(entries), Step::Name(name)) if (2..=3).contains(&entries.len()) => {
             let axis = ["x", "y", "z"].iter().position(|axis| axis == name)?;

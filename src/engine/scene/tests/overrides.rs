@@ -54,6 +54,14 @@ fn fields_are_added() {
 }
 
 #[test]
+fn entries_of_lists_are_counted_in_brackets_or_after_a_dot() {
+    let source = everything();
+    let bracket = source.with_override("bodies[1].spacing", "0.005").unwrap();
+    let dot = source.with_override("bodies.1.spacing", "0.005").unwrap();
+    assert_eq!(bracket.text, dot.text);
+}
+
+#[test]
 fn lines_stay() {
     let source = everything();
     let changed = source.with_override("bodies.plate.spacing", "0.005\n\n").unwrap();
@@ -66,6 +74,12 @@ fn paths_that_lead_nowhere() {
     for (path, value, message, help) in [
         ("bodies.plat.spacing", "1", "there is no `plat` here", "did you mean `plate`?"),
         ("bodies[7].spacing", "1", "there is no entry 7 here", "there are 4 entries"),
+        (
+            "bodies.zzzzzz.spacing",
+            "1",
+            "there is no `zzzzzz` here",
+            "entries can be counted too, from [0] to [3]",
+        ),
         ("tim.end", "1", "there is no `tim` here", "did you mean `time`?"),
         ("time.end.x", "1", "there is no `x` here", ""),
         ("", "1", "does not start with the path of a value", "paths look like"),
