@@ -4,14 +4,12 @@ use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group};
 use super::mach::relative_speed;
-use crate::linalg::{Eigen, Sym3};
-use crate::neighbors::{Cloud, NeighborList, Periodic};
+use super::thickness::Thickness;
+use crate::neighbors::Periodic;
 use crate::notation::{number, place, quantity};
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::Problem;
 
-/// Part of the particles of a wall that may sit where it is thinner than the support: sharp edges have some.
-const THIN_SHARE: f64 = 0.05;
 /// Largest relative change of the density at the start.
 const LARGEST_CHANGE: f64 = 0.1;
 
@@ -108,26 +106,8 @@ pub(super) fn wall_is_thick(
     periodic: &Periodic,
 ) -> Result<(), SetupError> {
     is_fine(body, spacing)?;
-    let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-    let list = NeighborList::reference(Cloud::uniform(&positions, support), periodic)
-        .map_err(|error| SetupError::internal(&error))?;
-    let thickness = |i: usize| {
-        let row =
-            || list.row(i).iter().map(|&j| periodic.minimal_image(positions[j as usize] - positions[i]));
-        let spread = row().fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
-        let plane = positions.iter().all(|x| x.z == positions[0].z);
-        // In a plane the third axis has no spread: it is not a side of the wall.
-        let spread = if plane { Sym3 { zz: 2.0 * (spread.xx + spread.yy) + 1.0, ..spread } } else { spread };
-        let across = Eigen::new(&spread).vectors.col(0);
-        let (low, high) =
-            row().map(|x| x.dot(across)).fold((0.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
-        high - low + body.spacing
-    };
-    let thin: Vec<(f64, DVec3)> = (0..positions.len())
-        .map(|i| (thickness(i), positions[i]))
-        .filter(|(thickness, _)| *thickness < support - 0.25 * body.spacing)
-        .collect();
-    if thin.len() as f64 <= THIN_SHARE * positions.len() as f64 {
+    let thin = Thickness::of(body, support, periodic)?.thin();
+    if thin.is_empty() {
         return Ok(());
     }
     let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });

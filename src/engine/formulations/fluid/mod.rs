@@ -76,6 +76,7 @@ mod surroundings;
 mod systems;
 #[cfg(test)]
 mod tests;
+mod thickness;
 #[cfg(test)]
 mod thin_tests;
 mod unevenness;

@@ -1,4 +1,4 @@
-//! Bodies thinner than the support of the fluid: the two sides of each do not see each other.
+//! Bodies that are somewhere thinner than the support of the fluid: the two sides of each do not see each other there.
 //!
 //! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid particle sees the copy on
 //! whose side it is, the whole thickness of it; which side that is, the sign of n_j . x_ji says, with the normal n_j of the body as it is
@@ -10,8 +10,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::linalg::{Eigen, Sym3};
-use crate::neighbors::{Cloud, NeighborList, Periodic};
+use super::thickness::{Thickness, axes};
+use crate::neighbors::{NeighborList, Periodic};
 use crate::plugin::{BodyPlan, SetupError};
 
 /// A line between two particles crosses a body within this distance of one of its particles, over their spacing.
@@ -45,16 +45,15 @@ impl ThinBody {
         plane: bool,
     ) -> Result<Self, SetupError> {
         let sites: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let list = NeighborList::reference(Cloud::uniform(&sites, support), &Periodic::NONE)
-            .map_err(|error| SetupError::internal(&error))?;
+        let thickness = Thickness::of(body, support, &Periodic::NONE)?;
+        let thin = thickness.thin_parts();
+        let mut list = thickness.neighbors;
+        // Where the body is thick it has no mid-surface, normals are zero, and all sides see the first copy.
+        list.retain(|i, j| thin[i] && thin[j as usize]);
         let mut frames = Vec::with_capacity(sites.len());
         let mut normals = Vec::with_capacity(sites.len());
         for i in 0..sites.len() {
-            let row = || list.row(i).iter().map(|&j| sites[j as usize] - sites[i]);
-            let spread = row().fold(Sym3::ZERO, |sum, x| sum + Sym3::dyad(x));
-            let spread =
-                if plane { Sym3 { zz: 2.0 * (spread.xx + spread.yy) + 1.0, ..spread } } else { spread };
-            let axes = Eigen::new(&spread).vectors;
+            let axes = axes(list.row(i).iter().map(|&j| sites[j as usize] - sites[i]), plane);
             let farthest = |direction: DVec3| {
                 let lead = |j: u32| (sites[j as usize] - sites[i]).dot(direction);
                 let better =

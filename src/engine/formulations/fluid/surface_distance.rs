@@ -16,6 +16,10 @@ use super::repulsion::Shares;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
+/// Square of the distance of a point from the centre of the particles near it, in standard deviations of these, up to which a map is fitted to them: before a flat face it is some 2, before
+/// the corner of a square 9. Farther outside, as beside the few particles at the end of a fin that are on one side of it, shares and map would be extrapolations by many times their size.
+const OUTSIDE: f64 = 16.0;
+
 /// Radii of the spheres of a worn body in the plane and in space, over its spacing.
 const SPHERES: [f64; 2] = [0.65, 0.75];
 
@@ -110,17 +114,18 @@ impl Shape {
             moment.z_axis.z = 1.0;
             moved.z_axis.z = 1.0;
         }
-        // Particles in one line or plane fit no map: theirs is that of the nearest one.
         let powers = if cloud.plane { 4 } else { 6 };
-        let fits = moment.determinant() > 1e-6 * self.spacing.powi(powers);
-        let inverse = if fits { moment.inverse() } else { DMat3::ZERO };
+        let is_regular = moment.determinant() > 1e-6 * self.spacing.powi(powers);
+        let inverse = if is_regular { moment.inverse() } else { DMat3::ZERO };
+        let fits = is_regular && mean.dot(inverse * mean) < OUTSIDE;
+        let inverse = if fits { inverse } else { DMat3::ZERO };
         let (map, at) = match motion {
             Some(motion) => (motion.map, origin - motion.map * offset(nearest)),
             None if fits => {
                 let map = moved * inverse;
                 (map, origin + mean_home - map * mean)
             }
-            None => (DMat3::IDENTITY, origin - offset(nearest)),
+            None => return Some(self.beside(cloud, nearest, offset(nearest))),
         };
         let shares = Shares { total, mean, slope: -(inverse * mean), only: None };
         Some(Place { at, distance: self.distance(cloud, at), map, shares })

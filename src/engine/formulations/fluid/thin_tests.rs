@@ -82,3 +82,36 @@ fn momentum_is_kept_with_water_on_both_sides_of_a_sheet() {
     assert!((momentum(&sim) - before).length() < 1e-11 * 100.0, "{before} {}", momentum(&sim));
     assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
 }
+
+/// A tank of 0.6 m with water to 0.3 m, and a body of rubber in or above it.
+fn rubber((water, lattice): (&str, &str), body: &str, rest: &str) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Two, gravity: (0, -9.81),
+            materials: {{"water": Fluid(density: 1000.0, viscosity: 1e-3), "rubber": NeoHookean(density: 450.0, young: 5.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.01, lattice: {lattice}, formulation: Fluid, shape: {water}),
+                (name: "body", material: "rubber", spacing: 0.005, formulation: TotalLagrangian, shape: {body}),
+                (name: "tank", material: "water", spacing: 0.01, formulation: Wall(slip: Free),
+                 shape: Difference(Box(min: (-0.34, -0.04), max: (0.34, 0.5)), Box(min: (-0.3, 0), max: (0.3, 0.6)))),
+            ],
+            {rest} time: (end: 0.15))"#
+    ))
+}
+
+#[test]
+fn bodies_that_are_thick_and_thin_keep_their_energy_in_water() {
+    // A boat whose keel, 4 particles thick, drops into the water; and a buoy that a strip holds.
+    let boat =
+        "Union([Box(min: (-0.12, 0.40), max: (0.12, 0.48)), Box(min: (-0.01, 0.31), max: (0.01, 0.40))])";
+    let buoy = "Union([Box(min: (-0.01, 0.01), max: (0.01, 0.15)), Sphere(center: (0, 0.15), radius: 0.06)])";
+    let around = format!("Difference(Box(min: (-0.3, 0), max: (0.3, 0.3)), {buoy})");
+    let hold = r#"conditions: [Fix(on: Select(body: "body", within: Box(min: (-1, -1), max: (1, 0.03))))],"#;
+    let still = ("Box(min: (-0.3, 0), max: (0.3, 0.3))", "Square");
+    let around = (around.as_str(), "Relaxed(seed: 1, iterations: 30)");
+    let scenes = [rubber(still, boat, ""), rubber(around, buoy, hold)];
+    for (mut sim, name) in scenes.into_iter().zip(["boat", "buoy"]) {
+        sim.run(|_| true).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let error = sim.ledger().relative_error();
+        assert!(error.abs() < 1e-2, "{name}: balance {error}");
+    }
+}
