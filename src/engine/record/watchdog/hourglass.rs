@@ -57,13 +57,13 @@ impl HourglassShare {
 
     /// Warns once of every body whose share is too large now.
     pub fn warn(&mut self, step: &mut Step<'_>) {
-        let densities: Vec<f64> =
-            self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume).collect();
-        let densest = densities.iter().copied().fold(0.0, f64::max);
+        let per_volume =
+            self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume);
+        let densest = per_volume.fold(0.0, f64::max);
         for (k, body) in step.world.bodies().iter().enumerate() {
             let (hourglass, internal) = (energy(step.ledger, "hourglass", k), self.largest_internal[k]);
             let small = hourglass <= SHARE * internal || hourglass <= LEAST * self.largest[k];
-            if self.warned[k] || internal <= 0.0 || densities[k] <= REACHED * densest || small {
+            if self.warned[k] || internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] || small {
                 continue;
             }
             self.warned[k] = true;
