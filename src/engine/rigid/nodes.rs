@@ -7,11 +7,16 @@ use glam::DVec3;
 use super::inertia::sphere_of;
 use crate::shapes::{Shape, Site, Surface};
 
+/// Cosine of the angle between two normals above which two faces do not touch: some 96 degrees.
+const ACROSS: f64 = -0.1;
+
 /// The points with which a rigid body touches the surfaces of other rigid bodies.
 #[derive(Clone, Debug)]
 pub struct Nodes {
     /// Their places in the reference configuration, m.
     pub points: Vec<DVec3>,
+    /// Outward normals of the surface there; zero on edges and corners, and for a sphere.
+    normals: Vec<DVec3>,
     /// Radius of the sphere about each, m: that of a body that is one sphere, else zero.
     pub radius: f64,
     /// Distance between them, m.
@@ -23,16 +28,24 @@ impl Nodes {
     /// moved to the surface.
     pub(super) fn new(shape: &Shape, surface: &dyn Surface, sites: &[Site], spacing: f64) -> Self {
         if let Some((center, radius)) = sphere_of(shape) {
-            return Self { points: vec![center], radius, spacing: 2.0 * radius };
+            return Self { points: vec![center], normals: vec![DVec3::ZERO], radius, spacing: 2.0 * radius };
         }
         let mut points = along(&surface.edges(spacing), spacing);
+        let mut normals = vec![DVec3::ZERO; points.len()];
         for site in sites {
             let nearest = surface.closest(site.position);
             if nearest.signed_distance.abs() < 0.75 * spacing {
                 points.push(nearest.point);
+                normals.push(nearest.normal);
             }
         }
-        Self { points, radius: 0.0, spacing }
+        Self { points, normals, radius: 0.0, spacing }
+    }
+
+    /// Whether the surface at point `i` may touch one of that outward normal, in the reference configuration: a face does not touch what stands across it. Where the corner of another body passes a
+    /// point of a face, the nearest surface of that body is for a moment the side beside the corner.
+    pub fn faces(&self, i: usize, normal: DVec3) -> bool {
+        self.normals[i] == DVec3::ZERO || self.normals[i].dot(normal) < ACROSS
     }
 
     /// Radius of the body if it is one sphere, m.

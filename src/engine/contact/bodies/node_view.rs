@@ -40,6 +40,14 @@ impl NodeView<'_> {
         }
     }
 
+    /// Whether the body may touch a surface of that outward normal with a node.
+    pub fn faces(&self, i: usize, normal: DVec3) -> bool {
+        match self {
+            Self::Particles(_) => true,
+            Self::Rigid(body) => body.nodes.faces(i, body.state.rotation.inverse() * normal),
+        }
+    }
+
     /// Where a node is, m.
     pub fn position(&self, i: usize) -> DVec3 {
         match self {

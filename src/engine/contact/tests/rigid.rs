@@ -270,3 +270,26 @@ fn a_star_stands_for_all_bodies_whose_names_begin_alike() {
     });
     assert!(hashes[0] == hashes[1] && hashes[0] == hashes[2]);
 }
+
+#[test]
+fn a_rigid_block_slides_down_a_slope_with_the_acceleration_of_coulomb() {
+    // 30 degrees, friction 0.4: a = g (sin 30 - 0.4 cos 30), over seven points of the floor that the front of the block passes.
+    let (g, friction) = (9.81, 0.4);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, gravity: ({}, {}), materials: {{"s": NeoHookean(density: 1000.0, young: 2.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "block", material: "s", shape: Box(min: (0, 0), max: (0.16, 0.08)), spacing: 0.01, formulation: Rigid()),
+                (name: "floor", material: "s", shape: Box(min: (-0.1, -0.05), max: (0.4, 0)), spacing: 0.01, formulation: Rigid()),
+            ],
+            conditions: [Fix(on: Select(body: "floor"))],
+            contacts: [Contact(between: ("block", "floor"), friction: {friction}, restitution: 0.6)],
+            time: (end: 0.3))"#,
+        g * sin,
+        -g * cos
+    ));
+    sim.run(|_| true).unwrap();
+    let speed = centre(&sim, 0).1.x;
+    let expected = g * (sin - friction * cos) * 0.3;
+    assert!((speed / expected - 1.0).abs() < 0.005, "{speed} {expected}");
+}

@@ -59,7 +59,8 @@ impl OnSurface<'_> {
         let nearest = tool.surface.closest(tool.reference(x));
         let normal = tool.state.rotation * nearest.normal;
         let near = nodes.nearness(i, nearest.signed_distance, normal);
-        if near.overlap <= -NEAR * near.scale * nodes.size(i) || !nodes.is_there(i) {
+        if near.overlap <= -NEAR * near.scale * nodes.size(i) || !nodes.is_there(i) || !nodes.faces(i, normal)
+        {
             return None;
         }
         let held = nodes.is_held(i).then_some(i);
