@@ -18,6 +18,7 @@ use super::rest;
 use super::sides::ThinBody;
 use super::start::start;
 use super::systems;
+use super::thickness::Thickness;
 use super::viscosities::Viscosities;
 use super::wall::WallBody;
 use crate::parallel::Lanes4;
@@ -44,7 +45,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let periodic = sim.periodic();
     checks::periods_are_long(&periodic, support)?;
     for wall in &walls {
-        checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)?;
+        if let Some(warning) = checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)? {
+            sim.warn(warning);
+        }
     }
     let moved = moved_bodies(sim);
     for &id in &moved {
@@ -73,7 +76,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let surface = Surface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true };
         let body = sim.body(id);
         groups.push(group(body, Role::Boundary(surface), &groups));
-        if checks::wall_is_thick(body, spacing, support, &periodic).is_err() {
+        if Thickness::of(body, support, &periodic)?.thin(1).is_some() {
             let other = group(body, Role::Boundary(surface), &groups);
             let first = other.cloud.start - body.rows.len()..other.cloud.start;
             thin.push(ThinBody::new(body, [first, other.cloud.clone()], support, plane)?);

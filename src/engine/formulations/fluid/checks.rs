@@ -4,12 +4,14 @@ use glam::DVec3;
 
 use super::cloud::{FlowCloud, Group};
 use super::mach::relative_speed;
-use super::thickness::Thickness;
+use super::thickness::{Thickness, Thin};
 use crate::neighbors::Periodic;
 use crate::notation::{number, place, quantity};
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
 use crate::scene::Problem;
 
+/// Depth of the edges of walls that fluids may see through, in supports: those of 20 degrees or more.
+const EDGES: usize = 2;
 /// Largest relative change of the density at the start.
 const LARGEST_CHANGE: f64 = 0.1;
 
@@ -98,19 +100,17 @@ pub(super) fn is_fine(body: &BodyPlan, spacing: f64) -> Result<(), SetupError> {
     Err(fault(body, "spacing", message, "give the body the spacing of the fluid, or a smaller one"))
 }
 
-/// An error where a wall is so coarse or so thin that the fluid would see through it.
+/// An error where a wall is so coarse or so thin that the fluid would see through it; a warning where it does so at fins.
 pub(super) fn wall_is_thick(
     body: &BodyPlan,
     spacing: f64,
     support: f64,
     periodic: &Periodic,
-) -> Result<(), SetupError> {
+) -> Result<Option<String>, SetupError> {
     is_fine(body, spacing)?;
-    let thin = Thickness::of(body, support, periodic)?.thin();
-    if thin.is_empty() {
-        return Ok(());
-    }
-    let (least, at) = thin.iter().fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { *b } else { a });
+    let Some(Thin { least, at, is_most }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
+        return Ok(None);
+    };
     let layers = (support / body.spacing - 1e-9).ceil();
     let message = format!(
         "`{}` is {:.0} layers of particles thick at {}, thinner than the kernel support of the fluid, {}",
@@ -120,7 +120,10 @@ pub(super) fn wall_is_thick(
         quantity(support, "m")
     );
     let help = format!("make it at least {layers} layers thick, {}", quantity(layers * body.spacing, "m"));
-    Err(fault(body, "shape", message, &help))
+    if is_most {
+        return Err(fault(body, "shape", message, &help));
+    }
+    Ok(Some(format!("{message}: fluid on one side acts on that on the other; {help}")))
 }
 
 /// An error where a fluid starts faster than its sound, against what bounds it.

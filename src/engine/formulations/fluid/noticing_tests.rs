@@ -281,3 +281,22 @@ fn walls_have_no_initial_velocity() {
     let fault = fault(&tank("", "", &more.replace("Select()", "Select(body: \"tank\")")));
     assert!(fault.contains("a wall has no initial velocity"), "{fault}");
 }
+
+#[test]
+fn a_wall_with_a_thin_baffle_is_warned_of() {
+    let tank = |baffle: &str| {
+        simulation(&format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid),
+                    (name: "tank", material: "water", spacing: 0.02, formulation: Wall(slip: Free), shape: Union([
+                        Difference(Box(min: (-0.08, -0.08), max: (1.08, 0.4)), Box(min: (0, 0), max: (1, 0.5))),
+                        Box(min: (0.48, 0), max: ({baffle}, 0.2))])),
+                ],
+                time: (end: 0.01))"#
+        ))
+    };
+    let seen = |baffle: &str| warning(&tank(baffle), "thinner than the kernel support").is_some();
+    assert!(seen("0.52"), "two layers");
+    assert!(!seen("0.56"), "four layers");
+}

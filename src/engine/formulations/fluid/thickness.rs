@@ -11,6 +11,16 @@ const THIN_SHARE: f64 = 0.05;
 /// Share of the most neighbours within half of the support that a particle has in the middle of a ball which lies inside of the body.
 const FULL: f64 = 0.9;
 
+/// Where a body is thinner than the support.
+pub(super) struct Thin {
+    /// Least thickness, m.
+    pub least: f64,
+    /// Where that is, m.
+    pub at: DVec3,
+    /// Whether it is more than edges and fins.
+    pub is_most: bool,
+}
+
 /// The thickness of a body at its particles.
 pub(super) struct Thickness {
     positions: Vec<DVec3>,
@@ -52,19 +62,29 @@ impl Thickness {
         Ok(Self { positions, spacing, support, neighbors, values })
     }
 
-    /// Thickness, m, and place of the particles where the fluid sees through the body; none where these are but its edges.
-    pub fn thin(&self) -> Vec<(f64, DVec3)> {
-        let at = |i: usize| (self.values[i], self.positions[i]);
-        let thin: Vec<_> = (0..self.positions.len()).filter(|&i| self.is_thin(i)).map(at).collect();
-        let are_many = thin.len() as f64 > THIN_SHARE * self.positions.len() as f64;
-        if are_many || (!thin.is_empty() && self.has_fins()) { thin } else { Vec::new() }
+    /// Where the fluid sees through the body; none where that is but its edges, no deeper than that many supports.
+    pub fn thin(&self, edges: usize) -> Option<Thin> {
+        let thin = || (0..self.positions.len()).filter(|&i| self.is_thin(i));
+        let least = thin().min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
+        let is_most = thin().count() as f64 > THIN_SHARE * self.positions.len() as f64;
+        let found = Thin { least: self.values[least], at: self.positions[least], is_most };
+        (is_most || self.has_fins(edges)).then_some(found)
     }
 
-    /// Whether a thin part ends farther from what is thick than the support: a fin, and no edge of more than 50 degrees.
-    fn has_fins(&self) -> bool {
-        let thin = self.thin_parts();
-        let is_far = |i: usize| thin[i] && self.neighbors.row(i).iter().all(|&j| thin[j as usize]);
-        (0..thin.len()).any(is_far)
+    /// Whether a thin part ends farther from what is thick than that many supports: one is that of a fin or an edge below some 40 degrees, two that of a fin or an edge below 20.
+    fn has_fins(&self, supports: usize) -> bool {
+        let mut is_known: Vec<bool> = self.thin_parts().iter().map(|is_thin| !is_thin).collect();
+        let mut front: Vec<usize> = (0..is_known.len()).filter(|&i| is_known[i]).collect();
+        for _ in 0..supports {
+            let mut next = Vec::new();
+            for &j in front.iter().flat_map(|&i| self.neighbors.row(i)) {
+                if !std::mem::replace(&mut is_known[j as usize], true) {
+                    next.push(j as usize);
+                }
+            }
+            front = next;
+        }
+        is_known.contains(&false)
     }
 
     fn is_thin(&self, i: usize) -> bool {
@@ -131,12 +151,12 @@ mod tests {
                 assert_eq!(is_thin, place.y < 0.0, "{place}");
             }
         }
-        assert!(!boat.thin().is_empty(), "a keel of 3.5 supports");
-        assert!(of("Box(min: (-24, 0), max: (24, 16))").thin().is_empty(), "a hull alone");
+        assert!(boat.thin(1).is_some_and(|thin| (thin.least - 4.0).abs() < 0.5), "a keel of 3.5 supports");
+        assert!(of("Box(min: (-24, 0), max: (24, 16))").thin(1).is_none(), "a hull alone");
         assert!(
-            of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin().is_empty(),
+            of("Polygon(points: [(0, 0), (40, 23), (-40, 23)])").thin(1).is_none(),
             "a wedge of 120 degrees"
         );
-        assert!(of("Polygon(points: [(0, 0), (14, 24), (-14, 24)])").thin().is_empty(), "one of 60 degrees");
+        assert!(of("Polygon(points: [(0, 0), (14, 24), (-14, 24)])").thin(1).is_none(), "one of 60 degrees");
     }
 }
