@@ -116,18 +116,17 @@ impl Shape {
         }
         let powers = if cloud.plane { 4 } else { 6 };
         let is_regular = moment.determinant() > 1e-6 * self.spacing.powi(powers);
-        let inverse = if is_regular { moment.inverse() } else { DMat3::ZERO };
-        let fits = is_regular && mean.dot(inverse * mean) < OUTSIDE;
-        let inverse = if fits { inverse } else { DMat3::ZERO };
-        let (map, at) = match motion {
-            Some(motion) => (motion.map, origin - motion.map * offset(nearest)),
-            None if fits => {
+        let fit = is_regular.then(|| moment.inverse()).filter(|inverse| mean.dot(*inverse * mean) < OUTSIDE);
+        let (map, at) = match (motion, fit) {
+            (Some(motion), _) => (motion.map, origin - motion.map * offset(nearest)),
+            (None, Some(inverse)) => {
                 let map = moved * inverse;
                 (map, origin + mean_home - map * mean)
             }
-            None => return Some(self.beside(cloud, nearest, offset(nearest))),
+            (None, None) => return Some(self.beside(cloud, nearest, offset(nearest))),
         };
-        let shares = Shares { total, mean, slope: -(inverse * mean), only: None };
+        let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
+        let shares = Shares { total, mean, slope, only: None };
         Some(Place { at, distance: self.distance(cloud, at), map, shares })
     }
 

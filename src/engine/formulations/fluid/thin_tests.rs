@@ -115,3 +115,39 @@ fn bodies_that_are_thick_and_thin_keep_their_energy_in_water() {
         assert!(error.abs() < 1e-2, "{name}: balance {error}");
     }
 }
+
+#[test]
+fn momenta_are_kept_with_water_around_a_fin_on_a_block() {
+    // The fin turns as it meets the water.
+    let mut sim = simulation(
+        r#"(dimension: Two, materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                "rubber": NeoHookean(density: 1100.0, young: 1.0e6, poisson: 0.3)},
+            bodies: [
+                (name: "left", material: "water", spacing: 0.01, formulation: Fluid(pressure: "2000"),
+                 shape: Box(min: (-0.2, 0), max: (-0.015, 0.2))),
+                (name: "right", material: "water", spacing: 0.01, formulation: Fluid(pressure: "500"),
+                 shape: Box(min: (0.035, 0), max: (0.22, 0.2))),
+                (name: "fin", material: "rubber", spacing: 0.01, formulation: TotalLagrangian,
+                 shape: Union([Box(min: (-0.005, -0.05), max: (0.015, 0.3)), Box(min: (-0.055, 0.3), max: (0.065, 0.4))])),
+            ],
+            conditions: [InitialVelocity(on: Select(body: "left"), value: ("0.4", "0.3")),
+                         InitialVelocity(on: Select(body: "fin"), value: ("-2*(y - 0.2)", "2*x"))],
+            time: (end: 1.0))"#,
+    );
+    let momenta = |sim: &Simulation| {
+        let of = |body| {
+            let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+            let x = column::<Position>(sim, body);
+            let of = |k: usize| (m[k].0 * v[k].0, x[k].0.cross(m[k].0 * v[k].0));
+            (0..m.len()).map(of).fold((DVec3::ZERO, DVec3::ZERO), |a, b| (a.0 + b.0, a.1 + b.1))
+        };
+        (0..3).map(of).fold((DVec3::ZERO, DVec3::ZERO), |a, b| (a.0 + b.0, a.1 + b.1))
+    };
+    sim.start().expect("a start");
+    let (linear, angular) = momenta(&sim);
+    sim.run(|sim| sim.clock().time < 0.08).expect("a run");
+    let (now, turned) = momenta(&sim);
+    assert!((now - linear).length() < 1e-11 * linear.length(), "{linear} {now}");
+    assert!((turned - angular).length() < 1e-9 * angular.length(), "{angular} {turned}");
+    assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
+}

@@ -49,7 +49,7 @@ pub enum Update {
 }
 
 /// Change of the length of a pair, over the smoothing length, after which the reference is updated where the scene does not say so: that of a pair at the edge of the support at a strain of a half.
-/// Updates at smaller changes cost energy and time, and are no more accurate (the table in docs/updated-lagrangian.md).
+/// Updates at smaller changes add energy and take time; they are more accurate only where metal is squeezed flat (the table in docs/updated-lagrangian.md).
 const USUAL_CHANGE: f64 = 1.0;
 
 /// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the paper.
