@@ -4,6 +4,7 @@ use super::pairs::{PairPush, Pairs};
 use super::search::{Crowd, Search};
 use crate::contact::active::{ActiveContacts, ContactNodes, End, Least};
 use crate::contact::bodies::{MemberColumns, MotionBounds, Nearness, Particles, failed};
+use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Interaction, PairKey};
 use crate::neighbors::Periodic;
 use crate::parallel::{Largest, sum_over_blocks};
@@ -95,7 +96,9 @@ impl ParticleContact {
             }
         }
         let (energies, least) = self.evaluate(step, stretch)?;
-        self.propose(step, speed, least);
+        let bodies = (self.first.body, self.second.body);
+        let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
+        time_step::propose(step, bodies, &touches)?;
         Ok(energies)
     }
 
@@ -131,13 +134,13 @@ impl ParticleContact {
         Ok((energies, least.0.min(self.first.least() + self.second.least())))
     }
 
-    fn propose(&self, step: &mut Step<'_>, speed: f64, least: f64) {
+    /// Largest squared frequency of a pair that touches, 1/s2.
+    fn stiffest(&self) -> f64 {
         let [one, other] = &self.contact_nodes;
         let other = if self.first.body == self.second.body { one } else { other };
         let stiffest = sum_over_blocks(self.contacts.met(), &|_, met: &[(PairKey, Nearness)]| {
             Largest::of(met.iter().map(|((i, j), _)| one.stiffness(*i) + other.stiffness(*j)))
         });
-        let bodies = (self.first.body, self.second.body);
-        crate::contact::response::time_step::propose(step, bodies, stiffest.0, speed, least);
+        stiffest.0
     }
 }

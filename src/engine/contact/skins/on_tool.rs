@@ -13,7 +13,7 @@ use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen, touch_of
 use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{MotionBounds, Sides, failed};
 use crate::contact::laws::Touch;
-use crate::contact::response::time_step::{self, OfSkins};
+use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, PairKey};
 use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
@@ -118,7 +118,8 @@ impl SkinOnTool {
         let keeps_reference = time_step::keeps_reference(step, skin.body);
         let stiffness = OfSkins { law, touch, usual, stiffest, gap, speed, dt, keeps_reference }.stiffness();
         let squared = stiffness * skin.lightness + of_tool;
-        time_step::propose(step, (skin.body, self.tool), squared, speed, skin.spacing);
+        let touches = Touches { squared, stored: energies.stored, speed, reach: skin.spacing };
+        time_step::propose(step, (skin.body, self.tool), &touches)?;
         Ok(energies)
     }
 

@@ -20,7 +20,7 @@ use super::side::{FacetPoint, PointPush, PointTouch, Side, shift_foot};
 use crate::contact::active::{ActiveContacts, Least};
 use crate::contact::bodies::{MotionBounds, failed};
 use crate::contact::laws::Touch;
-use crate::contact::response::time_step::{self, OfSkins};
+use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
 use crate::neighbors::NeighborError;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
@@ -75,7 +75,8 @@ impl SkinPair {
         let (energies, stiffness) = self.act([first.view(), second.view()], speed, dt).map_err(failed)?;
         let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);
         let reach = skins[0].spacing.min(skins[1].spacing);
-        time_step::propose(step, (skins[0].body, skins[1].body), squared, speed, reach);
+        let touches = Touches { squared, stored: energies.stored, speed, reach };
+        time_step::propose(step, (skins[0].body, skins[1].body), &touches)?;
         Ok(energies)
     }
 

@@ -4,6 +4,7 @@ mod deformed;
 mod heat;
 mod images;
 mod laws;
+mod loaded;
 mod long;
 mod particles;
 mod rigid;

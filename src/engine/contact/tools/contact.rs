@@ -6,7 +6,8 @@ use super::on_surface::{NearNodes, NodeTouch, OnSurface};
 use super::reaction::{NodePush, push};
 use crate::contact::active::{ActiveContacts, ContactNodes, End, Pull};
 use crate::contact::bodies::{MotionBounds, Particles, Sides};
-use crate::contact::response::{ContactEnergy, Interaction, time_step};
+use crate::contact::response::time_step::{self, Touches};
+use crate::contact::response::{ContactEnergy, Interaction};
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 
@@ -80,7 +81,9 @@ impl SurfaceContact {
         let pair = (sides.first, sides.second);
         match of_particles {
             Some(particles) if expected == 0.0 => {
-                time_step::propose(step, pair, squared, speed, 2.0 * near.least.0.min(particles.least()));
+                let reach = 2.0 * near.least.0.min(particles.least());
+                let touches = Touches { squared, stored: energies.stored, speed, reach };
+                time_step::propose(step, pair, &touches)?;
             }
             _ => time_step::propose_rigid(step, pair, squared.max(expected)),
         }
