@@ -2,25 +2,15 @@
 
 use glam::DVec3;
 
-use super::advice;
-use super::blocks;
-use super::body_spin::Neighborhood;
-use super::checks;
-use super::cloud::{FlowCloud, FluidState, Group, Role, Surface};
-use super::drift::Skins;
 use super::formulation::FluidBody;
-use super::kernel::FluidKernel;
-use super::near_rows::NearRows;
-use super::pairs::FlowPairs;
-use super::record::{Periods, Record};
-use super::repulsion::Repulsion;
-use super::rest;
-use super::sides::ThinBody;
-use super::start::start;
 use super::systems;
-use super::thickness::Thickness;
-use super::viscosities::Viscosities;
-use super::wall::WallBody;
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group, Role, Surface, Viscosities};
+use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
+use crate::formulations::fluid::lists::{FlowPairs, NearRows, Skins, Thickness, ThinBody};
+use crate::formulations::fluid::passes::blocks;
+use crate::formulations::fluid::rotation::Neighborhood;
+use crate::formulations::fluid::setup::{advice, checks, rest, start};
+use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Dimension, Problem};
@@ -63,7 +53,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let fluid: usize = groups.iter().map(|group| group.rows.len()).sum();
     for WallBody { id, parameters } in &walls {
         let surface = Surface {
-            no_slip: parameters.slip == super::Slip::No,
+            no_slip: parameters.slip == Slip::No,
             suction: parameters.suction,
             velocity: parameters.surface_velocity.0,
             moved: false,

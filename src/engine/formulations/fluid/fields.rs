@@ -2,11 +2,9 @@
 
 use glam::DVec3;
 
-use super::cloud::{FlowCloud, Near};
-use super::near::RowPass;
-use super::surroundings::smallest_eigenvalue;
 use crate::correction::FourMoments;
 use crate::fields::Field;
+use crate::formulations::fluid::cloud::{FlowCloud, Near, RowPass, smallest_eigenvalue};
 use crate::parallel::{FourLanes, Vector};
 use crate::plugin::BodyKind;
 use crate::world::{Column, Value, Velocity};

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::kernel::FluidKernel;
-use super::repulsion::RangeShortfall;
+use crate::formulations::fluid::lanes::FluidKernel;
+use crate::formulations::fluid::walls::RangeShortfall;
 use crate::kernels::KernelName;
 use crate::notation::number;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
@@ -33,7 +33,7 @@ impl Default for Fluid {
 }
 
 /// A fluid body with its parameters, until all bodies are known.
-pub(super) struct FluidBody {
+pub struct FluidBody {
     pub id: BodyId,
     pub parameters: Fluid,
     /// Support radius, m.

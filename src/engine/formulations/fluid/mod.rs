@@ -4,102 +4,66 @@
 //! end, then pressure and viscosity give the force. Between the two, walls take their pressure from the fluid beside
 //! them (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075). Fluids and boundaries are packed into one cloud with
 //! one search for neighbours; every pair force has its exact opposite on the other particle.
+//!
+//! Folders stand in the order in which they use each other, and import only those above them.
 
-mod advice;
-mod assemble;
-mod axial;
-mod batch;
-mod blocks;
-mod body_motion;
-mod body_spin;
-mod cells;
-#[cfg(test)]
-mod channel_tests;
-mod checks;
+/// What the passes over neighbours read, and do for four of them at once.
+mod lanes;
+
+/// Who is near whom: the lists of neighbours.
+mod lists;
+
+/// All particles that a fluid meets, as one cloud.
 mod cloud;
-mod compression;
-mod couples;
-mod coupling;
+
+/// Density and pressure of fluids.
 mod density;
-mod displace;
-mod drag;
-mod drift;
-mod exchange;
-mod fields;
-mod filling;
-mod fit;
-mod force;
+
+/// The rotation around each particle, which friction must not feel.
+mod rotation;
+
+/// What bounds a fluid.
+mod walls;
+
+/// The two passes over pairs: the rate of compression, and the force.
+mod passes;
+
+/// The force of a flow on bodies that take sub-steps beside it.
+mod coupling;
+
+/// What plugins that stabilize a flow do to it.
+mod stabilizers;
+
+/// The parameters of a fluid.
 mod formulation;
-mod friction;
-mod intrusion;
-mod kernel;
-mod late_impulse;
-mod loads;
-#[cfg(test)]
-mod loads_tests;
-mod mach;
-mod near;
-mod near_rows;
-mod neighbors;
-#[cfg(test)]
-mod noticing_tests;
-mod pack;
-mod pair_force;
-mod pair_sums;
-mod pairs;
-mod passing;
-mod reaction;
-mod record;
-mod repay;
-mod repulsion;
-#[cfg(test)]
-mod repulsion_tests;
-mod rest;
-#[cfg(test)]
-mod rest_tests;
-mod ringing;
-#[cfg(test)]
-mod ringing_tests;
-#[cfg(test)]
-mod several_tests;
-mod sides;
-mod sort;
-mod sound_speed;
-mod spin;
-#[cfg(test)]
-mod spin_tests;
-mod spread;
-mod start;
-mod state;
-mod surface_distance;
-mod surroundings;
+
+/// The start of a flow.
+mod setup;
+
+/// What a flow must not do, looked at in the course of the run.
+mod warnings;
+
+/// Fields that show a flow.
+mod fields;
+
+/// The systems of the step.
 mod systems;
+
+/// From the fluids and walls of a scene to these systems.
+mod assemble;
+
 #[cfg(test)]
 mod tests;
-mod thickness;
-#[cfg(test)]
-mod thin_tests;
-mod unevenness;
-mod viscosities;
-mod wall;
-mod wall_pressure;
-mod wall_state;
-mod watch;
-#[cfg(test)]
-mod worn_tests;
 
 pub use assemble::add_systems;
-pub use blocks::keep_rows;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
+pub use cloud::{FourNear, Fours, RowPass, SmallestEigenvalue, smallest_eigenvalue};
+pub use coupling::damp_ringing;
 pub use density::{DensityShift, SHIFTING_ENERGY};
-pub use displace::displace;
 pub(crate) use fields::fields;
 pub use formulation::Fluid;
-pub use kernel::FluidKernel;
-pub use near::{FourNear, Fours, RowPass};
-pub use record::Record;
-pub use repay::Repayment;
-pub use ringing::damp_ringing;
-pub use sound_speed::estimate as estimate_sound_speeds;
-pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
-pub use wall::{Slip, Wall};
+pub use lanes::{FluidKernel, Record};
+pub use passes::keep_rows;
+pub use setup::estimate_sound_speeds;
+pub use stabilizers::{Repayment, displace};
+pub use walls::{Slip, Wall};

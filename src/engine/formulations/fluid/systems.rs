@@ -2,21 +2,15 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::advice;
-use super::cloud::{Group, Role};
-use super::compression::Compression;
-use super::couples::Couples;
-use super::coupling;
-use super::density::Continuity;
 use super::fields::fields;
-use super::force::{ACCOUNTS, FLUID_FORCE, FlowForce};
-use super::neighbors::{NEIGHBORS, Neighbors};
-use super::repulsion::{RangeShortfall, Repulsion};
-use super::spin::Spin;
-use super::state::EquationOfState;
-use super::wall::PreviousVelocity;
-use super::wall_state::WallState;
-use super::watch;
+use crate::formulations::fluid::cloud::{Group, NEIGHBORS, Neighbors, Role};
+use crate::formulations::fluid::coupling::add_force_on_bodies;
+use crate::formulations::fluid::density::{Continuity, EquationOfState};
+use crate::formulations::fluid::passes::{ACCOUNTS, Compression, FLUID_FORCE, FlowForce};
+use crate::formulations::fluid::rotation::{Couples, Spin};
+use crate::formulations::fluid::setup::advice;
+use crate::formulations::fluid::walls::{PreviousVelocity, RangeShortfall, Repulsion, WallState};
+use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
@@ -39,7 +33,7 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
 }
 
 /// The phases that take sub-steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
-pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
+pub fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
     let pairs = advice::contacts(sim);
     let touched = |group: &Group| {
         let name = &sim.body(group.body).name;
@@ -56,7 +50,7 @@ pub(super) fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseI
 }
 
 /// Adds the systems of the groups; with `spin`, friction is corrected by it.
-pub(super) fn add(
+pub fn add(
     groups: &[Group],
     spin: bool,
     repulsion: Repulsion,
@@ -134,7 +128,7 @@ pub(super) fn add(
             _ => continue,
         };
         if groups.iter().any(|group| group.phase == phase && group.short) {
-            coupling::add(sim, groups, phase, label, spin);
+            add_force_on_bodies(sim, groups, phase, label, spin);
         } else {
             add_force(sim, groups, phase, label, None);
         }

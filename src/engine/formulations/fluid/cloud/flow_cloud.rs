@@ -1,0 +1,217 @@
+//! All particles that a fluid meets, as one cloud: the fluids first, then what bounds them.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::viscosities::Viscosities;
+use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
+use crate::formulations::fluid::lists::blocks::Blocks;
+use crate::formulations::fluid::lists::{FlowPairs, NearRows};
+use crate::formulations::fluid::rotation::Neighborhood;
+use crate::formulations::fluid::walls::Repelled;
+use crate::materials::EquationOfState;
+use crate::parallel::{EIGHT, Lanes4};
+use crate::world::{BodyId, PhaseId};
+
+/// The equation of state of a body, with its constants.
+#[derive(Clone, Copy, Debug)]
+pub struct FluidState {
+    /// Density at zero pressure rho_0, kg/m3.
+    pub density: f64,
+    /// Speed of sound c_0, m/s.
+    pub sound_speed: f64,
+    /// Dynamic viscosity mu, Pa s.
+    pub viscosity: f64,
+    /// Pressure as a function of density.
+    pub eos: EquationOfState,
+}
+
+impl FluidState {
+    /// Bulk modulus rho_0 c_0^2, Pa.
+    #[inline]
+    pub fn bulk_modulus(&self) -> f64 {
+        self.density * self.sound_speed * self.sound_speed
+    }
+
+    /// Harmonic mean of the viscosities of two fluids, Pa s.
+    #[inline]
+    pub fn viscosity_with(&self, other: &Self) -> f64 {
+        let sum = self.viscosity + other.viscosity;
+        if sum > 0.0 { 2.0 * self.viscosity * other.viscosity / sum } else { 0.0 }
+    }
+}
+
+/// What the particles of a group are to the flow.
+#[derive(Clone, Copy, Debug)]
+pub enum Role {
+    /// They flow.
+    Fluid(FluidState),
+    /// They bound the flow.
+    Boundary(Surface),
+}
+
+/// What the surface of a boundary does to the fluid.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Whether the fluid sticks to it.
+    pub no_slip: bool,
+    /// Whether its pressure may be negative.
+    pub suction: bool,
+    /// Velocity of the surface beside that of the particles, m/s.
+    pub velocity: DVec3,
+    /// Whether it is that of a body which the fluid moves.
+    pub moved: bool,
+}
+
+/// The particles of one body.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Body.
+    pub body: BodyId,
+    /// Its phase.
+    pub phase: PhaseId,
+    /// Its rows in the phase.
+    pub rows: Range<usize>,
+    /// Its rows in the cloud.
+    pub cloud: Range<usize>,
+    /// What it is to the flow.
+    pub role: Role,
+    /// Whether someone holds particles by their rows, so that these must not be sorted.
+    pub held: bool,
+    /// Whether it takes sub-steps in those of the flow.
+    pub short: bool,
+}
+
+impl Group {
+    /// The state of a fluid.
+    pub fn fluid(&self) -> Option<&FluidState> {
+        match &self.role {
+            Role::Fluid(state) => Some(state),
+            Role::Boundary(_) => None,
+        }
+    }
+}
+
+/// A neighbour of a fluid particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// Row of a fluid particle in its phase; beyond the number of fluid particles, something that bounds the fluid.
+    pub row: usize,
+    /// x_ij = x_j - x_i, m.
+    pub x_ij: DVec3,
+    /// Its length, m.
+    pub distance: f64,
+    /// Pair weight w_ij = |W'(r)| / r, so that grad_i W = w_ij x_ij.
+    pub weight: f64,
+    /// Kernel value W_ij.
+    pub kernel: f64,
+    /// Volume V_j, m3; zero for a removed particle.
+    pub volume: f64,
+}
+
+/// The cloud: what the systems of a flow share. It is derived from the columns.
+pub struct FlowCloud {
+    /// One group for every body: fluids first, each in the order of the scene.
+    pub groups: Vec<Group>,
+    /// Number of fluid particles.
+    pub fluid: usize,
+    /// Kernel.
+    pub kernel: FluidKernel,
+    pub(in crate::formulations::fluid) viscosities: Viscosities,
+    pub(in crate::formulations::fluid) plane: bool,
+    pub(in crate::formulations::fluid) periods: Periods,
+    /// Positions of what bounds the flow at the start of the step, of bodies that take sub-steps alone.
+    pub(in crate::formulations::fluid) before: Vec<DVec3>,
+    pub(in crate::formulations::fluid) records: Vec<Record>,
+    pub(in crate::formulations::fluid) pairs: FlowPairs,
+    /// The blocks of passes in single precision; none in double precision.
+    pub(in crate::formulations::fluid) blocks: Option<Box<Blocks>>,
+    /// Neighbours of fluid particles within the support.
+    pub(in crate::formulations::fluid) near: NearRows,
+    /// Fluid neighbours within the support of every particle that is no fluid.
+    pub(in crate::formulations::fluid) near_boundary: NearRows,
+    /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
+    pub(in crate::formulations::fluid) compression: Vec<f64>,
+    /// Whether every fluid particle is within `reach` of a boundary particle.
+    pub(in crate::formulations::fluid) is_close: Vec<bool>,
+    /// Distance within which a fluid particle that a boundary repels has a particle of it, m.
+    pub(in crate::formulations::fluid) reach: f64,
+    /// Fluid particles that boundaries repel, in the order of rows.
+    pub(in crate::formulations::fluid) repelled: Vec<Repelled>,
+    /// Acceleration of every fluid particle by loads; empty where nothing loads a fluid.
+    pub(in crate::formulations::fluid) loads: Vec<DVec3>,
+    /// Spins of all particles, 1/s; zero for boundaries, and none at all where friction goes without.
+    pub(in crate::formulations::fluid) spins: Vec<Lanes4>,
+    /// Bodies to which viscous fluids stick.
+    pub(in crate::formulations::fluid) neighborhoods: Vec<Neighborhood>,
+}
+
+impl FlowCloud {
+    /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
+    pub fn is_confined(&self) -> bool {
+        self.groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.suction))
+    }
+
+    /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
+    /// `i` is its row in the phase of fluids.
+    #[inline]
+    pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
+        let own = self.records[i].position();
+        let limit = self.kernel.support * self.kernel.support;
+        for &j in self.near_row(i) {
+            let row = j as usize;
+            let other = &self.records[row];
+            let x_ij = self.pairs.periodic().minimal_image(other.position() - own);
+            let square = x_ij.length_squared();
+            if square < limit {
+                let (distance, volume) = (square.sqrt(), other.volume());
+                let (weight, kernel) = (self.kernel.weight(distance), self.kernel.value(distance));
+                f(&Near { row, x_ij, distance, weight, kernel, volume });
+            }
+        }
+    }
+
+    /// All particles as the last passes over pairs have seen them, fluids first.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// The vector from one place to another, the shortest of its periodic images, m.
+    pub fn offset(&self, from: DVec3, to: DVec3) -> DVec3 {
+        self.pairs.periodic().minimal_image(to - from)
+    }
+
+    /// Volume of a fluid particle, m3; `i` is its row in the phase of fluids.
+    pub fn volume(&self, i: usize) -> f64 {
+        self.records[i].volume()
+    }
+
+    /// The state of a fluid body; none of another one.
+    pub fn state(&self, body: BodyId) -> Option<&FluidState> {
+        self.groups.iter().find(|group| group.body == body).and_then(Group::fluid)
+    }
+
+    /// Number of neighbours within the support of every particle of a fluid body, what bounds the fluid included.
+    pub fn neighbor_counts(&self, body: BodyId) -> Option<Vec<usize>> {
+        let group = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())?;
+        let count = |i: usize| {
+            let mut count = 0;
+            self.for_each_neighbor(i, |_| count += 1);
+            count
+        };
+        Some(group.cloud.clone().map(count).collect())
+    }
+
+    /// Number of directed pairs in the lists.
+    pub fn pairs(&self) -> usize {
+        let FlowPairs { fluid, walls, boundary, .. } = &self.pairs;
+        let of_blocks = self.blocks.as_ref().map_or(0, |blocks| EIGHT * blocks.lists.fluid.count());
+        of_blocks + fluid.pairs() + walls.pairs() + boundary.pairs()
+    }
+
+    /// How often the lists have been built.
+    pub fn builds(&self) -> u64 {
+        self.pairs.builds
+    }
+}

@@ -1,0 +1,101 @@
+//! Packing of the cloud from the columns, in every step.
+
+use glam::DVec3;
+
+use super::flow_cloud::FlowCloud;
+use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lists::{Growing, Spread};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::world::{
+    Density, Mass, MissingColumn, Position, Pressure, ReferenceVolume, Removed, Velocity, World,
+};
+
+impl FlowCloud {
+    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far the particles have moved since
+    /// they were packed before.
+    pub(in crate::formulations::fluid) fn pack(&mut self, world: &World) -> Result<Spread, MissingColumn> {
+        let mut moved = Spread::NONE;
+        for group in &self.groups {
+            let (view, rows) = (world.phase(group.phase), group.rows.clone());
+            let (x, v, removed) =
+                (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Removed>()?);
+            let common = (
+                &mut self.records[group.cloud.clone()],
+                &x[rows.clone()],
+                &v[rows.clone()],
+                &removed[rows.clone()],
+            );
+            moved = moved.with(if group.fluid().is_some() {
+                let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
+                let pressure = view.read::<Pressure>()?;
+                let fluid = (&mass[rows.clone()], &density[rows.clone()], &pressure[rows]);
+                sum_over_blocks((common, fluid), &|_, rows: (Common<'_>, Fluids<'_>)| {
+                    run_hot(PackFluid(rows.0, rows.1))
+                })
+            } else {
+                let volume = view.read::<ReferenceVolume>()?;
+                sum_over_blocks((common, &volume[rows]), &|_, rows: (Common<'_>, &[ReferenceVolume])| {
+                    run_hot(PackBoundary(rows.0, rows.1))
+                })
+            });
+        }
+        Ok(moved)
+    }
+
+    /// Writes down where the particles are, m.
+    pub(in crate::formulations::fluid) fn read_positions(&self, positions: &mut Vec<DVec3>) {
+        positions.resize(self.records.len(), DVec3::ZERO);
+        sum_over_blocks(
+            (&mut positions[..], &self.records[..]),
+            &|_, (to, from): (&mut [DVec3], &[Record])| {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.position());
+            },
+        );
+    }
+}
+
+type Common<'a> = (&'a mut [Record], &'a [Position], &'a [Velocity], &'a [Removed]);
+type Fluids<'a> = (&'a [Mass], &'a [Density], &'a [Pressure]);
+
+struct PackFluid<'a>(Common<'a>, Fluids<'a>);
+
+impl HotLoop for PackFluid<'_> {
+    type Output = Spread;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> Spread {
+        let Self((records, x, v, removed), (mass, density, pressure)) = self;
+        let mut moved = Growing::new();
+        for (k, record) in records.iter_mut().enumerate() {
+            let volume = if removed[k] == Removed::NO { mass[k].0 / density[k].0 } else { 0.0 };
+            write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
+            record.motion = Lanes4::new(v[k].0, pressure[k].0);
+        }
+        moved.end()
+    }
+}
+
+struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume]);
+
+impl HotLoop for PackBoundary<'_> {
+    type Output = Spread;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> Spread {
+        let Self((records, x, v, removed), volume) = self;
+        let mut moved = Growing::new();
+        for (k, record) in records.iter_mut().enumerate() {
+            let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
+            write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
+            record.motion = Lanes4::new(v[k].0, 0.0);
+        }
+        moved.end()
+    }
+}
+
+/// Writes the place of a particle, and adds to `moved` how far it is from where it was.
+#[inline(always)]
+fn write<A: FourLanes>(a: A, record: &mut Record, place: Lanes4, moved: &mut Growing) {
+    moved.add(a, a.minus(place, record.place));
+    record.place = place;
+}

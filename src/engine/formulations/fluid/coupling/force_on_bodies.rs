@@ -1,0 +1,227 @@
+//! The force of a flow on bodies that take sub-steps.
+//!
+//! It is frozen in the long step: the sub-steps run with what the flow did at its start, f(n). At its end the change comes as an
+//! impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly the opposite of what the kicks of the
+//! fluid were. The fluid sees the mean velocity of the long step, on which the frozen force does its work. With one
+//! sub-step in the long one this is the leapfrog, and under a constant force nothing kicks at all.
+
+use glam::DVec3;
+
+use super::drag;
+use super::drag::DragColumns;
+use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, Role};
+use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::passes::{ACCOUNTS, PARTS, PairForce};
+use crate::formulations::fluid::rotation::Couples;
+use crate::parallel::{Lanes4, for_each_block};
+use crate::plugin::SimBuilder;
+use crate::rigid::RigidBodies;
+use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
+use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
+
+/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick. Where
+/// friction `follows`, it changes in the sub-steps by the motion of the body.
+pub fn add_force_on_bodies(
+    sim: &mut SimBuilder<'_>,
+    groups: &[Group],
+    phase: PhaseId,
+    label: &'static str,
+    follows: bool,
+) {
+    let bodies = BodySet::new(groups.iter().filter(|group| group.phase == phase).map(|group| group.body));
+    sim.add_column_to::<CouplingForce>(&bodies);
+    sim.add_column_to::<CouplingFriction>(&bodies);
+    sim.add_column_to::<CouplingPressure>(&bodies);
+    sim.add_system(
+        System::new(Stage::PreStep, format!("{label}_before"), move |step: &mut Step<'_>| {
+            step.resources.get_mut::<FlowCloud>().remember(phase, step.world)
+        })
+        .on_phases([phase])
+        .reads::<Position>()
+        .in_long_steps(),
+    );
+    sim.add_system(
+        System::each::<(Adds<Force>, &CouplingForce)>(
+            Stage::Rates,
+            format!("{label}_frozen"),
+            bodies.clone(),
+            |_, (force, coupling)| force.0 += coupling.0,
+        )
+        .on_phases([phase]),
+    );
+    if follows {
+        drag::add(sim, &bodies, phase, label);
+    }
+    let coupling = Coupling {
+        phase,
+        follows,
+        total: Vec::new(),
+        parts: Vec::new(),
+        other_total: Vec::new(),
+        other_parts: Vec::new(),
+        couples: Couples::default(),
+        drag: Vec::new(),
+        sums: Vec::new(),
+    };
+    sim.add_system(
+        System::new(Stage::FinalIntegrate, label, coupling)
+            .on_phases([phase])
+            .in_long_steps()
+            .reads::<Mass>()
+            .reads::<Mobility>()
+            .reads::<Removed>()
+            .adds::<Force>()
+            .adds::<Velocity>(),
+    );
+}
+
+impl FlowCloud {
+    /// Keeps the positions of a phase at the start of the long step.
+    fn remember(&mut self, phase: PhaseId, world: &crate::world::World) -> Result<(), StepError> {
+        self.before.resize(self.records.len() - self.fluid, DVec3::ZERO);
+        for group in self.groups.iter().filter(|group| group.phase == phase) {
+            let position = world.phase(group.phase).read::<Position>()?;
+            let before = &mut self.before[group.cloud.start - self.fluid..group.cloud.end - self.fluid];
+            before.copy_from_slice(bytemuck::cast_slice(&position[group.rows.clone()]));
+        }
+        Ok(())
+    }
+
+    /// Gives bodies that take sub-steps their mean velocity over the long one, s.
+    pub(in crate::formulations::fluid) fn average_motion(&mut self, dt: f64) {
+        if dt == 0.0 {
+            return;
+        }
+        let Self { groups, records, before, fluid, .. } = self;
+        for group in groups.iter().filter(|group| group.short) {
+            let before = &before[group.cloud.start - *fluid..group.cloud.end - *fluid];
+            let slices = (&mut records[group.cloud.clone()], before);
+            type Rows<'a> = (&'a mut [Record], &'a [DVec3]);
+            for_each_block(slices, &mut Vec::new(), &|_, (records, before): Rows<'_>| {
+                for (record, before) in records.iter_mut().zip(before) {
+                    record.motion = Lanes4::new((record.position() - *before) / dt, 0.0);
+                }
+            });
+        }
+    }
+}
+
+struct Coupling {
+    phase: PhaseId,
+    /// Whether friction follows the motion of the bodies in the sub-steps.
+    follows: bool,
+    /// Force on the particles of a body, and its parts, N.
+    total: Vec<Force>,
+    parts: Vec<DVec3>,
+    /// The same from the other side of a thin body.
+    other_total: Vec<Force>,
+    other_parts: Vec<DVec3>,
+    couples: Couples,
+    /// How fast friction grows with the velocity of each particle, kg/s.
+    drag: Vec<f64>,
+    sums: Vec<Exchange>,
+}
+
+impl Coupling {
+    /// Sums the forces of the flow on the particles of a body over both of its sides, if it is thin.
+    fn sum_forces(&mut self, cloud: &FlowCloud, body: BodyId) {
+        for (side, group) in cloud.groups.iter().filter(|group| group.body == body).enumerate() {
+            let Self { total, parts, other_total, other_parts, couples, .. } = self;
+            let (to, parts_to) =
+                if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
+            to.resize(group.rows.len(), Force::default());
+            parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
+            PairForce { cloud, group, adds: false }.run(to, parts_to);
+            couples.add(cloud, group, to, parts_to);
+            cloud.repel(group, to, parts_to);
+            if side == 0 {
+                self.drag.clear();
+                self.drag.resize(group.rows.len(), 0.0);
+            }
+            self.couples.add_drag(&mut self.drag);
+            if side > 0 {
+                self.total.iter_mut().zip(&self.other_total).for_each(|(sum, other)| sum.0 += other.0);
+                self.parts.iter_mut().zip(&self.other_parts).for_each(|(sum, other)| *sum += *other);
+            }
+        }
+    }
+}
+
+impl Coupling {
+    /// Gives a body what it lacks at the end of the long step.
+    fn give(&mut self, step: &mut Step<'_>, cloud: &FlowCloud, group: &Group) -> Result<Exchange, StepError> {
+        let resources = step.resources;
+        let mut rigid = resources.try_get_mut::<RigidBodies>();
+        let view = step.world.phase(group.phase);
+        let rows = group.rows.clone();
+        let (mass, mobility) = (view.read::<Mass>()?, view.read::<Mobility>()?);
+        let removed = view.read::<Removed>()?;
+        let (mut velocity, mut force) = (view.write::<Velocity>()?, view.write::<Force>()?);
+        let mut frozen = view.write::<CouplingForce>()?;
+        let mut friction = view.write::<CouplingFriction>()?;
+        let mut pressure = view.write::<CouplingPressure>()?;
+        let first = group.cloud.start - cloud.fluid;
+        let before = cloud.before.get(first..first + rows.len()).unwrap_or_default();
+        let particles = Particles {
+            dt: step.clock.dt,
+            records: &cloud.records[group.cloud.clone()],
+            before,
+            mass: &mass[rows.clone()],
+            mobility: &mobility[rows.clone()],
+            removed: &removed[rows.clone()],
+            drag: &self.drag,
+            total: &self.total,
+            parts: &self.parts,
+        };
+        let mut drag = if self.follows { Some(DragColumns::new(&view)?) } else { None };
+        let columns = ParticleRows {
+            velocity: &mut velocity[rows.clone()],
+            force: &mut force[rows.clone()],
+            frozen: &mut frozen[rows.clone()],
+            friction: &mut friction[rows.clone()],
+            pressure: &mut pressure[rows.clone()],
+            drag: drag.as_mut().map(|drag| drag.rows(rows)),
+        };
+        let body = rigid.as_mut().and_then(|bodies| bodies.iter_mut().find(|body| body.id == group.body));
+        let (exchange, rate) = match body {
+            Some(body) => (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body)),
+            None => (particles.give(columns, &mut self.sums), particles.rate()),
+        };
+        if rate > 0.0 {
+            let name = &step.world.body(group.body).name;
+            step.limits.propose(1.0 / rate, format_args!("friction of the fluid on `{name}`"));
+        }
+        Ok(exchange)
+    }
+}
+
+impl Run for Coupling {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let cloud = step.resources.get::<FlowCloud>();
+        let (mut last, phase) = (None, self.phase);
+        for group in cloud.groups.iter().filter(|group| group.phase == phase) {
+            if last.replace(group.body) == Some(group.body) {
+                continue;
+            }
+            self.sum_forces(&cloud, group.body);
+            let exchange = self.give(step, &cloud, group)?;
+            let moving =
+                if let Role::Boundary(surface) = &group.role { surface.velocity } else { DVec3::ZERO };
+            // What drives a belt does the work that friction turns into heat.
+            let belt = -self.parts.iter().step_by(PARTS).sum::<DVec3>().dot(moving) * step.clock.dt;
+            let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
+            let constraints = step.ledger.account("constraints", AccountKind::Supplied);
+            step.ledger.add(kinetic, group.body, exchange.kinetic);
+            step.ledger.add(constraints, group.body, exchange.constraints + belt);
+            for (name, work) in ACCOUNTS.iter().zip(exchange.parts) {
+                let account = step.ledger.account(name, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, -work);
+            }
+            let viscosity = step.ledger.account(ACCOUNTS[0], AccountKind::Dissipated);
+            step.ledger.add(viscosity, group.body, belt);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,160 @@
+//! The density of fluids at the end of the step, by continuity.
+
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::world::{Density, DensityRate, Mass, Removed};
+
+crate::column! {
+    /// What the density of a fluid has yet to follow of a displacement that is no motion: by the next step it does.
+    pub struct DensityShift(f64) = "density_shift", "rho_s", "kg/m^3";
+}
+
+/// Account of the energy that displacements take out of fluids, by their weight and by the density that follows.
+pub const SHIFTING_ENERGY: &str = "particle_shifting";
+
+/// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
+pub struct Continuity {
+    /// Account of the energy that pair terms take out by changing the density; none where no term does.
+    pub account: Option<String>,
+    pub sums: Vec<Change>,
+}
+
+/// What a block learns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Change {
+    /// Energy of compression that pair terms take out, J.
+    dissipated: f64,
+    /// Energy of compression that displacements take out, J.
+    shifted: f64,
+    /// Energy of compression that leaves with removed particles, J.
+    removed: f64,
+    /// First row, counted from one, whose density is not above zero.
+    broken: usize,
+}
+
+impl BlockSum for Change {
+    fn add(&mut self, next: &Self) {
+        self.dissipated += next.dissipated;
+        self.shifted += next.shifted;
+        self.removed += next.removed;
+        if self.broken == 0 {
+            self.broken = next.broken;
+        }
+    }
+}
+
+impl Run for Continuity {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let dt = step.clock.dt;
+        if dt == 0.0 {
+            return Ok(());
+        }
+        let cloud = step.resources.get::<FlowCloud>();
+        let by_terms = self.account.is_some();
+        for group in &cloud.groups {
+            let Some(state) = group.fluid() else { break };
+            let view = step.world.phase(group.phase);
+            let mut density = view.write::<Density>()?;
+            let (rate, mass) = (view.read::<DensityRate>()?, view.read::<Mass>()?);
+            let removed = view.read::<Removed>()?;
+            let rows = group.rows.clone();
+            let shift = if view.has::<DensityShift>() { Some(view.read::<DensityShift>()?) } else { None };
+            let shift = shift.as_ref().map(|shift| &shift[rows.clone()]);
+            let slices = (
+                &mut density[rows.clone()],
+                &cloud.compression[group.cloud.clone()],
+                &rate[rows.clone()],
+                &mass[rows.clone()],
+                &removed[rows],
+            );
+            let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
+                run_hot(Advance { state, dt, by_terms, shift, first, rows })
+            });
+            if change.broken > 0 {
+                return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
+            }
+            if change.removed != 0.0 {
+                let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.removed);
+            }
+            if shift.is_some() {
+                let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.shifted);
+            }
+            if let Some(name) = &self.account {
+                let account = step.ledger.account(name, AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.dissipated);
+            }
+        }
+        Ok(())
+    }
+}
+
+type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'a [Removed]);
+
+/// The densities of a block.
+struct Advance<'a> {
+    state: &'a FluidState,
+    dt: f64,
+    by_terms: bool,
+    shift: Option<&'a [DensityShift]>,
+    first: usize,
+    rows: Rows<'a>,
+}
+
+impl HotLoop for Advance<'_> {
+    type Output = Change;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> Change {
+        let Self { state, dt, by_terms, shift, first, rows } = self;
+        let (density, compression, rate, mass, removed) = rows;
+        let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
+        let count = density.len();
+        // Rows of all columns are as many: said once, it need not be looked at again and again.
+        let (compression, rate) = (&compression[..count], &rate[..count]);
+        let (mass, removed) = (&mass[..count], &removed[..count]);
+        for (k, rho) in density.iter_mut().enumerate() {
+            if removed[k] != Removed::NO {
+                change.removed += mass[k].0 * state.eos.energy(rho.0, state.density, state.sound_speed);
+                rho.0 = state.density;
+                continue;
+            }
+            // Half of what pair terms and displacements do comes before the flow and half after it: the flow then compresses at the mean of
+            // the pressures of the two kicks, and the books close to second order in the step.
+            let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
+            let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
+            let half = -0.5 * dt * compression[k];
+            let before = rho.0 + by_terms + shift;
+            let after = a.mul_add(before, half, before) / (1.0 - half);
+            if shift != 0.0 {
+                change.shifted += mass[k].0
+                    * (state.released(before - shift, before) + state.released(after, after + shift));
+            }
+            if by_terms != 0.0 {
+                let middle = after + shift;
+                change.dissipated += mass[k].0
+                    * (state.released(rho.0, before - shift) + state.released(middle, middle + by_terms));
+            }
+            rho.0 = after + shift + by_terms;
+            least = if rho.0 < least { rho.0 } else { least };
+            sum += rho.0;
+        }
+        // What is no number does not show in the least.
+        if !(least > 0.0 && sum.is_finite()) {
+            let is_good = |rho: &Density| rho.0 > 0.0 && rho.0.is_finite();
+            change.broken = density.iter().position(|rho| !is_good(rho)).map_or(0, |k| first + k + 1);
+        }
+        change
+    }
+}
+
+impl FluidState {
+    /// Energy of compression that is released from one density to another, J/kg.
+    #[inline(always)]
+    fn released(&self, from: f64, to: f64) -> f64 {
+        -self.eos.energy_change(from, to, self.density, self.sound_speed)
+    }
+}

@@ -1,0 +1,11 @@
+//! Density and pressure of fluids, and how fast they flow for their sound.
+
+mod continuity;
+
+mod mach;
+
+mod state;
+
+pub use continuity::{Continuity, DensityShift, SHIFTING_ENERGY};
+pub use mach::relative_speed;
+pub use state::EquationOfState;

@@ -1,0 +1,14 @@
+//! What the passes over neighbours read, and do for four of them at once.
+
+mod record;
+
+mod kernel;
+
+mod axial;
+
+mod batch;
+
+pub use axial::Axial;
+pub use batch::{BATCH, Batch};
+pub use kernel::{FluidKernel, KernelLoop, PairShape};
+pub use record::{FILLS, Four, MASKS, Own, Periods, Places, Record, as_rows, dot, filled_up, sums};

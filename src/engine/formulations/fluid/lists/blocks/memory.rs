@@ -1,0 +1,68 @@
+//! The blocks of a flow, and what their passes read and write.
+
+use super::lists::Lists;
+use super::record::{Packed, Units};
+use crate::formulations::fluid::lists::NearRows;
+use crate::formulations::fluid::passes::blocks::Rates;
+use crate::pair::Fastest;
+use crate::parallel::Lanes8;
+
+/// The blocks of a flow, and what their passes read and write.
+pub struct Blocks {
+    pub lists: Lists,
+    pub units: Units,
+    pub packed: Vec<Packed>,
+    /// Neighbours within the support of any particle of a block.
+    pub near: NearRows,
+    /// Rates of compression, and a bit for each lane that is close to a boundary.
+    pub rates: Vec<Rates>,
+    /// What the pass of the force sums for each block.
+    pub forces: Vec<Lanes8>,
+    /// The largest rates of the pair terms in blocks of the pass.
+    pub fastest: Vec<Fastest>,
+    /// Whether the neighbours of every particle are written down in every step.
+    pub keeps_rows: bool,
+}
+
+impl Blocks {
+    /// Those of a flow; with `keeps_rows`, the neighbours of every particle are written down in every step.
+    pub fn new(units: Units, keeps_rows: bool) -> Self {
+        Self {
+            lists: Lists::new(units),
+            units,
+            packed: Vec::new(),
+            near: NearRows::default(),
+            rates: Vec::new(),
+            forces: Vec::new(),
+            fastest: Vec::new(),
+            keeps_rows,
+        }
+    }
+
+    /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the particles.
+    pub fn make_room(&mut self, of_particles: &mut NearRows) {
+        let Lists { table, fluid, walls, counts, .. } = &self.lists;
+        let most = |block: usize| fluid.row(block).len() + walls.row(block).len();
+        self.near.make_room_for(table.rows.len(), most);
+        if self.keeps_rows {
+            self.near.keep_lanes();
+            let most = |i: usize| {
+                let (block, lane) = table.place(i);
+                counts[block][lane] as usize + walls.row(block).len()
+            };
+            of_particles.make_room_for(table.particles(), most);
+        }
+    }
+
+    /// Neighbours within the support of a fluid particle or one that shares its block, itself included.
+    #[inline(always)]
+    pub fn near_of(&self, row: usize) -> &[u32] {
+        self.near.row(self.lists.table.place(row).0)
+    }
+
+    /// The same, where the neighbours of particles are not written down.
+    #[inline(always)]
+    pub fn shared_row(&self, row: usize) -> Option<&[u32]> {
+        if self.keeps_rows { None } else { Some(self.near_of(row)) }
+    }
+}

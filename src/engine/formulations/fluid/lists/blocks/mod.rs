@@ -1,0 +1,14 @@
+//! Blocks of eight fluid particles: their neighbours in common, and what single precision knows of each.
+
+mod table;
+
+mod record;
+
+mod lists;
+
+mod memory;
+
+pub use lists::{Lists, Sources};
+pub use memory::Blocks;
+pub use record::{Other, Own, Packed, Units, dot, pack, pack_states};
+pub use table::{Rows, Table};

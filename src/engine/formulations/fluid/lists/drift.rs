@@ -1,0 +1,231 @@
+//! How far particles have moved against those around them since the lists were built.
+//!
+//! A list is good as long as no pair beyond its skin has come within the support. That is a matter of how neighbours move against each
+//! other: a jet that flies carries its list along. Space is cut into cells; what the particles of a cell have moved lies in a box, and the
+//! boxes of a cell and those beside it hold all neighbours. Particles of cells that do not touch were the length of a cell apart.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::cells::sort_into_cells;
+use super::spread::{Growing, Spread};
+use crate::formulations::fluid::lanes::Record;
+use crate::neighbors::{Buckets, Periodic, SHIFT};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
+
+/// What has to hold for lists to be good, m.
+#[derive(Clone, Copy, Debug)]
+pub struct Skins {
+    /// Support radius.
+    pub support: f64,
+    /// Skin of the lists of fluids among themselves.
+    pub fluid: f64,
+    /// Skin of the lists of fluids and what bounds them.
+    pub walls: f64,
+}
+
+/// Skin of the neighbour lists of fluids over their spacing.
+const SKIN: f64 = 0.4;
+/// The same of fluids and what bounds them: fluids slide along walls, and few particles are near one.
+const WALL_SKIN: f64 = 0.8;
+
+impl Skins {
+    /// The usual ones of a spacing, m; less where a periodic domain is so short that a list would hold two images of a particle.
+    pub fn new(support: f64, spacing: f64, periodic: &Periodic) -> Self {
+        let lengths = periodic.lengths().to_array().into_iter().filter(|&length| length > 0.0);
+        let room =
+            lengths.fold(f64::INFINITY, |room, length| room.min((0.5 - 1e-9) * length - support)).max(0.0);
+        Self { support, fluid: room.min(SKIN * spacing), walls: room.min(WALL_SKIN * spacing) }
+    }
+}
+
+/// Displacements in a cell: of fluids, and of what bounds them.
+type Pair = [Spread; 2];
+
+/// The cells, with the particles that were in each when the lists were built.
+#[derive(Debug, Default)]
+pub struct Drift {
+    counts: [usize; 3],
+    /// Axes whose last cell is beside the first.
+    wraps: [bool; 3],
+    /// Periods of those axes, m, and one over them; zero on the others.
+    periods: [Lanes4; 2],
+    /// Least length of a cell, m.
+    length: f64,
+    /// The particles of each cell, ascending.
+    cells: Buckets,
+    /// Where they were, m, in the order of cells.
+    then: Vec<Lanes4>,
+    spreads: Vec<Pair>,
+    window: Vec<Pair>,
+}
+
+impl Drift {
+    /// Sorts particles into cells of at least that length, m.
+    pub fn sort(&mut self, positions: &[DVec3], length: f64, periodic: &Periodic) {
+        self.wraps = periodic.axes();
+        let period = periodic.lengths();
+        let inverse = DVec3::from_array(period.to_array().map(|l| if l > 0.0 { 1.0 / l } else { 0.0 }));
+        self.periods = [Lanes4::new(period, 0.0), Lanes4::new(inverse, 0.0)];
+        let sorted = sort_into_cells(&mut self.cells, positions, length, periodic);
+        (self.counts, self.length) = (sorted.counts, sorted.length);
+        self.then.resize(positions.len(), Lanes4::ZERO);
+        let rows = (&mut self.then[..], &self.cells.rows[..]);
+        sum_over_blocks(rows, &|_, (then, rows): (&mut [Lanes4], &[u32])| {
+            for (then, &row) in then.iter_mut().zip(rows) {
+                *then = Lanes4::new(positions[row as usize], 0.0);
+            }
+        });
+    }
+
+    /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
+    /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid.
+    pub fn room(&mut self, records: &[Record], fluid: usize, skins: Skins) -> f64 {
+        if self.then.len() != records.len() {
+            return f64::NEG_INFINITY;
+        }
+        let Self { cells, then, spreads, periods, .. } = self;
+        spreads.resize(cells.count(), [Spread::NONE; 2]);
+        spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
+            let range = cells.range(cell);
+            let (rows, then) = (&cells.rows[range.clone()], &then[range]);
+            let wet = rows.partition_point(|&row| (row as usize) < fluid);
+            let part = |rows, then| run_hot(Moved { records, rows, then, periods });
+            *spread = [part(&rows[..wet], &then[..wet]), part(&rows[wet..], &then[wet..])];
+        });
+        let all = spreads.iter().fold(Spread::NONE, |all, [fluid, walls]| all.with(*fluid).with(*walls));
+        let far_apart = self.length - skins.support - all.farthest(all);
+        if far_apart < 0.0 {
+            return far_apart;
+        }
+        (0..3).for_each(|axis| self.widen(axis));
+        let least = |[fluid, walls]: &Pair| {
+            (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls))
+        };
+        let near = self.spreads.par_iter().with_min_len(256).map(least).reduce(|| f64::INFINITY, f64::min);
+        far_apart.min(near)
+    }
+
+    /// Joins each cell with those beside it along an axis.
+    fn widen(&mut self, axis: usize) {
+        let Self { counts, wraps, spreads, window, .. } = self;
+        let stride: usize = counts[..axis].iter().product();
+        let (count, wraps) = (counts[axis], wraps[axis]);
+        if count == 1 {
+            return;
+        }
+        std::mem::swap(spreads, window);
+        spreads.resize(window.len(), [Spread::NONE; 2]);
+        spreads.par_iter_mut().with_min_len(256).enumerate().for_each(|(cell, spread)| {
+            let k = cell / stride % count;
+            let first = cell - k * stride;
+            let before = if k > 0 { Some(k - 1) } else { wraps.then_some(count - 1) };
+            let after = if k + 1 < count { Some(k + 1) } else { wraps.then_some(0) };
+            *spread = window[cell];
+            for beside in [before, after].into_iter().flatten() {
+                let [fluid, walls] = window[first + beside * stride];
+                *spread = [spread[0].with(fluid), spread[1].with(walls)];
+            }
+        });
+    }
+}
+
+/// What some particles have moved.
+struct Moved<'a> {
+    records: &'a [Record],
+    rows: &'a [u32],
+    then: &'a [Lanes4],
+    periods: &'a [Lanes4; 2],
+}
+
+impl HotLoop for Moved<'_> {
+    type Output = Spread;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> Spread {
+        let [period, inverse] = *self.periods;
+        let shift = Lanes4::splat(SHIFT);
+        let mut moved = Growing::new();
+        for (&row, then) in self.rows.iter().zip(self.then) {
+            let x = a.minus(self.records[row as usize].place, *then);
+            // To the nearest periodic image.
+            let turns = a.minus(a.times_add(x, inverse, shift), shift);
+            moved.add(a, a.minus(x, a.times(period, turns)));
+        }
+        moved.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKINS: Skins = Skins { support: 0.26, fluid: 0.04, walls: 0.08 };
+
+    /// Particles that hop about, and those of a floor.
+    fn places(fluid: usize, floor: usize) -> Vec<DVec3> {
+        let place = |k: usize| {
+            let t = k as f64;
+            DVec3::new((0.37 * t).sin(), 1.2 + (1.7 * t + 0.3).sin(), 0.3 * (0.9 * t + 1.1).sin())
+        };
+        let tile = |k: usize| DVec3::new(-1.0 + 0.1 * (k % 20) as f64, 0.0, -0.3 + 0.1 * (k / 20) as f64);
+        (0..fluid).map(place).chain((0..floor).map(tile)).collect()
+    }
+
+    fn records(positions: &[DVec3]) -> Vec<Record> {
+        positions.iter().map(|&x| Record { place: Lanes4::new(x, 1e-3), ..Record::default() }).collect()
+    }
+
+    /// Whether a pair that the lists do not hold is within the support.
+    fn misses(then: &[DVec3], now: &[DVec3], fluid: usize, periodic: &Periodic) -> bool {
+        (0..fluid).any(|i| {
+            (i + 1..then.len()).any(|j| {
+                let skin = if j < fluid { SKINS.fluid } else { SKINS.walls };
+                let distance = |x: &[DVec3]| periodic.minimal_image(x[j] - x[i]).length();
+                distance(then) > SKINS.support + skin && distance(now) < SKINS.support
+            })
+        })
+    }
+
+    #[test]
+    fn no_pair_is_missed() {
+        let box_ = Periodic::new(DVec3::splat(-1.1), DVec3::splat(2.3), [true, false, false]);
+        for periodic in [Periodic::NONE, box_.expect("a box")] {
+            let then = places(700, 120);
+            let mut drift = Drift::default();
+            drift.sort(&then, 2.0 * SKINS.support, &periodic);
+            let (mut small, mut missed) = (0, 0);
+            for n in 1..200 {
+                let t = 0.002 * f64::from(n);
+                // A flow that shears and carries everything along.
+                let flow = |x: DVec3| DVec3::new(1.0 + 0.2 * x.y, 0.3 * (2.0 * x.x).sin() - 0.5, 0.0);
+                let now: Vec<DVec3> = then
+                    .iter()
+                    .enumerate()
+                    .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
+                    .collect();
+                let is_small = drift.room(&records(&now), 700, SKINS) >= 0.0;
+                let misses = misses(&then, &now, 700, &periodic);
+                assert!(!(is_small && misses), "{n}");
+                small += i32::from(is_small);
+                missed += i32::from(misses);
+            }
+            assert!(small > 10 && missed > 50, "{small} {missed}");
+        }
+    }
+
+    #[test]
+    fn what_flies_as_a_whole_has_not_drifted() {
+        let then = places(700, 0);
+        let mut drift = Drift::default();
+        drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
+        let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
+        let room = drift.room(&records(&moved(DVec3::new(70.0, -3.0, 0.1))), 700, SKINS);
+        assert!((room - SKINS.fluid).abs() < 1e-12, "{room}");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            let mut now = moved(DVec3::ZERO);
+            now[5].x = wrong;
+            assert!(drift.room(&records(&now), 700, SKINS) < 0.0);
+        }
+    }
+}

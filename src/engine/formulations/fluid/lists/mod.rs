@@ -1,0 +1,25 @@
+//! Who is near whom: lists of neighbours, how long they are good for, and what thin bodies hide.
+
+mod cells;
+
+mod spread;
+
+mod near_rows;
+
+pub mod blocks;
+
+mod drift;
+
+mod thickness;
+
+mod sides;
+
+mod pairs;
+
+pub use cells::sort_into_cells;
+pub use drift::Skins;
+pub use near_rows::{NearRow, NearRows, NearWriter};
+pub use pairs::FlowPairs;
+pub use sides::ThinBody;
+pub use spread::{Growing, Spread};
+pub use thickness::{Thickness, Thin};

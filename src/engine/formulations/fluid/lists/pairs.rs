@@ -1,0 +1,118 @@
+//! The neighbour lists of a flow: of every fluid particle among all particles, of every boundary particle among the
+//! fluid.
+
+use glam::DVec3;
+
+use super::drift::{Drift, Skins};
+use super::sides::{Sides, ThinBody};
+use super::spread::Spread;
+use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lists::blocks::{Lists, Sources};
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+
+/// Length of the cells in which particles move together, over the support.
+const CELL: f64 = 2.0;
+/// Room over the support that round-off cannot take away.
+const CERTAIN: f64 = 1e-6;
+
+/// Lists that hold every pair within the support as long as particles have not moved more than the skins against those around them.
+#[derive(Debug)]
+pub struct FlowPairs {
+    skins: Skins,
+    drift: Drift,
+    periodic: Periodic,
+    /// Where the bodies end, as rows of the cloud: rows of the lists are ordered by them.
+    groups: Vec<u32>,
+    search: NeighborSearch,
+    /// Fluid neighbours of each fluid particle.
+    pub fluid: NeighborList,
+    /// Neighbours of each fluid particle among what bounds it, as rows of the cloud.
+    pub walls: NeighborList,
+    /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
+    pub boundary: NeighborList,
+    plane: bool,
+    /// How much particles that are near each other can at least still move against each other, m.
+    room: f64,
+    /// Bodies whose sides do not see each other.
+    thin: Vec<ThinBody>,
+    /// Number of builds.
+    pub builds: u64,
+}
+
+impl FlowPairs {
+    pub fn new(skins: Skins, periodic: Periodic, groups: Vec<u32>, thin: Vec<ThinBody>, plane: bool) -> Self {
+        Self {
+            skins,
+            drift: Drift::default(),
+            periodic,
+            groups,
+            search: NeighborSearch::default(),
+            fluid: NeighborList::default(),
+            walls: NeighborList::default(),
+            boundary: NeighborList::default(),
+            room: f64::NEG_INFINITY,
+            thin,
+            plane,
+            builds: 0,
+        }
+    }
+
+    #[inline]
+    pub fn periodic(&self) -> &Periodic {
+        &self.periodic
+    }
+
+    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are those of the fluid. `moved` says how
+    /// far particles have moved since the question was last asked.
+    pub fn are_stale(&mut self, records: &[Record], fluid: usize, moved: Spread) -> bool {
+        // Looking is needed when the particles may have used up the room that they had when it was last looked.
+        self.room -= moved.farthest(moved);
+        if self.room <= CERTAIN * self.skins.support {
+            self.room = self.drift.room(records, fluid, self.skins);
+        }
+        self.room < 0.0
+    }
+
+    /// Builds the lists; the first `fluid` positions are those of the fluid. With `blocks`, fluids have those in the place of lists of their own.
+    pub fn build(
+        &mut self,
+        positions: &[DVec3],
+        fluid: usize,
+        blocks: Option<&mut Lists>,
+    ) -> Result<(), NeighborError> {
+        let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
+        let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
+        if blocks.is_some() {
+            self.search.sort(wet, skin, &self.periodic)?;
+        } else {
+            self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
+        }
+        self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
+        self.boundary.turn(0..fluid, &mut self.walls);
+        self.walls.shift(fluid as u32);
+        if !self.thin.is_empty() {
+            let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
+            let walls = self.walls.clone();
+            self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
+            self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
+            self.walls.turn(fluid..positions.len(), &mut self.boundary);
+        }
+        if let Some(lists) = blocks {
+            let ends = &self.groups;
+            let sources = Sources {
+                positions: &positions[..fluid],
+                fluids: &ends[..ends.partition_point(|&end| end as usize <= fluid)],
+                support,
+                skin,
+                plane: self.plane,
+                periodic: &self.periodic,
+            };
+            lists.build(&sources, (&mut self.search, &self.groups), &self.walls)?;
+        }
+        self.drift.sort(positions, CELL * support, &self.periodic);
+        // The particles may have moved already: those of an interrupted run have.
+        self.room = f64::NEG_INFINITY;
+        self.builds += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! Bodies that are somewhere thinner than the support of the fluid: the two sides of each do not see each other there.
+//!
+//! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid particle sees the copy on
+//! whose side it is, the whole thickness of it; which side that is, the sign of n_j . x_ji says, with the normal n_j of the body as it is
+//! bent now. Pairs of fluid particles through the body are left out. Both are decided where the lists are built, in the same way
+//! for i and j, so that every force keeps its opposite.
+
+use std::collections::BinaryHeap;
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::thickness::{Thickness, axes};
+use crate::neighbors::{NeighborList, Periodic};
+use crate::plugin::{BodyPlan, SetupError};
+
+/// A line between two particles crosses a body within this distance of one of its particles, over their spacing.
+const REACH: f64 = 0.8;
+
+/// A thin body and its two copies in the cloud.
+#[derive(Clone, Debug)]
+pub struct ThinBody {
+    /// Rows of the copies for the side of the normal and for the other.
+    pub copies: [Range<usize>; 2],
+    spacing: f64,
+    frames: Vec<Frame>,
+}
+
+/// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the body.
+#[derive(Clone, Debug)]
+struct Frame {
+    along: [u32; 2],
+    /// None in two dimensions, where the other direction is that of z.
+    across: Option<[u32; 2]>,
+    /// One or minus one, so that normals of neighbours point to one side.
+    sign: f64,
+}
+
+impl ThinBody {
+    /// The body with its copies in the cloud.
+    pub fn new(
+        body: &BodyPlan,
+        copies: [Range<usize>; 2],
+        support: f64,
+        plane: bool,
+    ) -> Result<Self, SetupError> {
+        let sites: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let thickness = Thickness::of(body, support, &Periodic::NONE)?;
+        let thin = thickness.thin_parts();
+        let mut list = thickness.neighbors;
+        // Where the body is thick it has no mid-surface, normals are zero, and all sides see the first copy.
+        list.retain(|i, j| thin[i] && thin[j as usize]);
+        let mut frames = Vec::with_capacity(sites.len());
+        let mut normals = Vec::with_capacity(sites.len());
+        for i in 0..sites.len() {
+            let axes = axes(list.row(i).iter().map(|&j| sites[j as usize] - sites[i]), plane);
+            let farthest = |direction: DVec3| {
+                let lead = |j: u32| (sites[j as usize] - sites[i]).dot(direction);
+                let better =
+                    |best: u32, &j: &u32| if lead(j) > lead(best) + 1e-9 * support { j } else { best };
+                list.row(i).iter().fold(i as u32, better)
+            };
+            let pair = |axis: DVec3| [farthest(-axis), farthest(axis)];
+            let frame =
+                Frame { along: pair(axes.col(1)), across: (!plane).then(|| pair(axes.col(2))), sign: 1.0 };
+            normals.push(frame.normal(|k| sites[k]));
+            frames.push(frame);
+        }
+        orient(&mut frames, &normals, &list);
+        Ok(Self { copies, spacing: body.spacing, frames })
+    }
+
+    /// Normal at particle `k`, of any length, from the positions of the cloud.
+    fn normal(&self, k: usize, positions: &[DVec3]) -> DVec3 {
+        self.frames[k].normal(|j| positions[self.copies[0].start + j])
+    }
+}
+
+impl Frame {
+    fn normal(&self, position: impl Fn(usize) -> DVec3) -> DVec3 {
+        let between = |[from, to]: [u32; 2]| position(to as usize) - position(from as usize);
+        self.sign * between(self.along).cross(self.across.map_or(DVec3::Z, between))
+    }
+}
+
+/// Turns the normals of neighbours to one side: from each particle that is known to the one that is most parallel to it.
+fn orient(frames: &mut [Frame], normals: &[DVec3], list: &NeighborList) {
+    let mut known = vec![false; frames.len()];
+    let mut waiting = BinaryHeap::new();
+    for start in 0..frames.len() {
+        waiting.push((0, start, start));
+        while let Some((_, i, j)) = waiting.pop() {
+            if std::mem::replace(&mut known[j], true) {
+                continue;
+            }
+            frames[j].sign = if (frames[i].sign * normals[i]).dot(normals[j]) < 0.0 { -1.0 } else { 1.0 };
+            for &k in list.row(j) {
+                let cosine = normals[j].normalize_or_zero().dot(normals[k as usize].normalize_or_zero());
+                // The bits of numbers above zero rise with them.
+                waiting.push((cosine.abs().to_bits(), j, k as usize));
+            }
+        }
+    }
+}
+
+/// Decides which pairs of the lists see each other.
+pub struct Sides<'a> {
+    pub thin: &'a [ThinBody],
+    pub positions: &'a [DVec3],
+    pub periodic: &'a Periodic,
+    /// Number of fluid particles.
+    pub fluid: usize,
+}
+
+impl Sides<'_> {
+    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds what is near fluid particles and no fluid, seen or not.
+    pub fn sees(&self, i: usize, j: usize, walls: &NeighborList) -> bool {
+        if j < self.fluid {
+            return i == j
+                || !(self.is_hidden(i.min(j), i.max(j), i, walls)
+                    || self.is_hidden(i.min(j), i.max(j), j, walls));
+        }
+        for body in self.thin {
+            for (copy, positive) in body.copies.iter().zip([true, false]) {
+                if copy.contains(&j) {
+                    let normal = body.normal(j - copy.start, self.positions);
+                    return (normal.dot(self.from(j, i)) >= 0.0) == positive;
+                }
+            }
+        }
+        true
+    }
+
+    /// From one particle to another, m.
+    fn from(&self, j: usize, i: usize) -> DVec3 {
+        self.periodic.minimal_image(self.positions[i] - self.positions[j])
+    }
+
+    /// Whether a thin body near `at` lies between two fluid particles.
+    fn is_hidden(&self, i: usize, k: usize, at: usize, walls: &NeighborList) -> bool {
+        walls.row(at).iter().map(|&j| j as usize).any(|j| {
+            let Some(body) = self.thin.iter().find(|body| body.copies[0].contains(&j)) else { return false };
+            let normal = body.normal(j - body.copies[0].start, self.positions);
+            let (first, second) = (self.from(j, i), self.from(j, k));
+            let (a, b) = (normal.dot(first), normal.dot(second));
+            (a >= 0.0) != (b >= 0.0)
+                && (first + a / (a - b) * (second - first)).length() < REACH * body.spacing
+        })
+    }
+}

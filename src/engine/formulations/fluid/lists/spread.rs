@@ -1,0 +1,86 @@
+//! How much displacements differ: the box around them.
+
+use crate::parallel::{BlockSum, FourLanes, Lanes4};
+
+/// Displacements of some particles, m: the box around them; inverted where there are none.
+#[derive(Clone, Copy, Debug)]
+pub struct Spread {
+    low: Lanes4,
+    high: Lanes4,
+}
+
+impl Default for Spread {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl BlockSum for Spread {
+    fn add(&mut self, next: &Self) {
+        *self = self.with(*next);
+    }
+}
+
+impl Spread {
+    /// That of no displacement.
+    pub const NONE: Self = Self { low: Lanes4([f64::INFINITY; 4]), high: Lanes4([f64::NEG_INFINITY; 4]) };
+    /// As much as can be.
+    const ALL: Self = Self { low: Self::NONE.high, high: Self::NONE.low };
+
+    /// The box around two boxes.
+    #[inline(always)]
+    pub fn with(self, other: Self) -> Self {
+        Self { low: smaller(self.low, other.low), high: larger(self.high, other.high) }
+    }
+
+    /// Most that a displacement of one box and one of the other differ, m; zero where one has none.
+    pub fn farthest(self, other: Self) -> f64 {
+        (self.high.xyz() - other.low.xyz())
+            .max(other.high.xyz() - self.low.xyz())
+            .max(glam::DVec3::ZERO)
+            .length()
+    }
+}
+
+/// The lanes are written out, as those of [`Lanes4`] are.
+#[inline(always)]
+fn smaller(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
+    let of = |k: usize| if a[k] < b[k] { a[k] } else { b[k] };
+    Lanes4([of(0), of(1), of(2), of(3)])
+}
+
+#[inline(always)]
+fn larger(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
+    let of = |k: usize| if a[k] > b[k] { a[k] } else { b[k] };
+    Lanes4([of(0), of(1), of(2), of(3)])
+}
+
+/// A spread that grows by one displacement after the other.
+#[derive(Clone, Copy)]
+pub struct Growing {
+    spread: Spread,
+    sum: Lanes4,
+}
+
+impl Growing {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { spread: Spread::NONE, sum: Lanes4::ZERO }
+    }
+
+    /// Adds a displacement; the fourth lane does not matter.
+    #[inline(always)]
+    pub fn add<A: FourLanes>(&mut self, a: A, d: Lanes4) {
+        self.spread.low = a.smaller(d, self.spread.low);
+        self.spread.high = a.larger(d, self.spread.high);
+        // What is no number does not show in the box.
+        self.sum = a.plus(self.sum, d);
+    }
+
+    /// The spread, as large as can be where a displacement was no number.
+    #[inline(always)]
+    pub fn end(self) -> Spread {
+        if self.sum.xyz().is_finite() { self.spread } else { Spread::ALL }
+    }
+}

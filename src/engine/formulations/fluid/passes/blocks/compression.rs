@@ -1,0 +1,155 @@
+//! First pass over pairs, in blocks: who is within the support, and the rate of compression (`passes::compression`).
+
+use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
+use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, dot, pack};
+use crate::formulations::fluid::lists::{NearRow, NearWriter};
+use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block, run_blocks_on};
+
+/// What the pass finds for a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rates {
+    /// Rates of compression over the weight at r = 0.
+    rate: Lanes8,
+    /// A bit for each particle within reach of a boundary.
+    is_close: usize,
+}
+
+impl FlowCloud {
+    /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
+    pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
+        let Blocks { lists, units, packed, near, rates, keeps_rows, .. } = blocks;
+        pack(packed, &self.records, units);
+        rates.resize(lists.table.rows.len(), Rates::default());
+        let pass = Compress {
+            packed,
+            lists,
+            unit: units.length.to_array(),
+            back: -0.5 * dt,
+            reach: self.reach * self.reach,
+            limit: self.kernel.support * self.kernel.support,
+            least: self.kernel.least_square(),
+            plane: self.plane,
+        };
+        let rates_and_near = (&mut rates[..], near.writer());
+        if *keeps_rows {
+            self.kernel.run(AllBlocks::<true> { pass, rows: rates_and_near });
+        } else {
+            self.kernel.run(AllBlocks::<false> { pass, rows: rates_and_near });
+        }
+        let factor = self.kernel.weight_scale();
+        let (rates, table) = (&blocks.rates, &lists.table);
+        self.compression.resize(self.fluid, 0.0);
+        self.is_close.resize(self.fluid, false);
+        let rows = (&mut self.compression[..], &mut self.is_close[..]);
+        for_each_block(rows, &mut Vec::new(), &|first, (rate, is_close): (&mut [f64], &mut [bool])| {
+            for (k, (rate, is_close)) in rate.iter_mut().zip(is_close).enumerate() {
+                let (block, lane) = table.place(first + k);
+                let of_block = &rates[block];
+                *rate = factor * f64::from(of_block.rate.0[lane]);
+                *is_close = of_block.is_close >> lane & 1 == 1;
+            }
+        });
+        if blocks.keeps_rows {
+            self.pack_rows(blocks);
+        }
+    }
+}
+
+/// What the pass reads.
+#[derive(Clone, Copy)]
+struct Compress<'a> {
+    packed: &'a [Packed],
+    lists: &'a Lists,
+    /// Units of place, m.
+    unit: [f64; 3],
+    /// Time from the end of the step to its middle, s.
+    back: f64,
+    /// Squares of the reach of boundaries, of the support radius, and of the distance of particles in one place, m2.
+    reach: f64,
+    limit: f64,
+    least: f64,
+    plane: bool,
+}
+
+/// `LANES`: with a bit for each particle that a neighbour is near.
+struct AllBlocks<'a, const LANES: bool> {
+    pass: Compress<'a>,
+    rows: (&'a mut [Rates], NearWriter<'a>),
+}
+
+impl<const LANES: bool> KernelLoop for AllBlocks<'_, LANES> {
+    type Output = ();
+
+    fn run<K: PairShape>(self, kernel: K) {
+        let Self { pass, rows } = self;
+        for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Rates], NearWriter<'_>)| {
+            run_blocks_on(pass.plane, SomeBlocks::<K, LANES> { pass, kernel, first, out, near });
+        });
+    }
+}
+
+struct SomeBlocks<'a, K, const LANES: bool> {
+    pass: Compress<'a>,
+    kernel: K,
+    first: usize,
+    out: &'a mut [Rates],
+    near: NearWriter<'a>,
+}
+
+impl<K: PairShape, const LANES: bool> BlockLoop for SomeBlocks<'_, K, LANES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: EightLanes>(self, a: A) {
+        let Self { pass, kernel, first, out, near: mut writer } = self;
+        let Compress { packed, lists, unit, back, reach, limit, least: smallest, .. } = pass;
+        let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
+        let (back, limit, smallest) = (a.splat(back), a.splat(limit), a.splat(smallest));
+        for (k, out) in out.iter_mut().enumerate() {
+            let block = first + k;
+            let mut near = writer.row(k);
+            let mut least = a.splat(f64::INFINITY);
+            let own = Own::new(packed, &lists.table.rows[block]);
+            let mut sums = Sums { packed, kernel, own, unit, back, limit, smallest, sum: Lanes8::ZERO };
+            for &j in lists.fluid.row(block) {
+                sums.add::<A, LANES>(a, j, &mut near);
+            }
+            for &j in lists.walls.row(block) {
+                least = a.smaller(sums.add::<A, LANES>(a, j, &mut near), least);
+            }
+            near.close();
+            *out = Rates { rate: sums.sum, is_close: a.below(least, a.splat(reach)) };
+        }
+    }
+}
+
+struct Sums<'a, K> {
+    packed: &'a [Packed],
+    kernel: K,
+    own: Own,
+    unit: [Lanes8; 3],
+    back: Lanes8,
+    limit: Lanes8,
+    smallest: Lanes8,
+    sum: Lanes8,
+}
+
+impl<K: PairShape> Sums<'_, K> {
+    /// Adds a neighbour; gives the squares of the distances at the end of the step, and writes it down where one is within the support.
+    #[inline(always)]
+    fn add<A: EightLanes, const LANES: bool>(&mut self, a: A, j: u32, near: &mut NearRow<'_>) -> Lanes8 {
+        let other = &self.packed[j as usize];
+        let pair = self.own.to(a, other, &self.unit);
+        let square = dot(a, &pair.x, &pair.x);
+        near.push_if::<LANES>(j, a.below(square, self.limit));
+        let mut x = pair.x;
+        for axis in 0..A::AXES {
+            x[axis] = a.times_add(pair.v[axis], self.back, x[axis]);
+        }
+        let distance = a.sqrt(a.larger(dot(a, &x, &x), self.smallest));
+        let approach = a.times(dot(a, &pair.v, &x), a.same(other.volume));
+        self.sum = a.times_add(self.kernel.shape(a, distance), approach, self.sum);
+        square
+    }
+}

@@ -1,0 +1,67 @@
+//! The neighbours of every fluid particle, taken out of those of its block: for the systems that look at one particle at a time.
+
+use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::lists::NearWriter;
+use crate::formulations::fluid::lists::blocks::Blocks;
+use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot};
+use crate::plugin::SimBuilder;
+
+/// Asks for rows of neighbours in every step.
+pub struct KeepRows;
+
+/// Says that a system goes through the neighbours of fluid particles ([`FlowCloud::fours`]) in every step: with sums in single precision they are then written down for it. Without this, a system
+/// finds the same neighbours, and others beyond the support, in lists that particles have in common.
+pub fn keep_rows(sim: &mut SimBuilder<'_>) {
+    sim.extend(KeepRows);
+}
+
+impl FlowCloud {
+    /// Writes down the neighbours of every particle.
+    pub(in crate::formulations::fluid) fn pack_rows(&mut self, blocks: &Blocks) {
+        let mut near = std::mem::take(&mut self.near);
+        for_each_block(near.writer(), &mut Vec::new(), &|first, near: NearWriter<'_>| {
+            run_hot(Rows { blocks, first, near });
+        });
+        self.near = near;
+    }
+}
+
+struct Rows<'a> {
+    blocks: &'a Blocks,
+    first: usize,
+    near: NearWriter<'a>,
+}
+
+impl HotLoop for Rows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(mut self, a: A) {
+        let Blocks { lists, near: of_blocks, .. } = self.blocks;
+        for k in 0..self.near.len() {
+            let i = self.first + k;
+            let (block, lane) = lists.table.place(i);
+            let mut row = self.near.row(k);
+            let (rows, bits) = (of_blocks.row(block), of_blocks.lanes(block));
+            let ((fours, rest), (fours_of_bits, rest_of_bits)) = (rows.as_chunks(), bits.as_chunks());
+            for n in 0..fours.len() {
+                row.push(a, fours[n], others(fours[n], fours_of_bits[n], lane, i as u32));
+            }
+            for n in 0..rest.len() {
+                let is_near = others([rest[n], 0, 0, 0], [rest_of_bits[n], 0, 0, 0], lane, i as u32);
+                row.push(a, [rest[n]; 4], is_near);
+            }
+            row.close();
+        }
+    }
+}
+
+/// A bit for each of four neighbours that are near the particle in that lane, which is in row `i`, and not the particle itself.
+#[inline(always)]
+fn others(rows: [u32; 4], bits: [u8; 4], lane: usize, i: u32) -> usize {
+    let mut near = 0;
+    for n in 0..4 {
+        near |= (usize::from(bits[n]) >> lane & usize::from(rows[n] != i)) << n;
+    }
+    near
+}

@@ -1,0 +1,94 @@
+//! The system that makes the forces of a flow, and its opposite on what bounds it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+
+use super::blocks::BlockForce;
+use super::pair_force::{PARTS, PairForce};
+use crate::formulations::fluid::cloud::{FlowCloud, Role};
+use crate::formulations::fluid::rotation::Couples;
+use crate::pair::{BodyTerms, PhaseTerms};
+use crate::parallel::for_each_block;
+use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::world::{Force, Mass, PhaseId, Removed};
+
+/// Label of the system that makes the forces of fluids and walls.
+pub const FLUID_FORCE: &str = "fluid_force";
+/// Accounts of the parts of the force whose work is booked.
+pub const ACCOUNTS: [&str; PARTS] = ["viscosity", "wall_pressure"];
+
+/// Makes the forces on the particles of one phase.
+pub struct FlowForce {
+    pub phase: PhaseId,
+    /// Acceleration of gravity, m/s2; none where another system has given the particles their weight.
+    pub gravity: Option<DVec3>,
+    /// The parts of the force on each body, for the booking of their work.
+    pub parts: Arc<Mutex<Vec<BodyTerms>>>,
+    pub couples: Couples,
+    /// Pair terms of plugins, run in the same pass.
+    pub terms: Option<PhaseTerms>,
+}
+
+impl Run for FlowForce {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let flows = self.gravity.is_some();
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let mut blocks = if flows { cloud.blocks.take() } else { None };
+        if let Some(blocks) = &mut blocks {
+            blocks.pack_states(&cloud);
+        }
+        let view = step.world.phase(self.phase);
+        let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
+        let mut force = view.write::<Force>()?;
+        let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
+        let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
+        for (number, (group, BodyTerms { forces, .. })) in groups.zip(parts.iter_mut()).enumerate() {
+            forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
+            let total = &mut force[group.rows.clone()];
+            let terms = self.terms.as_mut().filter(|terms| terms.act_on(group.body));
+            if let Some(blocks) = &mut blocks {
+                let mut pass = BlockForce { cloud: &cloud, group, number, blocks };
+                match terms {
+                    Some(terms) => pass.run_with(terms, step, total, forces)?,
+                    None => pass.run(total, forces),
+                }
+            } else {
+                let pass = PairForce { cloud: &cloud, group, adds: !flows };
+                match terms {
+                    Some(terms) => pass.run_with(terms, step, total, forces)?,
+                    None => pass.run(total, forces),
+                }
+            }
+            self.couples.add(&cloud, group, total, forces);
+            cloud.repel(group, total, forces);
+            if let Some(gravity) = self.gravity {
+                let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
+                type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
+                for_each_block(rows, &mut Vec::new(), &|_, (f, m, removed): Rows<'_>| {
+                    let (m, removed) = (&m[..f.len()], &removed[..f.len()]);
+                    for (k, f) in f.iter_mut().enumerate() {
+                        // Without a branch.
+                        let mass = if removed[k] == Removed::NO { m[k].0 } else { 0.0 };
+                        f.0 += gravity * mass;
+                    }
+                });
+            }
+            if let Role::Boundary(surface) = &group.role
+                && surface.velocity != DVec3::ZERO
+            {
+                // What drives a belt does the work that friction turns into heat.
+                let friction: DVec3 = forces.iter().step_by(PARTS).sum();
+                let work = -friction.dot(surface.velocity) * step.clock.dt;
+                let supplied = step.ledger.account("constraints", AccountKind::Supplied);
+                let dissipated = step.ledger.account(ACCOUNTS[0], AccountKind::Dissipated);
+                step.ledger.add(supplied, group.body, work);
+                step.ledger.add(dissipated, group.body, work);
+            }
+        }
+        if flows {
+            cloud.blocks = blocks;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,18 @@
+//! The two passes over pairs: the rate of compression, and the force.
+
+mod pair_sums;
+
+mod pair_force;
+
+pub mod blocks;
+
+mod compression;
+
+mod force;
+
+mod reaction;
+
+pub use blocks::keep_rows;
+pub use compression::Compression;
+pub use force::{ACCOUNTS, FLUID_FORCE, FlowForce};
+pub use pair_force::{ForceRows, PARTS, PairForce};

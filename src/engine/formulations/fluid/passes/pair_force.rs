@@ -1,0 +1,179 @@
+//! Second pass over pairs: the force of pressure and viscosity.
+//!
+//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 4 mu_ij w_ij (v_ij - omega_ij x x_ij)`, with the harmonic mean mu_ij of the
+//! two viscosities and the mean omega_ij of the two spins (`rotation`), that of the fluid at a wall. Swapping i and j turns the sign of every
+//! product. Where friction goes without spins it is `2 mu_ij w_ij v_ij`.
+//!
+//! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
+//! that of a compressed fluid, so its work is booked by itself, together with that of its repulsion (`walls::repulsion`).
+
+use glam::DVec3;
+
+use super::pair_sums::{Between, Forces, Pairs};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
+use crate::formulations::fluid::lanes::{Own, sums};
+use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
+use crate::parallel::{BlockSum, FourLanes, PlaneOrSolid, Split, for_each_block, run_hot_in};
+use crate::schedule::{Step, StepError};
+use crate::world::Force;
+
+/// Forces that are kept apart: viscous, and of the pressure of boundaries.
+pub const PARTS: usize = 2;
+
+/// The pass over the particles of one group.
+pub struct PairForce<'a> {
+    pub cloud: &'a FlowCloud,
+    pub group: &'a Group,
+    /// Whether the force is added to what is there already.
+    pub adds: bool,
+}
+
+/// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every particle.
+pub struct ForceRows<'a> {
+    pub written: TermRows<'a>,
+    pub parts: &'a mut [DVec3],
+}
+
+impl Split for ForceRows<'_> {
+    fn rows(&self) -> usize {
+        self.written.rows()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let (written, written_rest) = self.written.split(at);
+        let (parts, parts_rest) = self.parts.split_at_mut(PARTS * at);
+        (Self { written, parts }, Self { written: written_rest, parts: parts_rest })
+    }
+}
+
+impl PairForce<'_> {
+    /// Writes the forces on all particles of the group and [`PARTS`] parts of each, N.
+    pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
+        let rows = ForceRows { written: TermRows::without_terms(total), parts };
+        for_each_block(rows, &mut Vec::new(), &|first, rows| {
+            run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms: None });
+        });
+    }
+
+    /// The same with the pair terms of the body, which get the geometry of each row as the pass has made it.
+    pub fn run_with(
+        &self,
+        terms: &mut PhaseTerms,
+        step: &mut Step<'_>,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) -> Result<(), StepError> {
+        let body = self.group.body;
+        let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
+            let rows = ForceRows { written, parts: &mut *parts };
+            for_each_block(rows, sums, &|first, rows| {
+                let mut fastest = Fastest::default();
+                with_batch(|batch| {
+                    let terms = Some(Terms { terms, batch, fastest: &mut fastest });
+                    run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms });
+                });
+                fastest
+            })
+        })?;
+        fastest.limit(step, body);
+        Ok(())
+    }
+}
+
+struct Rows<'a> {
+    pass: &'a PairForce<'a>,
+    first: usize,
+    rows: ForceRows<'a>,
+    terms: Option<Terms<'a>>,
+}
+
+/// The pair terms of the group, and the pairs that they are given.
+struct Terms<'a> {
+    terms: &'a BoundTerms<'a>,
+    batch: &'a mut PairBatch,
+    fastest: &'a mut Fastest,
+}
+
+impl PlaneOrSolid for Rows<'_> {
+    #[inline(always)]
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
+    }
+}
+
+impl Rows<'_> {
+    #[inline(always)]
+    fn rows<A: FourLanes, const D: usize, const P: bool>(self, a: A) {
+        let PairForce { cloud, group, adds } = *self.pass;
+        let kernel = cloud.kernel;
+        let ForceRows { mut written, parts } = self.rows;
+        let mut terms = self.terms;
+        let own_is_fluid = group.fluid().is_some();
+        let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
+        let factor = cloud.viscosities.factor();
+        let first = group.cloud.start + self.first;
+        let count = written.total.len();
+        // Rows whose terms have not been run begin here.
+        let mut open = 0;
+        for k in 0..count {
+            let i = first + k;
+            let own = &cloud.records[i];
+            let lanes = Own::<D>::new(own);
+            if let Some(Terms { batch, .. }) = &mut terms
+                && k == open
+            {
+                batch.begin(Extras::default(), kernel.support);
+            }
+            let mut is_in_batch = false;
+            let mut rest =
+                if own_is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
+            let mut forces = Forces::<D>::ZERO;
+            // By number: zipped iterators would be called.
+            for n in 0..groups.len() {
+                if rest.is_empty() {
+                    break;
+                }
+                let (other, viscosity) = (&groups[n], factor * viscosities[n]);
+                let row = take_until(&mut rest, other.cloud.end);
+                if row.is_empty() {
+                    continue;
+                }
+                let pairs = Pairs { cloud, kernel, own: lanes, i, row, viscosity };
+                match &mut terms {
+                    Some(Terms { terms, batch, .. })
+                        if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>
+                    {
+                        is_in_batch = true;
+                        let room = batch.add_row(own.volume(), row.len());
+                        pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
+                    }
+                    _ => {
+                        let between = match (own_is_fluid, other.fluid().is_some()) {
+                            (true, true) => Between::Fluids,
+                            (true, false) => Between::FluidAndBoundary,
+                            _ => Between::BoundaryAndFluid,
+                        };
+                        pairs.add::<A, P>(a, between, &mut forces);
+                    }
+                }
+            }
+            let Forces { pressure, viscous, wall } = &forces;
+            let (pressure, viscous, wall) = (sums(a, pressure), sums(a, viscous), sums(a, wall));
+            let volume = own.volume();
+            let force = (viscous - pressure - wall) * volume;
+            let total = &mut written.total[k];
+            total.0 = if adds { total.0 + force } else { force };
+            parts[PARTS * k] = viscous * volume;
+            parts[PARTS * k + 1] = wall * -volume;
+            if let Some(Terms { terms, batch, fastest }) = &mut terms {
+                if !is_in_batch {
+                    batch.add_row(volume, 0);
+                }
+                if batch.is_full() || k + 1 == count {
+                    fastest.add(&terms.run(first + open, batch, open, &mut written));
+                    open = k + 1;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! The rotation around each particle, which friction must not feel.
+
+mod spin;
+
+mod body_spin;
+
+mod couples;
+
+pub use body_spin::Neighborhood;
+pub use couples::Couples;
+pub use spin::Spin;

@@ -1,0 +1,67 @@
+//! What can be known of a flow before it runs, and is most likely not meant.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::{FlowCloud, Group};
+use crate::pair::PhaseTerms;
+use crate::plugin::{BodyKind, Setup, SimBuilder};
+use crate::rigid::RigidBodies;
+use crate::world::{BodyId, ReferenceVolume};
+
+/// Warns of fluids whose density nothing diffuses.
+pub fn undamped_density(terms: Option<&PhaseTerms>, groups: &[Group], sim: &mut SimBuilder<'_>) {
+    for group in groups.iter().filter(|group| group.fluid().is_some()) {
+        if terms.is_some_and(|terms| terms.change_density_of(group.body)) {
+            continue;
+        }
+        let name = sim.body(group.body).name.clone();
+        sim.warn(format!(
+            "nothing diffuses the density of `{name}`: its pressure becomes noise, which can drive particles through walls; give it \
+             `plugins: [density_diffusion()]`"
+        ));
+    }
+}
+
+/// Pairs of names of bodies that have a contact.
+pub fn contacts(sim: &SimBuilder<'_>) -> Vec<(String, String)> {
+    sim.scene().contact_pairs().map(|(_, contact)| contact.between).collect()
+}
+
+/// Whether there is a contact between two bodies.
+pub fn touch(contacts: &[(String, String)], a: &str, b: &str) -> bool {
+    contacts.iter().any(|(one, other)| (one == a && other == b) || (one == b && other == a))
+}
+
+/// Warns of rigid bodies that sink to walls which do not hold them.
+pub fn sinking(
+    cloud: &FlowCloud,
+    walls: &[BodyId],
+    contacts: &[(String, String)],
+    gravity: DVec3,
+    setup: &mut Setup<'_>,
+) {
+    let Some(bodies) = setup.resources.try_get::<RigidBodies>() else { return };
+    let fluids = cloud.groups.iter().filter_map(|group| group.fluid());
+    let lightest = fluids.map(|state| state.density).fold(f64::INFINITY, f64::min);
+    for body in bodies.iter() {
+        let falls = (0..3).any(|axis| gravity[axis] != 0.0 && !body.is_driven_along(axis));
+        let (view, rows) = setup.world.body_view(body.id);
+        let Ok(volume) = view.read::<ReferenceVolume>() else { continue };
+        let density = body.mass / volume[rows].iter().map(|volume| volume.0).sum::<f64>();
+        let name = &setup.world.body(body.id).name;
+        let name_of = |wall: &BodyId| &setup.world.body(*wall).name;
+        let held = walls.is_empty() || walls.iter().any(|wall| touch(contacts, name, name_of(wall)));
+        if falls && density > lightest && !held {
+            let wall = name_of(&walls[0]);
+            setup.warnings.push(format!(
+                "the rigid body `{name}` is denser than the fluid, and no contact holds it off a wall: it will fall through; add \
+                 `contacts: [Contact(between: (\"{name}\", \"{wall}\"), law: Penalty())]`"
+            ));
+        }
+    }
+}
+
+/// The walls of a scene.
+pub fn walls(sim: &SimBuilder<'_>) -> Vec<BodyId> {
+    sim.bodies().iter().filter(|body| body.kind == BodyKind::Boundary).map(|body| body.id).collect()
+}

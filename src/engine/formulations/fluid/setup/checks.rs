@@ -1,0 +1,141 @@
+//! What must hold between fluids and walls before anything runs.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::{FlowCloud, Group};
+use crate::formulations::fluid::density::relative_speed;
+use crate::formulations::fluid::lists::{Thickness, Thin};
+use crate::formulations::fluid::walls::WallBody;
+use crate::neighbors::Periodic;
+use crate::notation::{number, place, quantity};
+use crate::plugin::{BodyPlan, SetupError, SimBuilder};
+use crate::scene::Problem;
+
+/// Depth of the edges of walls that fluids may see through, in supports: those of 20 degrees or more.
+const EDGES: usize = 2;
+/// Largest relative change of the density at the start.
+const LARGEST_CHANGE: f64 = 0.1;
+
+fn fault(body: &BodyPlan, field: &str, message: String, help: &str) -> SetupError {
+    let path = format!("bodies[{}].{field}", body.id.0);
+    SetupError::Problems(vec![Problem::at_path(path, message).help(help)])
+}
+
+/// An error where walls hold no fluid and no contact names them.
+pub fn walls_have_fluid(walls: &[WallBody], sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+    for wall in walls {
+        let body = sim.body(wall.id);
+        let touches = |(_, contact): (usize, crate::scene::Contact)| {
+            contact.between.0 == body.name || contact.between.1 == body.name
+        };
+        if !sim.scene().contact_pairs().any(touches) {
+            let message =
+                format!("body `{}` is a wall, and there is no fluid that it could bound", body.name);
+            let help = "add a body with `formulation: Fluid`, or a contact of the wall with another body";
+            return Err(fault(body, "formulation", message, help));
+        }
+    }
+    Ok(())
+}
+
+/// An error where a period is so short that a particle would see two images of another.
+pub fn periods_are_long(periodic: &Periodic, support: f64) -> Result<(), SetupError> {
+    let least = 2.0 * support;
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let length = periodic.lengths()[axis];
+        if periodic.axes()[axis] && length < least * (1.0 + 1e-6) {
+            let message = format!(
+                "the period along {name} must be longer than twice the support of the fluid, {}, found {}",
+                quantity(least, "m"),
+                quantity(length, "m")
+            );
+            let problem = Problem::at_path("domain.periodic", message);
+            let help = format!(
+                "make the domain longer, or the spacing smaller: the support of the fluid is {}",
+                quantity(support, "m")
+            );
+            return Err(SetupError::Problems(vec![problem.help(help)]));
+        }
+    }
+    Ok(())
+}
+
+/// An error where the pressure of the start changes the density so much that the fluid is no liquid.
+pub fn sound_is_fast(group: &Group, at: DVec3, p: f64, rho: f64, name: &str) -> Result<(), SetupError> {
+    let Some(state) = group.fluid() else { return Ok(()) };
+    let change = rho / state.density - 1.0;
+    if change.abs() <= LARGEST_CHANGE {
+        return Ok(());
+    }
+    let message = format!(
+        "the pressure of {} at {} changes the density of `{name}` by {:.0} %: its speed of sound of {} m/s is too low",
+        quantity(p, "Pa"),
+        place(at),
+        100.0 * change,
+        number(state.sound_speed)
+    );
+    let fast = 10.0 * (2.0 * p.abs() / state.density).sqrt();
+    let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
+    let help = format!("leave `sound_speed` of the material out, or give some {fast:.3} m/s");
+    Err(SetupError::Problems(vec![problem.help(help)]))
+}
+
+/// An error where a body is coarser than the fluid that it bounds.
+pub fn is_fine(body: &BodyPlan, spacing: f64) -> Result<(), SetupError> {
+    if body.spacing <= spacing * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    let message = format!(
+        "the spacing of `{}` must not exceed that of the fluid, found {} m and {spacing} m",
+        body.name, body.spacing
+    );
+    Err(fault(body, "spacing", message, "give the body the spacing of the fluid, or a smaller one"))
+}
+
+/// An error where a wall is so coarse or so thin that the fluid would see through it; a warning where it does so at fins.
+pub fn wall_is_thick(
+    body: &BodyPlan,
+    spacing: f64,
+    support: f64,
+    periodic: &Periodic,
+) -> Result<Option<String>, SetupError> {
+    is_fine(body, spacing)?;
+    let Some(Thin { least, at, is_most }) = Thickness::of(body, support, periodic)?.thin(EDGES) else {
+        return Ok(None);
+    };
+    let layers = (support / body.spacing - 1e-9).ceil();
+    let message = format!(
+        "`{}` is {:.0} layers of particles thick at {}, thinner than the kernel support of the fluid, {}",
+        body.name,
+        least / body.spacing,
+        place(at),
+        quantity(support, "m")
+    );
+    let help = format!("make it at least {layers} layers thick, {}", quantity(layers * body.spacing, "m"));
+    if is_most {
+        return Err(fault(body, "shape", message, &help));
+    }
+    Ok(Some(format!("{message}: fluid on one side acts on that on the other; {help}")))
+}
+
+/// An error where a fluid starts faster than its sound, against what bounds it.
+pub fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
+    cloud.pack(world).map_err(|error| SetupError::internal(&error))?;
+    for group in &cloud.groups {
+        let Some(state) = group.fluid() else { break };
+        let speeds = cloud.records[group.cloud.clone()].iter().map(|record| record.velocity().length());
+        let fastest = relative_speed(speeds.fold(0.0, f64::max), group, &cloud.groups, &cloud.records);
+        if fastest >= state.sound_speed {
+            let body = world.body(group.body);
+            let message = format!(
+                "the fluid `{}` must start slower than its speed of sound, found {fastest} m/s and {} m/s",
+                body.name, state.sound_speed
+            );
+            let problem = Problem::at_path(format!("bodies[{}].material", group.body.0), message);
+            return Err(SetupError::Problems(vec![
+                problem.help("give ten times the largest speed of the flow as `sound_speed`"),
+            ]));
+        }
+    }
+    Ok(())
+}

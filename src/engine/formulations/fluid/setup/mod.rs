@@ -1,0 +1,15 @@
+//! The start of a flow: its state, and what must hold before anything runs.
+
+mod sound_speed;
+
+pub mod checks;
+
+mod start;
+
+pub mod rest;
+
+pub mod advice;
+
+pub use advice::{contacts, touch};
+pub use sound_speed::estimate as estimate_sound_speeds;
+pub use start::start;

@@ -1,0 +1,102 @@
+//! Friction that pays energy back: what a stabilizer without an energy of its own has given to a flow, neighbours lose.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::{FlowCloud, RowPass};
+use crate::parallel::{FourLanes, Number, Vector, sum_over_blocks};
+use crate::schedule::{AccountKind, Step, StepError};
+use crate::world::{BodyId, Mass, Removed, Velocity};
+
+/// Largest share of their relative velocities that neighbours lose in a step.
+const LARGEST: f64 = 0.05;
+
+/// Pays back what an account of dissipation has given to a body, where it is below zero:
+/// `dv_i = s sum_j V_j W_ij (v_ij . x_ij) x_ij / r_ij^2` over the body, with s such that the energy is paid, at most 0.05 in a step. Momentum and angular momentum
+/// stay, and rigid rotation has no such friction. The account is that of the stabilizer, so that it is no source of energy.
+#[derive(Debug, Default)]
+pub struct Repayment {
+    rubs: Vec<Rub>,
+}
+
+/// Friction of strength one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rub {
+    /// Change of velocity, m/s.
+    velocity: DVec3,
+    /// Energy that it takes, J/kg.
+    taken: f64,
+}
+
+impl Repayment {
+    /// Pays; velocities of that step must not be needed any more.
+    ///
+    /// # Errors
+    /// A column is missing.
+    pub fn pay(
+        &mut self,
+        step: &mut Step<'_>,
+        cloud: &FlowCloud,
+        id: BodyId,
+        account: &str,
+    ) -> Result<(), StepError> {
+        let own = step.ledger.accounts().iter().find(|known| known.name == account);
+        let owed = -own.map_or(0.0, |own| own.of(id));
+        if owed <= 0.0 {
+            return Ok(());
+        }
+        let (view, rows) = step.world.body_view(id);
+        self.rubs.resize(rows.len(), Rub::default());
+        cloud.for_each_row(rows.start, &mut self.rubs, &Rubbing { cloud, rows: rows.clone() });
+        let mut velocity = view.write::<Velocity>()?;
+        let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
+        let both = (&self.rubs[..], &mass[rows.clone()]);
+        let taken = sum_over_blocks(both, &|_, (rubs, mass): (&[Rub], &[Mass])| {
+            rubs.iter().zip(mass).map(|(rub, m)| m.0 * rub.taken).sum::<f64>()
+        });
+        if taken <= 0.0 {
+            return Ok(());
+        }
+        let strength = (owed / taken).min(LARGEST);
+        let slices = (&mut velocity[rows.clone()], &self.rubs[..], &mass[rows.clone()], &removed[rows]);
+        type Rows<'a> = (&'a mut [Velocity], &'a [Rub], &'a [Mass], &'a [Removed]);
+        let lost = sum_over_blocks(slices, &|_, (velocity, rubs, mass, removed): Rows<'_>| {
+            let mut lost = 0.0;
+            for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
+                let (v, change) = (velocity[k].0, strength * rubs[k].velocity);
+                lost -= mass[k].0 * change.dot(v + 0.5 * change);
+                velocity[k].0 = v + change;
+            }
+            lost
+        });
+        let account = step.ledger.account(account, AccountKind::Dissipated);
+        step.ledger.add(account, id, lost);
+        Ok(())
+    }
+}
+
+/// The pass over the particles of a body.
+struct Rubbing<'a> {
+    cloud: &'a FlowCloud,
+    rows: Range<usize>,
+}
+
+impl RowPass for Rubbing<'_> {
+    type Output = Rub;
+
+    #[inline(always)]
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Rub {
+        let records = self.cloud.records();
+        let v_i = records[i].velocity();
+        let (mut velocity, mut taken) = (Vector::zero(a), Number::zero(a));
+        for near in self.cloud.fours(a, i, &self.rows) {
+            let v_ij = near.vector(|j| records[j].velocity() - v_i);
+            let parting = v_ij.dot(near.x_ij) / near.distance;
+            let share = near.volume * near.kernel * parting;
+            velocity = near.x_ij.mul_add(share / near.distance, velocity);
+            taken += 0.5 * share * parting;
+        }
+        Rub { velocity: velocity.sum(), taken: taken.sum() }
+    }
+}

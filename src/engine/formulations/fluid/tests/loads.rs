@@ -1,0 +1,112 @@
+//! Loads on a flow beside gravity: walls feel what the fluid feels.
+
+use glam::DVec3;
+
+use super::{column, simulation};
+use crate::formulations::fluid::FlowCloud;
+use crate::kernels::{Kernel, KernelName};
+use crate::simulation::Simulation;
+use crate::world::{Density, Force, Mass, Position, Pressure};
+
+/// A tank with water that is 0.2 m high, with what acts on it.
+fn tank(gravity: &str, wall: &str, conditions: &str) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Two, gravity: {gravity}, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02,
+                 formulation: Fluid(pressure: "9810*(0.2 - y)")),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall({wall}),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.4)), Box(min: (0, 0), max: (0.4, 1)))),
+            ],
+            conditions: [{conditions}], time: (end: 1.0))"#
+    ))
+}
+
+fn farthest(a: &[Position], b: &[Position], shift: DVec3) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.0.distance(b.0 + shift)).fold(0.0, f64::max)
+}
+
+#[test]
+fn gravity_as_a_load_is_gravity() {
+    let mut by_gravity = tank("(0.0, -9.81)", "", r#"Force(on: Select(body: "water"), value: (0.0, 0.0))"#);
+    let mut by_load =
+        tank("(0.0, 0.0)", "", r#"BodyForce(on: Select(body: "water"), value: (0.0, "-9.81 + 0*t"))"#);
+    for sim in [&mut by_gravity, &mut by_load] {
+        sim.run(|sim| sim.clock().step < 300).expect("a run");
+    }
+    let apart = farthest(&column(&by_gravity, 0), &column(&by_load, 0), DVec3::ZERO);
+    assert!(apart < 1e-9, "{apart}");
+    let (a, b) = (column::<Pressure>(&by_gravity, 1), column::<Pressure>(&by_load, 1));
+    let differ = a.iter().zip(&b).map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f64::max);
+    let largest = a.iter().map(|p| p.0).fold(0.0, f64::max);
+    assert!(differ < 1e-6 * largest && largest > 1900.0, "{differ} {largest}");
+}
+
+#[test]
+fn water_in_a_frame_that_shakes_moves_as_water_in_a_tank_that_shakes() {
+    // The tank moves by 0.01 (1 - cos 12 t) from rest; in its frame the water feels minus its acceleration.
+    let mut shaken = tank(
+        "(0.0, -9.81)",
+        "",
+        r#"Velocity(on: Select(body: "tank"), value: ("0.12*sin(12*t)", 0.0)), Force(on: Select(body: "water"), value: (0.0, 0.0))"#,
+    );
+    let mut frame =
+        tank("(0.0, -9.81)", "", r#"BodyForce(on: Select(body: "water"), value: ("-1.44*cos(12*t)", 0.0))"#);
+    for sim in [&mut shaken, &mut frame] {
+        sim.run(|sim| sim.clock().time < 0.2).expect("a run");
+    }
+    let t = shaken.clock().time;
+    let shift = DVec3::X * 0.01 * (1.0 - (12.0 * t).cos());
+    let apart = farthest(&column(&shaken, 0), &column(&frame, 0), shift);
+    assert!(apart < 2e-4, "{apart}");
+}
+
+#[test]
+fn walls_feel_a_load_that_varies_in_place() {
+    let load = |x: DVec3| DVec3::new(3.0 * x.y, -9.81 - 20.0 * x.x, 0.0);
+    let mut sim = tank(
+        "(0.0, 0.0)",
+        "suction: true",
+        r#"BodyForce(on: Select(body: "water"), value: ("3*y", "-9.81 - 20*x"))"#,
+    );
+    sim.start().expect("a start");
+    let kernel = Kernel::new(KernelName::WendlandC2, 2).expect("a kernel");
+    let state = sim.resources().get::<FlowCloud>().groups[0].fluid().copied().expect("a fluid");
+    let (x, p) = (column::<Position>(&sim, 0), column::<Pressure>(&sim, 0));
+    let (rho, m) = (column::<Density>(&sim, 0), column::<Mass>(&sim, 0));
+    for (wall, found) in column::<Position>(&sim, 1).iter().zip(column::<Pressure>(&sim, 1)) {
+        let (mut total, mut sum) = (0.0, 0.0);
+        for k in 0..x.len() {
+            let to = x[k].0 - wall.0;
+            let weight = m[k].0 / rho[k].0 * kernel.w(to.length(), 0.03);
+            let density = state.density + p[k].0 / state.sound_speed.powi(2);
+            total += weight;
+            sum += weight * (p[k].0 - density * load(x[k].0).dot(to));
+        }
+        let wanted = if total > 1e-10 { sum / total } else { 0.0 };
+        assert!((found.0 - wanted).abs() < 1e-9 * 2000.0, "{} {wanted}", found.0);
+    }
+}
+
+#[test]
+fn a_wall_has_its_velocity_before_the_first_force() {
+    let motions = [
+        r#"Velocity(on: Select(body: "tank"), value: ("1.0 - 2*t", 0.0))"#,
+        r#"Displacement(on: Select(body: "tank"), value: ("t - t^2", 0.0))"#,
+    ];
+    for motion in motions {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: 0.5, viscosity: 10.0)}},
+                bodies: [
+                    (name: "oil", material: "oil", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid(pressure: 0.0)),
+                    (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(slip: No),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.26)), Box(min: (0, 0), max: (0.4, 0.2)))),
+                ],
+                conditions: [InitialVelocity(on: Select(body: "oil"), value: (1.0, 0.0)), {motion}], time: (end: 1.0))"#
+        ));
+        // Faster than its sound, but not against the tank; the friction of a wall at rest would be mu v = 10 N on each particle.
+        sim.start().expect("a start");
+        let viscous = column::<Force>(&sim, 0).iter().map(|force| force.0.length()).fold(0.0, f64::max);
+        assert!(viscous < 1e-4 * 10.0, "{motion}: {viscous}");
+    }
+}

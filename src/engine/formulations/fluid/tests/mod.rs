@@ -1,0 +1,44 @@
+//! Tests of flows, by what they test.
+
+mod flows;
+
+mod several;
+
+mod spin;
+
+mod channel;
+
+mod loads;
+
+mod rest;
+
+mod repulsion;
+
+mod worn;
+
+mod thin;
+
+mod ringing;
+
+mod noticing;
+
+use crate::assembly::build;
+use crate::plugin::Registry;
+use crate::scene::{Source, parse};
+use crate::simulation::Simulation;
+use crate::world::{BodyId, Column};
+
+pub fn simulation(text: &str) -> Simulation {
+    let registry = Registry::standard();
+    let built =
+        parse(Source::new("test.ron", text)).and_then(|(scene, source)| build(&scene, &source, &registry));
+    match built {
+        Ok(simulation) => simulation,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+pub fn column<C: Column + Copy>(sim: &Simulation, body: usize) -> Vec<C> {
+    let (view, rows) = sim.world().body_view(BodyId(body));
+    view.read::<C>().expect("a column")[rows].to_vec()
+}

@@ -1,0 +1,171 @@
+//! Lone particles and boundaries: nothing passes, energy and momentum are kept, and nothing is pushed at rest.
+
+use glam::DVec3;
+
+use super::{column, simulation};
+use crate::kernels::{Kernel, KernelName};
+use crate::simulation::Simulation;
+use crate::world::{BodyId, Density, Force, Mass, Position, Pressure, ReferenceVolume, Velocity};
+
+pub const SPACING: f64 = 0.02;
+const SOUND: f64 = 10.0;
+const DENSITY: f64 = 1000.0;
+
+/// Lone particles above a body whose surface is at y = 0, at a height in spacings, from right above a particle of it to right above a gap; their density is over that at rest.
+pub fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &str) -> Simulation {
+    let (name, size, floor) = if dimension == 3 {
+        ("Three", "(0.04, 1.04, 0.04)", "Box(min: (-0.2, -0.08, -0.2), max: (0.8, 0.0, 0.2))")
+    } else {
+        ("Two", "(0.04, 1.04)", "Box(min: (-0.2, -0.08), max: (0.8, 0.0))")
+    };
+    let low = if dimension == 3 { "(0, 1, 0)" } else { "(0, 1)" };
+    let sim = simulation(&format!(
+        r#"(dimension: {name}, materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND}), "rubber": NeoHookean(density: 1200.0, young: 1.0e5, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: {SPACING}, formulation: Fluid(pressure: 0.0), shape: Box(min: {low}, max: {size})),
+                (name: "below", {below}, spacing: {SPACING}, shape: {floor}),
+            ], time: (end: 1.0))"#
+    ));
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let (mut x, mut v) =
+        (view.write::<Position>().expect("places"), view.write::<Velocity>().expect("velocities"));
+    let count = rows.len();
+    for (k, row) in rows.clone().enumerate() {
+        let aside = 0.5 * SPACING * k as f64 / (count - 1) as f64;
+        x[row].0 = DVec3::new(
+            0.08 * k as f64 + 0.01 + aside,
+            height * SPACING,
+            if dimension == 3 { 0.01 + aside } else { 0.0 },
+        );
+        v[row].0 = velocity;
+    }
+    view.write::<Density>().expect("densities")[rows].fill(Density(density * DENSITY));
+    drop((x, v));
+    sim
+}
+
+pub const WALL: &str = r#"material: "wall", formulation: Wall()"#;
+
+#[test]
+fn lone_particles_do_not_pass_a_wall_and_keep_their_energy() {
+    for dimension in [2, 3] {
+        // A particle that was torn out of a fluid has lost density, and is drawn to the wall.
+        for (speed, density) in [(0.02, 1.0), (0.2, 1.0), (0.02, 0.5), (0.2, 0.4)] {
+            let velocity = DVec3::new(0.3, -1.0, 0.0).normalize() * speed * SOUND;
+            let mut sim = rain(dimension, 2.6, velocity, density, WALL);
+            let mut lowest = f64::INFINITY;
+            sim.run(|sim| {
+                let heights = column::<Position>(sim, 0).into_iter().map(|x| x.0.y);
+                lowest = heights.fold(lowest, f64::min);
+                sim.clock().time < 0.1 / (speed * SOUND)
+            })
+            .expect("a run");
+            assert!(
+                lowest > -0.5 * SPACING && lowest < 2.0 * SPACING,
+                "{dimension} {speed} {density}: {lowest}"
+            );
+            let balance = sim.ledger().relative_error().abs();
+            assert!(balance < 0.02, "{dimension} {speed} {density}: {balance}");
+        }
+    }
+}
+
+#[test]
+fn the_force_is_that_of_the_distance_and_its_opposite_is_on_the_wall() {
+    for dimension in [2, 3] {
+        let mut sim = rain(dimension, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5, WALL);
+        let kernel = Kernel::new(KernelName::WendlandC2, dimension).expect("a kernel");
+        let h = 0.5 * SPACING * if dimension == 3 { 2.6 } else { 3.0 };
+        let stiffness = DENSITY * SPACING.powi(dimension as i32) * (3.0 * SOUND / h).powi(2);
+        let (floor, volume) = (column::<Position>(&sim, 1), column::<ReferenceVolume>(&sim, 1));
+        let mut repelled = 0;
+        sim.run(|sim| {
+            let (x, p) = (column::<Position>(sim, 0), column::<Pressure>(sim, 0));
+            let (m, rho) = (column::<Mass>(sim, 0), column::<Density>(sim, 0));
+            let found = column::<Force>(sim, 0);
+            let (mut sum, mut torque) = (DVec3::ZERO, DVec3::ZERO);
+            for k in 0..x.len() {
+                let gap = 0.15 * SPACING - x[k].0.y;
+                repelled += i32::from(gap > 0.0);
+                let mut force = stiffness * gap.max(0.0) * DVec3::Y;
+                for (w, volume) in floor.iter().zip(&volume) {
+                    let (x, p) = (w.0 - x[k].0, p[k].0);
+                    let weight = -kernel.dw_dr(x.length(), h) / x.length();
+                    force -= m[k].0 / rho[k].0 * volume.0 * (p + p.max(0.0)) * weight * x;
+                }
+                let error = (found[k].0 - force).length();
+                assert!(
+                    sim.clock().step == 0 || error <= 1e-6 * (1.0 + force.length()),
+                    "{} {force}",
+                    found[k].0
+                );
+                sum += found[k].0;
+                torque += x[k].0.cross(found[k].0);
+            }
+            let on_wall = column::<Force>(sim, 1);
+            let wall: DVec3 = on_wall.iter().map(|force| force.0).sum();
+            assert!((sum + wall).length() <= 1e-9 * (1.0 + sum.length()), "{sum} {wall}");
+            let turned: DVec3 = on_wall.iter().zip(&floor).map(|(force, x)| x.0.cross(force.0)).sum();
+            assert!((torque + turned).length() <= 1e-9 * (1.0 + torque.length()), "{torque} {turned}");
+            sim.clock().time < 0.035
+        })
+        .expect("a run");
+        assert!(repelled > 0);
+    }
+}
+
+#[test]
+fn a_body_that_is_hit_gets_the_momentum() {
+    for body in
+        [r#"material: "rubber", formulation: Rigid()"#, r#"material: "rubber", formulation: TotalLagrangian"#]
+    {
+        let mut sim = rain(2, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5, body);
+        let momentum = |sim: &Simulation| -> DVec3 {
+            let of = |body| {
+                let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+                m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum::<DVec3>()
+            };
+            of(0) + of(1)
+        };
+        sim.start().expect("a start");
+        let before = momentum(&sim);
+        let mut lowest = f64::INFINITY;
+        sim.run(|sim| {
+            lowest = column::<Position>(sim, 0).into_iter().map(|x| x.0.y).fold(lowest, f64::min);
+            sim.clock().time < 0.05
+        })
+        .expect("a run");
+        assert!(lowest < 0.15 * SPACING, "{lowest}");
+        assert!((momentum(&sim) - before).length() < 1e-10, "{before} {}", momentum(&sim));
+    }
+}
+
+#[test]
+fn a_particle_that_starts_nearer_than_the_range_is_not_pushed() {
+    for dimension in [2, 3] {
+        let mut sim = rain(dimension, 0.05, DVec3::ZERO, 1.0, WALL);
+        sim.run(|sim| sim.clock().step < 20).expect("a run");
+        assert!(column::<Velocity>(&sim, 0).iter().all(|v| v.0 == DVec3::ZERO));
+    }
+}
+
+#[test]
+fn particles_between_a_turned_body_and_its_periodic_image_are_not_pushed() {
+    let (spacing, thickness, period) = (SPACING, 4.0 * SPACING, 6.4 * SPACING);
+    let mut sim = simulation(&format!(
+        r#"(dimension: Three, domain: (min: (-1, -1, 0), max: (1, 1, {period}), periodic: [Z]), materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND})}},
+            bodies: [
+                (name: "water", material: "water", spacing: {spacing}, formulation: Fluid(pressure: 0.0), shape: Box(min: (0.06, 0.06, {thickness}), max: (0.1, 0.1, {period}))),
+                (name: "block", {WALL}, spacing: {spacing}, shape: Box(min: (0, 0, 0), max: (0.16, 0.16, {thickness}))),
+            ], time: (end: 1.0))"#
+    ));
+    sim.start().expect("a start");
+    for body in [BodyId(0), BodyId(1)] {
+        let (view, rows) = sim.world().body_view(body);
+        let mut x = view.write::<Position>().expect("places");
+        rows.for_each(|row| x[row].0 = glam::DMat3::from_rotation_z(0.8) * x[row].0);
+    }
+    sim.run(|sim| sim.clock().step < 20).expect("a run");
+    assert!(column::<Velocity>(&sim, 0).iter().all(|v| v.0 == DVec3::ZERO));
+    assert!(!sim.warnings().iter().any(|text| text.contains(" is inside of ")), "{:?}", sim.warnings());
+}

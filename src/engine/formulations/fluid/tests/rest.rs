@@ -1,0 +1,80 @@
+//! Fluids that start at rest, below surfaces of every kind.
+
+use super::{column, simulation};
+use crate::simulation::Simulation;
+use crate::world::{Position, Pressure, Velocity};
+
+const SPACING: f64 = 0.02;
+
+fn water(shape: &str, more: &str) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 30.0), "oil": Fluid(density: 800.0, sound_speed: 30.0)}},
+            bodies: [
+                (name: "water", material: "water", shape: {shape}, spacing: {SPACING}, formulation: Fluid),
+                (name: "tank", material: "wall", spacing: {SPACING}, formulation: Wall(),
+                 shape: Difference(Box(min: (-0.06, -0.06), max: (0.86, 0.6)), Box(min: (0, 0), max: (0.8, 1)))),
+                {more}
+            ],
+            time: (end: 1.0))"#
+    ))
+}
+
+/// Largest difference from the pressure below a surface of that height, Pa.
+fn error(sim: &Simulation, body: usize, wanted: impl Fn(f64, f64) -> f64) -> f64 {
+    let (x, p) = (column::<Position>(sim, body), column::<Pressure>(sim, body));
+    let differ = |(x, p): (&Position, &Pressure)| (p.0 - wanted(x.0.x, x.0.y)).abs();
+    x.iter().zip(&p).map(differ).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_tilted_surface_has_its_own_pressure_below() {
+    let sim = water("Polygon(points: [(0, 0), (0.8, 0), (0.8, 0.2), (0.4, 0.34), (0, 0.3)])", "");
+    let surface = |x: f64| if x < 0.4 { 0.3 + 0.1 * x } else { 0.34 - 0.35 * (x - 0.4) };
+    let error = error(&sim, 0, |x, y| 9810.0 * (surface(x) - y));
+    assert!(error < 1e-3 * 9810.0 * SPACING, "{error}");
+}
+
+#[test]
+fn water_below_a_roof_has_the_pressure_of_the_water_beside_it() {
+    let channel = "Union([Box(min: (0, 0), max: (0.8, 0.1)), Box(min: (0, 0.1), max: (0.2, 0.4))])";
+    let roof = format!(
+        r#"(name: "roof", material: "wall", shape: Box(min: (0.2, 0.1), max: (0.8, 0.4)), spacing: {SPACING}, formulation: Wall()),"#
+    );
+    let sim = water(channel, &roof);
+    let error = error(&sim, 0, |_, y| 9810.0 * (0.4 - y));
+    assert!(error < 1e-3 * 9810.0 * SPACING, "{error}");
+}
+
+#[test]
+fn oil_on_part_of_the_water_presses_on_that_part() {
+    let oil = format!(
+        r#"(name: "oil", material: "oil", shape: Box(min: (0.4, 0.2), max: (0.8, 0.3)), spacing: {SPACING}, formulation: Fluid),"#
+    );
+    let sim = water("Box(min: (0, 0), max: (0.8, 0.2))", &oil);
+    let of_oil = |x: f64| if x < 0.4 { 0.0 } else { 800.0 * 9.81 * 0.1 };
+    let in_water = error(&sim, 0, |x, y| 9810.0 * (0.2 - y) + of_oil(x));
+    let in_oil = error(&sim, 2, |_, y| 800.0 * 9.81 * (0.3 - y));
+    assert!(in_water.max(in_oil) < 1e-3 * 9810.0 * SPACING, "{in_water} {in_oil}");
+}
+
+#[test]
+fn water_below_air_stays_at_rest() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0.0, -9.81), domain: (min: (0, -1), max: (0.16, 1), periodic: [X]),
+            materials: {"water": Fluid(density: 1000.0, sound_speed: 30.0), "air": Fluid(density: 1.2, sound_speed: 30.0)},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.16, 0.2)), spacing: 0.02, formulation: Fluid),
+                (name: "air", material: "air", shape: Box(min: (0, 0.2), max: (0.16, 0.4)), spacing: 0.02, formulation: Fluid),
+                (name: "floor", material: "wall", shape: Box(min: (0, -0.08), max: (0.16, 0)), spacing: 0.02, formulation: Wall()),
+                (name: "roof", material: "wall", shape: Box(min: (0, 0.4), max: (0.16, 0.48)), spacing: 0.02, formulation: Wall()),
+            ],
+            time: (end: 0.01))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    for body in 0..2 {
+        let fastest = column::<Velocity>(&sim, body).iter().map(|v| v.0.length()).fold(0.0, f64::max);
+        // A hundredth of the speed of sound: what the light fluid exceeded within 0.6 ms, at the step of each fluid for itself.
+        assert!(fastest < 0.3, "{body}: {fastest}");
+    }
+}

@@ -1,0 +1,153 @@
+//! Tests of bodies that are thinner than the support of the fluid.
+
+use glam::DVec3;
+
+use super::{column, simulation};
+use crate::formulations::fluid::FlowCloud;
+use crate::simulation::Simulation;
+use crate::world::{Mass, Position, Velocity};
+
+/// Two tanks side by side with a sheet between them, `layers` particles of 0.01 m thick; water at rest in the left one and, with
+/// its own pressure, in the right one.
+fn tanks(layers: usize, right: f64, rest: &str) -> Simulation {
+    let edge = 0.2 + 0.01 * layers as f64;
+    simulation(&format!(
+        r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                "rubber": NeoHookean(density: 1100.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "left", material: "water", spacing: 0.01, formulation: Fluid(pressure: "2000"),
+                 shape: Box(min: (0, 0), max: (0.2, 0.3))),
+                (name: "right", material: "water", spacing: 0.01, formulation: Fluid(pressure: "{right}"),
+                 shape: Box(min: ({edge}, 0), max: ({}, 0.3))),
+                (name: "sheet", material: "rubber", spacing: 0.01, {rest}
+                 shape: Box(min: (0.2, -0.1), max: ({edge}, 0.4))),
+            ],
+            conditions: [InitialVelocity(on: Select(body: "left"), value: ("0.2*sin(20*y)", "0.1")),
+                         InitialVelocity(on: Select(body: "right"), value: ("-0.3*sin(15*y)", "0.1*cos(20*x)"))],
+            time: (end: 1.0))"#,
+        edge + 0.2
+    ))
+}
+
+#[test]
+fn water_does_not_see_water_through_a_sheet() {
+    for (layers, formulation) in [(2, "TotalLagrangian"), (2, "Rigid()")] {
+        let mut sim = tanks(layers, 500.0, &format!("formulation: {formulation},"));
+        sim.start().expect("a start");
+        let cloud = sim.resources().get::<FlowCloud>();
+        let left = cloud.groups[0].cloud.clone();
+        let right = cloud.groups[1].cloud.clone();
+        let (x, y) = (column::<Position>(&sim, 0), column::<Position>(&sim, 1));
+        let mut walls = [0, 0];
+        for (side, group) in [left.clone(), right.clone()].into_iter().enumerate() {
+            for i in group.clone() {
+                for &j in cloud.near_row(i) {
+                    let j = j as usize;
+                    if j < cloud.fluid {
+                        assert!(group.contains(&j), "{layers} layers of {formulation}: {i} sees {j}");
+                    } else {
+                        walls[side] += 1;
+                    }
+                }
+            }
+        }
+        assert_eq!(walls[0], walls[1], "both sides see the same wall");
+        assert!(walls[0] > 100 && x.len() == y.len());
+        // Pressures of the copies are those of the water on their sides.
+        let pressure = |group: usize| {
+            let rows = cloud.groups[group].cloud.clone();
+            let at = rows.start + rows.len() / 2;
+            (at.saturating_sub(2)..at + 3).map(|row| cloud.records[row].pressure()).fold(0.0, f64::max)
+        };
+        let mut two = [pressure(2), pressure(3)];
+        two.sort_by(f64::total_cmp);
+        assert!((two[0] - 500.0).abs() < 20.0 && (two[1] - 2000.0).abs() < 20.0, "{two:?}");
+    }
+}
+
+#[test]
+fn momentum_is_kept_with_water_on_both_sides_of_a_sheet() {
+    let mut sim = tanks(2, 2500.0, "formulation: TotalLagrangian,");
+    let momentum = |sim: &Simulation| -> DVec3 {
+        let of = |body| {
+            let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+            m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum::<DVec3>()
+        };
+        of(0) + of(1) + of(2)
+    };
+    sim.start().expect("a start");
+    let before = momentum(&sim);
+    sim.run(|sim| sim.clock().time < 0.03).expect("a run");
+    assert!(sim.resources().get::<FlowCloud>().builds() > 2);
+    assert!((momentum(&sim) - before).length() < 1e-11 * 100.0, "{before} {}", momentum(&sim));
+    assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
+}
+
+/// A tank of 0.6 m with water to 0.3 m, and a body of rubber in or above it.
+fn rubber((water, lattice): (&str, &str), body: &str, rest: &str) -> Simulation {
+    simulation(&format!(
+        r#"(dimension: Two, gravity: (0, -9.81),
+            materials: {{"water": Fluid(density: 1000.0, viscosity: 1e-3), "rubber": NeoHookean(density: 450.0, young: 5.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.01, lattice: {lattice}, formulation: Fluid, shape: {water}),
+                (name: "body", material: "rubber", spacing: 0.005, formulation: TotalLagrangian, shape: {body}),
+                (name: "tank", material: "water", spacing: 0.01, formulation: Wall(slip: Free),
+                 shape: Difference(Box(min: (-0.34, -0.04), max: (0.34, 0.5)), Box(min: (-0.3, 0), max: (0.3, 0.6)))),
+            ],
+            {rest} time: (end: 0.15))"#
+    ))
+}
+
+#[test]
+fn bodies_that_are_thick_and_thin_keep_their_energy_in_water() {
+    // A boat whose keel, 4 particles thick, drops into the water; and a buoy that a strip holds.
+    let boat =
+        "Union([Box(min: (-0.12, 0.40), max: (0.12, 0.48)), Box(min: (-0.01, 0.31), max: (0.01, 0.40))])";
+    let buoy = "Union([Box(min: (-0.01, 0.01), max: (0.01, 0.15)), Sphere(center: (0, 0.15), radius: 0.06)])";
+    let around = format!("Difference(Box(min: (-0.3, 0), max: (0.3, 0.3)), {buoy})");
+    let hold = r#"conditions: [Fix(on: Select(body: "body", within: Box(min: (-1, -1), max: (1, 0.03))))],"#;
+    let still = ("Box(min: (-0.3, 0), max: (0.3, 0.3))", "Square");
+    let around = (around.as_str(), "Relaxed(seed: 1, iterations: 30)");
+    let scenes = [rubber(still, boat, ""), rubber(around, buoy, hold)];
+    for (mut sim, name) in scenes.into_iter().zip(["boat", "buoy"]) {
+        sim.run(|_| true).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let error = sim.ledger().relative_error();
+        assert!(error.abs() < 1e-2, "{name}: balance {error}");
+    }
+}
+
+#[test]
+fn momenta_are_kept_with_water_around_a_fin_on_a_block() {
+    // The fin turns as it meets the water.
+    let mut sim = simulation(
+        r#"(dimension: Two, materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                "rubber": NeoHookean(density: 1100.0, young: 1.0e6, poisson: 0.3)},
+            bodies: [
+                (name: "left", material: "water", spacing: 0.01, formulation: Fluid(pressure: "2000"),
+                 shape: Box(min: (-0.2, 0), max: (-0.015, 0.2))),
+                (name: "right", material: "water", spacing: 0.01, formulation: Fluid(pressure: "500"),
+                 shape: Box(min: (0.035, 0), max: (0.22, 0.2))),
+                (name: "fin", material: "rubber", spacing: 0.01, formulation: TotalLagrangian,
+                 shape: Union([Box(min: (-0.005, -0.05), max: (0.015, 0.3)), Box(min: (-0.055, 0.3), max: (0.065, 0.4))])),
+            ],
+            conditions: [InitialVelocity(on: Select(body: "left"), value: ("0.4", "0.3")),
+                         InitialVelocity(on: Select(body: "fin"), value: ("-2*(y - 0.2)", "2*x"))],
+            time: (end: 1.0))"#,
+    );
+    let momenta = |sim: &Simulation| {
+        let of = |body| {
+            let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+            let x = column::<Position>(sim, body);
+            let of = |k: usize| (m[k].0 * v[k].0, x[k].0.cross(m[k].0 * v[k].0));
+            (0..m.len()).map(of).fold((DVec3::ZERO, DVec3::ZERO), |a, b| (a.0 + b.0, a.1 + b.1))
+        };
+        (0..3).map(of).fold((DVec3::ZERO, DVec3::ZERO), |a, b| (a.0 + b.0, a.1 + b.1))
+    };
+    sim.start().expect("a start");
+    let (linear, angular) = momenta(&sim);
+    sim.run(|sim| sim.clock().time < 0.08).expect("a run");
+    let (now, turned) = momenta(&sim);
+    assert!((now - linear).length() < 1e-11 * linear.length(), "{linear} {now}");
+    assert!((turned - angular).length() < 1e-9 * angular.length(), "{angular} {turned}");
+    assert!(sim.ledger().relative_error().abs() < 2e-2, "{}", sim.ledger().relative_error());
+}

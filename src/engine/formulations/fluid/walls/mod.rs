@@ -1,0 +1,18 @@
+//! What bounds a fluid: its pressure, its shape, and how it repels lone particles.
+
+mod wall;
+
+mod body_motion;
+
+mod surface_distance;
+
+mod repulsion;
+
+mod wall_pressure;
+
+mod wall_state;
+
+pub use repulsion::{RangeShortfall, Repelled, Repulsion};
+pub use surface_distance::{apart, dyad};
+pub use wall::{PreviousVelocity, Slip, Wall, WallBody};
+pub use wall_state::WallState;

@@ -1,0 +1,218 @@
+//! Repulsion of fluid particles that come nearer to the surface of a boundary than a flow puts them.
+//!
+//! A lone particle at a wall has hardly a pressure, and the pressure of the wall, which is that of the fluid beside it, vanishes with it: nothing would stop it, and one
+//! that was torn out of a fluid, with a density below that at rest, is even drawn in. So the distance d of a fluid particle from the shape of the nearest boundary has the
+//! energy
+//!
+//! `k/2 (l_i - d)^2` where `d < l_i`, with `l_i = 0.15 dx - s_i`, `k = m (3 c_0 / h)^2`, and one over m the sum of one over each mass; that of a wall is endless.
+//!
+//! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range, where lattices do not fit shapes, lack s_i of it, which falls as soon
+//! as they have been farther away and never rises, so that it changes no energy.
+
+use glam::DVec3;
+
+use super::surface_distance::Shape;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, Role, part};
+use crate::formulations::fluid::passes::PARTS;
+use crate::parallel::for_each_block;
+use crate::plugin::SimBuilder;
+use crate::schedule::{Run, Step, StepError};
+use crate::world::{Force, ReferencePosition};
+
+crate::column! {
+    /// What the repulsion of boundaries lacks of its range for a fluid particle.
+    pub struct RangeShortfall(f64) = "range_shortfall", "s", "m";
+}
+
+/// Range of the repulsion over the spacing of the fluid.
+const RANGE: f64 = 0.15;
+/// Frequency of a fluid particle at a wall, in units of c_0 / h. The step is at most 0.4 h / c_0.
+const FREQUENCY: f64 = 3.0;
+/// Distance from the shape of a boundary within which its nearest particle is, over its spacing.
+const NEAREST: f64 = 1.2;
+
+/// The repulsion of one fluid particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Repelled {
+    /// The particle, as a row of the cloud.
+    i: usize,
+    /// First row of the boundary in the cloud.
+    boundary: usize,
+    /// Distance from its shape, m.
+    distance: f64,
+    /// Force on the particle, N; before that is known, over `l_i - d`, N/m.
+    force: DVec3,
+    /// How the opposite is given to the particles of the boundary.
+    shares: Shares,
+}
+
+/// Shares of particles near a point in what acts there, `V_w W (1 + (x_w - x_i - mean) . slope) / total`: they add up to one, and their centre is the point.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shares {
+    pub total: f64,
+    pub mean: DVec3,
+    pub slope: DVec3,
+    /// The particle that bears all of it, if there is one.
+    pub only: Option<u32>,
+}
+
+/// Finds the particles that are repelled.
+pub struct Repulsion {
+    surfaces: Vec<Shape>,
+    range: f64,
+    /// Particles near boundaries, as rows of the cloud.
+    close: Vec<u32>,
+    /// Whether a particle may lack of its range.
+    is_short: bool,
+}
+
+impl Repulsion {
+    /// That of the boundaries of a flow of smoothing length `h`, m, whose shapes are known; and the distance within which a fluid particle that is
+    /// repelled has a boundary particle, m.
+    pub fn new(groups: &[Group], h: f64, sim: &SimBuilder<'_>) -> (Self, f64) {
+        let fluid = sim.body(groups[0].body);
+        let dimension = sim.dimension().count() as i32;
+        let mass = |density: f64, spacing: f64| density * spacing.powi(dimension);
+        let range = RANGE * fluid.spacing;
+        let (mut surfaces, mut widest) = (Vec::new(), 0.0);
+        for group in groups {
+            let Role::Boundary(boundary) = &group.role else { continue };
+            let body = sim.body(group.body);
+            let shape = &sim.scene().bodies[body.id.0].shape;
+            let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
+            let of_boundary =
+                if boundary.moved { 1.0 / mass(body.material.density, body.spacing) } else { 0.0 };
+            let stiffness = |fluid: &Group| {
+                let state = fluid.fluid()?;
+                let per_mass = of_boundary + 1.0 / mass(state.density, sim.body(fluid.body).spacing);
+                Some((FREQUENCY * state.sound_speed / h).powi(2) / per_mass)
+            };
+            let stiffness = groups.iter().map_while(stiffness).collect();
+            let reach = range + NEAREST * body.spacing;
+            widest = f64::max(widest, reach);
+            let (group, spacing) = (group.clone(), body.spacing);
+            surfaces.push(Shape { group, region, stiffness, spacing, is_worn: false, reach });
+        }
+        (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
+    }
+
+    /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of those within its range.
+    fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
+        let (range, close) = (self.range, &self.close[..]);
+        for surface in &mut self.surfaces {
+            let view = step.world.phase(surface.group.phase);
+            let reference = view.read::<ReferencePosition>()?;
+            let reference = &reference[surface.group.rows.clone()];
+            surface.wear(cloud);
+            let surface = &*surface;
+            let motion = surface.motion(cloud, reference);
+            let rows = (&mut out[..], close);
+            for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
+                for (out, &i) in out.iter_mut().zip(close) {
+                    let i = i as usize;
+                    if motion.is_some_and(|motion| surface.is_beyond(range, cloud, i, &motion)) {
+                        continue;
+                    }
+                    let found = surface.place(cloud, i, reference, motion.as_ref());
+                    let Some(place) = found.filter(|place| place.distance < out.distance) else { continue };
+                    let fluid = cloud.groups.iter().position(|group| group.cloud.contains(&i));
+                    let stiffness = fluid.map_or(0.0, |fluid| surface.stiffness[fluid]);
+                    out.distance = place.distance;
+                    out.boundary = surface.group.cloud.start;
+                    if place.distance < range {
+                        out.force = stiffness * surface.direction(cloud, &place);
+                        out.shares = place.shares;
+                    }
+                }
+            });
+        }
+        Ok(())
+    }
+
+    /// Turns distances into forces, particle by particle, and leaves out those without.
+    fn settle(
+        &mut self,
+        cloud: &FlowCloud,
+        out: &mut Vec<Repelled>,
+        step: &Step<'_>,
+    ) -> Result<(), StepError> {
+        let is_start = step.clock.step == 0 && step.clock.dt == 0.0;
+        let mut is_short = false;
+        for group in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
+            let mut column = step.world.phase(group.phase).write::<RangeShortfall>()?;
+            let shortfall = &mut column[group.rows.clone()];
+            if self.is_short {
+                let far = shortfall.iter_mut().zip(&cloud.is_close[group.cloud.clone()]);
+                far.filter(|(_, close)| !**close).for_each(|(short, _)| short.0 = 0.0);
+            }
+            for repelled in out.iter_mut().filter(|repelled| group.cloud.contains(&repelled.i)) {
+                let short = &mut shortfall[repelled.i - group.cloud.start].0;
+                let within = (self.range - repelled.distance).max(0.0);
+                *short = if is_start { within } else { short.min(within) };
+                repelled.force *= within - *short;
+                is_short |= *short > 0.0;
+            }
+        }
+        self.is_short = is_short;
+        out.retain(|repelled| repelled.force != DVec3::ZERO);
+        Ok(())
+    }
+}
+
+impl Run for Repulsion {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let mut repelled = std::mem::take(&mut cloud.repelled);
+        let near = cloud.is_close.iter().enumerate().filter(|(_, close)| **close);
+        self.close.clear();
+        self.close.reserve(cloud.fluid);
+        self.close.extend(near.map(|(i, _)| i as u32));
+        let none = Repelled { distance: f64::INFINITY, ..Repelled::default() };
+        repelled.clear();
+        repelled.reserve(cloud.fluid);
+        repelled.extend(self.close.iter().map(|&i| Repelled { i: i as usize, ..none }));
+        self.measure(&cloud, &mut repelled, step)?;
+        self.settle(&cloud, &mut repelled, step)?;
+        cloud.repelled = repelled;
+        Ok(())
+    }
+}
+
+impl FlowCloud {
+    /// Adds the repulsion to the forces on the particles of a group, and to the part of them that is due to boundaries.
+    pub(in crate::formulations::fluid) fn repel(
+        &self,
+        group: &Group,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) {
+        let rows = group.cloud.clone();
+        let mut add = |row: usize, force: DVec3| {
+            total[row].0 += force;
+            parts[PARTS * row + 1] += force;
+        };
+        for repelled in &self.repelled {
+            if rows.contains(&repelled.i) {
+                add(repelled.i - rows.start, repelled.force);
+            } else if rows.start == repelled.boundary {
+                for &j in part(self.near_row(repelled.i), &rows) {
+                    let share = repelled.shares.of(self, repelled.i, j as usize);
+                    add(j as usize - rows.start, -share * repelled.force);
+                }
+            }
+        }
+    }
+}
+
+impl Shares {
+    /// The share of particle `j` in what acts on `i`.
+    pub fn of(&self, cloud: &FlowCloud, i: usize, j: usize) -> f64 {
+        if let Some(only) = self.only {
+            return if only as usize == j { 1.0 } else { 0.0 };
+        }
+        let record = &cloud.records[j];
+        let x = cloud.offset(cloud.records[i].position(), record.position());
+        let weight = record.volume() * cloud.kernel.value(x.length());
+        weight * (1.0 + (x - self.mean).dot(self.slope)) / self.total
+    }
+}

@@ -1,0 +1,199 @@
+//! Distance of fluid particles from the shape of a body that has moved and bent.
+//!
+//! A particle is taken back to where it would be in the body as the scene has it, and is compared with the shape there: by the motion of the whole body, where that is one
+//! affine map, else by the affine map that fits the particles of the body around it.
+//!
+//! What is left of a body that has lost particles has another shape. Its particles are spheres, and the distance is that from the nearest. They overlap, so that nothing passes between
+//! two of them in the plane or four in space, and end before a fluid at rest begins.
+
+use glam::{DMat3, DVec3};
+
+use super::body_motion::BodyMotion;
+use super::repulsion::Shares;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, part};
+use crate::formulations::fluid::lanes::Record;
+use crate::shapes::Region;
+use crate::world::ReferencePosition;
+
+/// Square of the distance of a point from the centre of the particles near it, in standard deviations of these, up to which a map is fitted to them: before a flat face it is some 2, before
+/// the corner of a square 9. Farther outside, as beside the few particles at the end of a fin that are on one side of it, shares and map would be extrapolations by many times their size.
+const OUTSIDE: f64 = 16.0;
+
+/// Radii of the spheres of a worn body in the plane and in space, over its spacing.
+const SPHERES: [f64; 2] = [0.65, 0.75];
+
+/// The shape of a boundary.
+pub struct Shape {
+    pub group: Group,
+    pub region: Box<dyn Region>,
+    /// Stiffness of its repulsion of each fluid, N/m.
+    pub stiffness: Vec<f64>,
+    /// Spacing of its particles, m.
+    pub spacing: f64,
+    /// Whether it has lost particles.
+    pub is_worn: bool,
+    /// Distance of the nearest of its particles beyond which a particle is not beside it, m.
+    pub reach: f64,
+}
+
+/// A fluid particle in the body as the scene has it.
+pub struct Place {
+    /// Where it is there, m; beside one particle alone, the direction away from that.
+    at: DVec3,
+    /// Distance from the shape, negative inside of it, m.
+    pub distance: f64,
+    /// Gradient of the place in the body with respect to that in space.
+    map: DMat3,
+    /// Shares of the particles around it in what acts on it.
+    pub shares: Shares,
+}
+
+impl Shape {
+    /// Takes notice of the first particle that is gone.
+    pub fn wear(&mut self, cloud: &FlowCloud) {
+        if !self.is_worn {
+            self.is_worn =
+                cloud.records[self.group.cloud.clone()].iter().any(|record| record.volume() <= 0.0);
+        }
+    }
+
+    /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
+    pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
+        let now = cloud.records[self.group.cloud.clone()].iter().map(Record::position);
+        BodyMotion::new(now, reference.iter().map(|x| x.0), (self.spacing, cloud.plane))
+    }
+
+    /// Whether particle `i` is farther than `range`, m, from a body with that motion.
+    pub fn is_beyond(&self, range: f64, cloud: &FlowCloud, i: usize, motion: &BodyMotion) -> bool {
+        let place = motion.home(cloud.records[i].position());
+        motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
+    }
+
+    /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its particles in the scene, `motion` is that of the whole body, if it
+    /// has one.
+    pub fn place(
+        &self,
+        cloud: &FlowCloud,
+        i: usize,
+        reference: &[ReferencePosition],
+        motion: Option<&BodyMotion>,
+    ) -> Option<Place> {
+        let row = part(cloud.near_row(i), &self.group.cloud);
+        let from = cloud.records[i].position();
+        let offset = |j: u32| cloud.offset(from, cloud.records[j as usize].position());
+        let weight = |j: u32| cloud.records[j as usize].volume() * cloud.kernel.value(offset(j).length());
+        let nearest = row
+            .iter()
+            .copied()
+            .filter(|&j| weight(j) > 0.0)
+            .min_by(|a, b| offset(*a).length_squared().total_cmp(&offset(*b).length_squared()))?;
+        if offset(nearest).length() > self.reach {
+            return None;
+        }
+        if self.is_worn {
+            return Some(self.beside(cloud, nearest, offset(nearest)));
+        }
+        let origin = reference[nearest as usize - self.group.cloud.start].0;
+        let home = |j: u32| apart(cloud, &self.group, reference, from, [nearest, j])[1];
+        let (mut total, mut mean, mut mean_home) = (0.0, DVec3::ZERO, DVec3::ZERO);
+        for &j in row {
+            let weight = weight(j);
+            total += weight;
+            mean += weight * offset(j);
+            mean_home += weight * home(j);
+        }
+        (mean, mean_home) = (mean / total, mean_home / total);
+        let (mut moment, mut moved) = (DMat3::ZERO, DMat3::ZERO);
+        for &j in row {
+            let (weight, x) = (weight(j) / total, offset(j) - mean);
+            moment += weight * dyad(x, x);
+            moved += weight * dyad(home(j) - mean_home, x);
+        }
+        if cloud.plane {
+            moment.z_axis.z = 1.0;
+            moved.z_axis.z = 1.0;
+        }
+        let powers = if cloud.plane { 4 } else { 6 };
+        let is_regular = moment.determinant() > 1e-6 * self.spacing.powi(powers);
+        let fit = is_regular.then(|| moment.inverse()).filter(|inverse| mean.dot(*inverse * mean) < OUTSIDE);
+        let (map, at) = match (motion, fit) {
+            (Some(motion), _) => (motion.map, origin - motion.map * offset(nearest)),
+            (None, Some(inverse)) => {
+                let map = moved * inverse;
+                (map, origin + mean_home - map * mean)
+            }
+            (None, None) => return Some(self.beside(cloud, nearest, offset(nearest))),
+        };
+        let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
+        let shares = Shares { total, mean, slope, only: None };
+        Some(Place { at, distance: self.distance(cloud, at), map, shares })
+    }
+
+    /// Beside the sphere of one particle, which is at `offset` from here.
+    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> Place {
+        let distance = offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing;
+        let shares = Shares { only: Some(particle), ..Shares::default() };
+        Place { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
+    }
+
+    /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
+    fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
+        if !cloud.periods.any() {
+            return self.region.distance(at);
+        }
+        let periodic = cloud.pairs.periodic();
+        let (lengths, inside) = (periodic.lengths(), periodic.wrap(at));
+        let mut distance = self.region.distance(inside);
+        // Beyond a side of the domain that is near, the body may go on.
+        let from_low = inside - periodic.min();
+        let side = |axis: usize, low: bool| {
+            let gap = if low { from_low[axis] } else { lengths[axis] - from_low[axis] };
+            periodic.axes()[axis] && gap < self.reach
+        };
+        for n in 1..27 {
+            let digits = [n % 3, n / 3 % 3, n / 9];
+            if (0..3).all(|axis| digits[axis] == 0 || side(axis, digits[axis] == 1)) {
+                let turns = DVec3::from_array(digits.map(|digit| [0.0, 1.0, -1.0][digit]));
+                distance = distance.min(self.region.distance(inside + turns * lengths));
+            }
+        }
+        distance
+    }
+
+    /// Gradient of the distance with respect to the place in space, by central differences.
+    pub fn direction(&self, cloud: &FlowCloud, place: &Place) -> DVec3 {
+        if place.shares.only.is_some() {
+            return place.at;
+        }
+        let step = 1e-4 * self.spacing;
+        let axes = if cloud.plane { 2 } else { 3 };
+        let mut gradient = DVec3::ZERO;
+        for (axis, unit) in DVec3::AXES.into_iter().enumerate().take(axes) {
+            let at = |side: f64| self.distance(cloud, place.at + side * step * unit);
+            gradient[axis] = (at(1.0) - at(-1.0)) / (2.0 * step);
+        }
+        place.map.transpose() * gradient
+    }
+}
+
+/// The vector between two particles of a body, now and in the body as the scene has it, m: of the images that are nearest to `from`, which need not be those that are nearest to
+/// each other.
+pub fn apart(
+    cloud: &FlowCloud,
+    group: &Group,
+    reference: &[ReferencePosition],
+    from: DVec3,
+    [first, second]: [u32; 2],
+) -> [DVec3; 2] {
+    let position = |j: u32| cloud.records[j as usize].position();
+    let origin = |j: u32| reference[j as usize - group.cloud.start].0;
+    let now = cloud.offset(from, position(second)) - cloud.offset(from, position(first));
+    let periods = now - (position(second) - position(first));
+    let home = origin(second) - origin(first);
+    [now, if cloud.periods.any() { home + periods } else { home }]
+}
+
+/// `a (x) b`.
+pub fn dyad(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}

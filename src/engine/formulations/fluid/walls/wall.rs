@@ -1,0 +1,86 @@
+//! The wall formulation: particles that bound a fluid, and move only as they are told.
+
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
+use crate::scene::Vec3;
+use crate::schedule::{Stage, System};
+use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Mobility, Pressure, Removed, World};
+
+crate::column! {
+    /// Velocity of a wall at the middle of the step before.
+    pub struct PreviousVelocity(glam::DVec3) = "previous_velocity", "v_n-1/2", "m/s";
+}
+
+/// Label of the system that gives walls their weight.
+const WALL_WEIGHT: &str = "wall_weight";
+
+/// Wall: bounds the fluid, is moved by nothing but conditions and the `velocity` of its body. It needs as many layers of
+/// particles as the support of the fluid reaches, three in two dimensions and default settings.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Wall {
+    /// Whether the fluid slides along the wall or sticks to it.
+    pub slip: Slip,
+    /// Whether the wall can pull at the fluid: confined flows need it, at a free surface it would hold drops.
+    pub suction: bool,
+    /// Velocity that the surface has beside that of its particles, such as that of a conveyor belt \[m/s\]; seen by a fluid that
+    /// sticks to it.
+    pub surface_velocity: Vec3,
+}
+
+/// What a wall does to the motion of the fluid along it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub enum Slip {
+    /// The fluid slides along it.
+    #[default]
+    Free,
+    /// The fluid sticks to it.
+    No,
+}
+
+/// A wall with its parameters, until all bodies are known.
+pub struct WallBody {
+    pub id: BodyId,
+    pub parameters: Wall,
+}
+
+impl Formulation for Wall {
+    const NAME: &'static str = "Wall";
+    const REFERENCE: &'static str =
+        "walls: S. Adami, X. Y. Hu, N. A. Adams, J. Comput. Phys. 231 (2012) 7057-7075";
+    const KIND: BodyKind = BodyKind::Boundary;
+    const OFFERS: &'static [Offer] = &[Offer::Contact];
+
+    fn columns(columns: &mut ColumnSet) {
+        columns.add::<Pressure>().add::<PreviousVelocity>();
+    }
+
+    fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let gravity = sim.gravity();
+        let ids = BodySet::new(bodies.iter().map(|(id, _)| *id));
+        sim.add_system(System::each::<(&mut Force, &Mass, &Removed)>(
+            Stage::Rates,
+            WALL_WEIGHT,
+            ids,
+            move |_, (force, mass, removed)| {
+                force.0 = if *removed == Removed::NO { gravity * mass.0 } else { DVec3::ZERO };
+            },
+        ));
+        let walls: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
+        sim.add_setup(move |setup| walls.iter().try_for_each(|&id| hold(id, setup.world)));
+        for (id, parameters) in bodies {
+            sim.extend(WallBody { id, parameters });
+        }
+        Ok(())
+    }
+}
+
+/// Takes the mobility of a wall, whether there is a fluid or not: no force moves it.
+fn hold(id: BodyId, world: &World) -> Result<(), SetupError> {
+    let (view, rows) = world.body_view(id);
+    view.write::<Mobility>().map_err(|error| SetupError::internal(&error))?[rows].fill(Mobility(DVec3::ZERO));
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Pass over the particles of boundaries: pressure and mean velocity of the fluid beside them.
+//!
+//! `p_w = (sum_f p_f W - (g - a_w) . sum_f rho_f x_wf W) / sum_f W` (Adami, Hu, Adams 2012, eq. 27, with x_wf = x_f - x_w and
+//! W for the kernel times the volume V_f, so that removed particles have no part in it). Loads b_f on the fluid act as gravity does, with the
+//! value that each particle feels: `- sum_f b_f . rho_f x_wf W` beside the pressures.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::lanes::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
+use crate::formulations::fluid::lists::{NearRows, NearWriter};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+
+/// Least sum of V_f W for which there is fluid beside a wall.
+const LEAST_SHARE: f64 = 1e-10;
+
+/// The fluid beside a particle of a boundary.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beside {
+    /// Mean pressure, with what loads on the fluid add on the way from it, Pa.
+    pub pressure: f64,
+    /// Mean of rho_f x_wf, kg/m2.
+    pub moment: DVec3,
+    /// Mean velocity, less that of the particle, m/s.
+    pub velocity: DVec3,
+    /// Mean place, less that of the particle, m.
+    pub offset: DVec3,
+}
+
+/// The pass over all particles that are no fluid.
+pub struct WallPressure<'a> {
+    pub cloud: &'a FlowCloud,
+}
+
+impl WallPressure<'_> {
+    /// Writes what is beside every particle of a boundary, and its neighbours within the support.
+    pub fn run(&self, out: &mut [Beside], near: &mut NearRows) {
+        let rows = (out, near.writer());
+        for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
+            run_hot_in(self.cloud.plane, Rows { cloud: self.cloud, first, out, near });
+        });
+    }
+}
+
+struct Rows<'a> {
+    cloud: &'a FlowCloud,
+    first: usize,
+    out: &'a mut [Beside],
+    near: NearWriter<'a>,
+}
+
+impl PlaneOrSolid for Rows<'_> {
+    #[inline(always)]
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
+    }
+}
+
+impl Rows<'_> {
+    #[inline(always)]
+    fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
+        let (cloud, kernel) = (self.cloud, self.cloud.kernel);
+        let limit = Lanes4::splat(kernel.support * kernel.support);
+        for (k, out) in self.out.iter_mut().enumerate() {
+            let i = cloud.fluid + self.first + k;
+            let own = Own::<D>::new(&cloud.records[i]);
+            let mut near = self.near.row(k);
+            let mut rest = cloud.pairs.boundary.row(self.first + k);
+            let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
+            let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
+            let mut offset = [Lanes4::ZERO; D];
+            for group in &cloud.groups {
+                let Some(state) = group.fluid() else { break };
+                let end = group.cloud.end as u32;
+                let (row, tail) = rest.split_at(rest.partition_point(|&j| j < end));
+                rest = tail;
+                let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
+                for chunk in row.chunks(4) {
+                    let rows = filled_up(chunk);
+                    let four =
+                        Four::<D>::gather::<A, P>(a, &cloud.records, &own, as_rows(rows), &cloud.periods);
+                    let square = dot(a, &four.x, &four.x);
+                    near.push(a, rows, a.below(square, limit) & ((1 << chunk.len()) - 1));
+                    let distance = a.sqrt(square);
+                    let volume = a.times(four.volume, MASKS[chunk.len()]);
+                    let value = a.times(kernel.values(a, distance), volume);
+                    // rho = rho_0 + p / c_0^2 to first order in the compression.
+                    let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
+                    total = a.plus(total, value);
+                    pressure = a.times_add(value, four.pressure, pressure);
+                    let weighed = a.times(value, density);
+                    if !cloud.loads.is_empty() {
+                        let along = along_loads::<A, D>(a, cloud, rows, &four.x);
+                        pressure = a.minus(pressure, a.times(weighed, along));
+                    }
+                    for axis in 0..D {
+                        moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
+                        offset[axis] = a.times_add(value, four.x[axis], offset[axis]);
+                        velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
+                    }
+                }
+            }
+            near.close();
+            let total = total.sum();
+            *out = Beside::default();
+            if total > LEAST_SHARE {
+                let mean = 1.0 / total;
+                out.pressure = pressure.sum() * mean;
+                out.moment = sums(a, &moment) * mean;
+                out.velocity = sums(a, &velocity) * mean;
+                out.offset = sums(a, &offset) * mean;
+            }
+        }
+    }
+}
+
+/// b_f . x_wf of four particles of the fluid.
+#[inline(always)]
+fn along_loads<A: FourLanes, const D: usize>(
+    a: A,
+    cloud: &FlowCloud,
+    rows: [u32; 4],
+    x: &[Lanes4; D],
+) -> Lanes4 {
+    let loads = rows.map(|j| cloud.loads[j as usize]);
+    let mut sum = Lanes4::ZERO;
+    for axis in 0..D {
+        sum = a.times_add(Lanes4(loads.map(|load| load[axis])), x[axis], sum);
+    }
+    sum
+}

@@ -1,0 +1,86 @@
+//! The system that gives walls the pressure of the fluid beside them, and the velocity that a sticking fluid sees.
+
+use glam::DVec3;
+
+use super::wall::PreviousVelocity;
+use super::wall_pressure::{Beside, WallPressure};
+use crate::formulations::fluid::cloud::{FlowCloud, Role, Surface};
+use crate::formulations::fluid::lanes::Record;
+use crate::parallel::{Lanes4, for_each_block};
+use crate::schedule::{Run, Step, StepError};
+use crate::world::Pressure;
+
+/// Sets pressure and velocity of walls in the packed rows, and their pressure column.
+pub struct WallState {
+    /// Acceleration of gravity, m/s2.
+    pub gravity: DVec3,
+    pub beside: Vec<Beside>,
+}
+
+type Rows<'a> = (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [Beside]);
+
+impl Run for WallState {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        self.beside.resize(cloud.records.len() - cloud.fluid, Beside::default());
+        let mut near = std::mem::take(&mut cloud.near_boundary);
+        WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
+        cloud.near_boundary = near;
+        let first = cloud.fluid;
+        for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
+            // A fluid that turns with its wall like one rigid body feels no friction.
+            let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
+            cloud.for_each_spin(group, beside, |fluid, spin| fluid.velocity -= spin.cross(fluid.offset));
+        }
+        let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
+        for group in groups {
+            let Role::Boundary(surface) = &group.role else { continue };
+            let beside = &self.beside[group.cloud.start - *fluid..group.cloud.end - *fluid];
+            if surface.moved {
+                let rows = (&mut records[group.cloud.clone()], beside);
+                for_each_block(rows, &mut Vec::new(), &|_, rows| apply_to_solid(surface, self.gravity, rows));
+                continue;
+            }
+            let view = step.world.phase(group.phase);
+            let mut pressure = view.write::<Pressure>()?;
+            let mut previous = view.write::<PreviousVelocity>()?;
+            let rows = group.rows.clone();
+            let slices: Rows<'_> =
+                (&mut records[group.cloud.clone()], &mut pressure[rows.clone()], &mut previous[rows], beside);
+            let (gravity, dt) = (self.gravity, step.clock.dt);
+            for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
+        }
+        Ok(())
+    }
+}
+
+fn apply(surface: &Surface, gravity: DVec3, dt: f64, (records, pressure, previous, beside): Rows<'_>) {
+    for (k, record) in records.iter_mut().enumerate() {
+        let v = record.velocity();
+        let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
+        previous[k] = PreviousVelocity(v);
+        let fluid = &beside[k];
+        let mut p = fluid.pressure - (gravity - acceleration).dot(fluid.moment);
+        if !surface.suction {
+            p = p.max(0.0);
+        }
+        pressure[k] = Pressure(p);
+        // Halfway between this velocity and that of the fluid lies the velocity of the surface.
+        let seen = if surface.no_slip { v + 2.0 * surface.velocity - fluid.velocity } else { v };
+        record.motion = Lanes4::new(seen, p);
+    }
+}
+
+/// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a mass that is added
+/// explicitly, and a light body would not stand it. What that lacks falls with the spacing.
+fn apply_to_solid(surface: &Surface, gravity: DVec3, (records, beside): (&mut [Record], &[Beside])) {
+    for (record, fluid) in records.iter_mut().zip(beside) {
+        let v = record.velocity();
+        let mut p = fluid.pressure - gravity.dot(fluid.moment);
+        if !surface.suction {
+            p = p.max(0.0);
+        }
+        let seen = if surface.no_slip { v - fluid.velocity } else { v };
+        record.motion = Lanes4::new(seen, p);
+    }
+}

@@ -1,0 +1,93 @@
+//! Gaps and swelling: whether as much fluid is where the particles are as their densities say.
+//!
+//! `sum_j V_j W_ij`, the particle itself and what bounds the flow included, is one wherever the volumes m / rho fill space. The density of a
+//! particle is moved by the velocities around it and does not see gaps.
+
+use serde::{Deserialize, Serialize};
+
+use crate::correction::FourMoments;
+use crate::formulations::fluid::cloud::{FlowCloud, RowPass, smallest_eigenvalue};
+use crate::notation::quantity;
+use crate::parallel::{FourLanes, Number};
+use crate::schedule::Step;
+
+/// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
+const INSIDE: f64 = 0.75;
+/// Difference of the mean filling from one that is worth a warning.
+const SHARE: f64 = 0.1;
+/// Growth of the difference for which the warning is written anew.
+const GROWTH: f64 = 1.2;
+/// Least part of the particles of a body that has to be inside for a mean: a splash has gaps.
+const PART: f64 = 0.25;
+
+/// Watches the filling of every body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Filling {
+    /// Largest difference of each group that the user has been told.
+    told: Vec<f64>,
+}
+
+impl Filling {
+    /// Looks at all fluids.
+    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
+        self.told.resize(cloud.groups.len(), 0.0);
+        for (group, told) in cloud.groups.iter().zip(&mut self.told) {
+            if group.fluid().is_none() {
+                break;
+            }
+            scratch.clear();
+            scratch.resize(group.cloud.len(), None);
+            cloud.for_each_row(group.cloud.start, scratch, &FillingPass(cloud));
+            let Some(mean) = mean_filling(scratch) else { continue };
+            let off = (mean - 1.0).abs();
+            if off <= SHARE.max(GROWTH * *told) {
+                continue;
+            }
+            *told = off;
+            let name = &step.world.body(group.body).name;
+            let begin = format!("the particles of `{name}` do not fill ");
+            let text = format!(
+                "{begin}the space that they have: inside of it their volumes m/rho make up {:.1} % of it at {}; {}",
+                100.0 * mean,
+                quantity(step.clock.time, "s"),
+                if mean < 1.0 {
+                    "there are gaps, or the flow has swollen: a confined flow wants a pressure above zero, others weaker shifting or none"
+                } else {
+                    "the flow has collapsed: a larger `sound_speed`, `density_diffusion()` or a smaller step may help"
+                }
+            );
+            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
+                Some(warning) => *warning = text,
+                None => step.warnings.push(text),
+            }
+        }
+    }
+}
+
+/// Mean of the filling over the particles inside; none where there are too few.
+fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
+    let inside = rows.iter().flatten().count();
+    (inside as f64 > PART * rows.len() as f64).then(|| rows.iter().flatten().sum::<f64>() / inside as f64)
+}
+
+/// The filling about a particle; none near a surface.
+pub struct FillingPass<'a>(pub &'a FlowCloud);
+
+impl RowPass for FillingPass<'_> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn row<A: FourLanes>(&self, a: A, i: usize) -> Option<f64> {
+        let cloud = self.0;
+        let own = cloud.records[i].volume();
+        let (mut moment, mut filling) = (FourMoments::new(a), Number::splat(a, 0.0));
+        for near in cloud.fours(a, i, &cloud.everything()) {
+            moment.add(near.volume * near.weight, near.x_ij);
+            // The lists may hold the particle itself.
+            let other = near.number(|j| if j == i { 0.0 } else { 1.0 });
+            filling = (near.volume * near.kernel).mul_add(other, filling);
+        }
+        let is_inside = own > 0.0 && smallest_eigenvalue(moment.sum().matrix(), A::AXES == 2) > INSIDE;
+        is_inside.then(|| filling.lanes().sum() + own * cloud.kernel.value(0.0))
+    }
+}

@@ -1,0 +1,15 @@
+//! What a flow must not do, looked at in the course of the run.
+
+mod intrusion;
+
+mod passing;
+
+mod filling;
+
+mod fit;
+
+mod friction;
+
+mod unevenness;
+
+pub mod watch;

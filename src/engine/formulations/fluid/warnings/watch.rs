@@ -1,0 +1,86 @@
+//! What a flow must not do, looked at on the way: particles inside of what bounds it, gaps and swelling, rows that break up.
+
+use super::filling::Filling;
+use super::fit;
+use super::friction::Friction;
+use super::intrusion::Intrusion;
+use super::passing::Passing;
+use super::unevenness::Unevenness;
+use crate::formulations::fluid::cloud::FlowCloud;
+use crate::plugin::SimBuilder;
+use crate::schedule::Trigger;
+use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::world::{ParticleId, PhaseId, Position, ReferencePosition};
+
+/// Steps between two looks for particles inside of something: what has entered stays for some time.
+const INTERVAL: u64 = 50;
+
+struct FlowWatch {
+    intrusion: Intrusion,
+    passing: Passing,
+    filling: Filling,
+    unevenness: Unevenness,
+    /// Filling and unevenness are looked at with the frames.
+    frames: Trigger,
+    end: f64,
+    /// Whether the lattices have been looked at.
+    is_started: bool,
+    /// What the looks compute for each particle.
+    scratch: Vec<Option<f64>>,
+    friction: Vec<Option<Friction>>,
+}
+
+/// Adds the system that looks.
+pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
+    let watch = FlowWatch {
+        intrusion: Intrusion::new(sim, spacing),
+        passing: Passing::new(sim),
+        filling: Filling::default(),
+        unevenness: Unevenness::default(),
+        frames: Trigger::after_interval(sim.scene().record_interval()),
+        end: sim.scene().time.end,
+        is_started: false,
+        scratch: Vec::new(),
+        friction: Vec::new(),
+    };
+    sim.add_system(
+        System::new(Stage::Record, "fluid_watch", watch)
+            .on_phases(phases)
+            .reads::<Position>()
+            .reads::<ReferencePosition>()
+            .reads::<ParticleId>(),
+    );
+}
+
+impl Run for FlowWatch {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let cloud = step.resources.get::<FlowCloud>();
+        if !std::mem::replace(&mut self.is_started, true) && step.clock.step <= 1 {
+            fit::look(&cloud, &mut self.scratch, step);
+        }
+        let at_end = step.clock.time >= self.end || step.stop.is_some();
+        let is_frame = self.frames.is_due(step.clock.time) || at_end;
+        if is_frame || step.clock.step.is_multiple_of(INTERVAL) {
+            self.intrusion.look(&cloud, step)?;
+            self.passing.look(step)?;
+        }
+        if is_frame {
+            self.filling.look(&cloud, &mut self.scratch, step);
+            self.unevenness.look(&cloud, &mut self.friction, step);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
+        postcard::to_stdvec(&(told, &self.filling, self.frames)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let Ok((told, filling, frames)) = postcard::from_bytes(state) else { return false };
+        (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
+        self.filling = filling;
+        self.frames.resume(frames);
+        true
+    }
+}
