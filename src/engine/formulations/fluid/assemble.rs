@@ -4,11 +4,12 @@ use glam::DVec3;
 
 use super::formulation::FluidBody;
 use super::systems;
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group, Role, Surface, Viscosities};
+use crate::formulations::fluid::cloud::{
+    FlowCloud, FluidState, Group, Neighborhood, Role, Surface, Viscosities,
+};
 use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
 use crate::formulations::fluid::lists::{FlowPairs, NearRows, Skins, Thickness, ThinBody};
 use crate::formulations::fluid::passes::blocks;
-use crate::formulations::fluid::rotation::Neighborhood;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
 use crate::parallel::Lanes4;

@@ -3,10 +3,10 @@
 use std::sync::{Arc, Mutex};
 
 use super::fields::fields;
-use crate::formulations::fluid::cloud::{Group, NEIGHBORS, Neighbors, Role};
+use crate::formulations::fluid::cloud::{ACCOUNTS, Group, NEIGHBORS, Neighbors, Role};
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{Continuity, EquationOfState};
-use crate::formulations::fluid::passes::{ACCOUNTS, Compression, FLUID_FORCE, FlowForce};
+use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce};
 use crate::formulations::fluid::rotation::{Couples, Spin};
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{PreviousVelocity, RangeShortfall, Repulsion, WallState};

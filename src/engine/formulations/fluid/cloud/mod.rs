@@ -1,6 +1,14 @@
 //! All particles that a fluid meets, as one cloud that is packed, searched and sorted in the course of the run.
 
+mod group;
+
+mod parts;
+
 mod viscosities;
+
+mod neighborhood;
+
+mod repelled;
 
 mod flow_cloud;
 
@@ -16,8 +24,12 @@ mod sort;
 
 mod neighbors;
 
-pub use flow_cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
+pub use flow_cloud::{FlowCloud, Near};
+pub use group::{FluidState, Group, Role, Surface};
 pub use near::{FourNear, Fours, RowPass, part, take_until};
+pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{NEIGHBORS, Neighbors};
+pub use parts::{ACCOUNTS, PARTS};
+pub use repelled::{Repelled, Shares};
 pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};

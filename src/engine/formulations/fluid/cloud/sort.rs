@@ -5,7 +5,8 @@
 
 use glam::DVec3;
 
-use super::flow_cloud::{FlowCloud, Group};
+use super::flow_cloud::FlowCloud;
+use super::group::Group;
 use crate::shapes::MortonSort;
 use crate::world::World;
 

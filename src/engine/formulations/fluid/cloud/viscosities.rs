@@ -1,6 +1,6 @@
 //! Viscosities between the bodies of a flow.
 
-use super::flow_cloud::{Group, Role};
+use super::group::{Group, Role};
 
 /// Least kinematic viscosity, in units of c_0 h, at which friction is corrected by the spin: below it a flow has other losses.
 const LEAST: f64 = 1e-4;

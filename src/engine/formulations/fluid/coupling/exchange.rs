@@ -1,6 +1,6 @@
 //! What passes between a flow and bodies that take sub-steps beside it.
 
-use crate::formulations::fluid::passes::PARTS;
+use crate::formulations::fluid::cloud::PARTS;
 use crate::parallel::BlockSum;
 
 crate::column! {

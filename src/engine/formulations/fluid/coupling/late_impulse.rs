@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::drag::DragRows;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
+use crate::formulations::fluid::cloud::PARTS;
 use crate::formulations::fluid::lanes::Record;
-use crate::formulations::fluid::passes::PARTS;
 use crate::integrate::constrained;
 use crate::parallel::{Split, for_each_block, split_by_rows};
 use crate::rigid::RigidBody;

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use glam::DVec3;
 
 use super::blocks::BlockForce;
-use super::pair_force::{PARTS, PairForce};
-use crate::formulations::fluid::cloud::{FlowCloud, Role};
+use super::pair_force::PairForce;
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, PARTS, Role};
 use crate::formulations::fluid::rotation::Couples;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::for_each_block;
@@ -15,8 +15,6 @@ use crate::world::{Force, Mass, PhaseId, Removed};
 
 /// Label of the system that makes the forces of fluids and walls.
 pub const FLUID_FORCE: &str = "fluid_force";
-/// Accounts of the parts of the force whose work is booked.
-pub const ACCOUNTS: [&str; PARTS] = ["viscosity", "wall_pressure"];
 
 /// Makes the forces on the particles of one phase.
 pub struct FlowForce {

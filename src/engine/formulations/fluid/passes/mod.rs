@@ -14,5 +14,5 @@ mod reaction;
 
 pub use blocks::keep_rows;
 pub use compression::Compression;
-pub use force::{ACCOUNTS, FLUID_FORCE, FlowForce};
-pub use pair_force::{ForceRows, PARTS, PairForce};
+pub use force::{FLUID_FORCE, FlowForce};
+pub use pair_force::PairForce;

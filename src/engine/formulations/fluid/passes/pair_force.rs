@@ -10,15 +10,12 @@
 use glam::DVec3;
 
 use super::pair_sums::{Between, Forces, Pairs};
-use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
 use crate::formulations::fluid::lanes::{Own, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
 use crate::parallel::{BlockSum, FourLanes, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
-
-/// Forces that are kept apart: viscous, and of the pressure of boundaries.
-pub const PARTS: usize = 2;
 
 /// The pass over the particles of one group.
 pub struct PairForce<'a> {

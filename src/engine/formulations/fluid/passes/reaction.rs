@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::pair_force::{PARTS, PairForce};
-use crate::formulations::fluid::cloud::FlowCloud;
+use super::pair_force::PairForce;
+use crate::formulations::fluid::cloud::{FlowCloud, PARTS};
 use crate::formulations::fluid::rotation::Couples;
 use crate::world::{BodyId, Force};
 

@@ -9,11 +9,9 @@
 
 use glam::DVec3;
 
-use super::body_spin::{Cluster, Neighborhood};
 use super::spin::rotation;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, RowPass};
+use crate::formulations::fluid::cloud::{Cluster, FlowCloud, Group, Neighborhood, PARTS, RowPass};
 use crate::formulations::fluid::lanes::{Axial, Record};
-use crate::formulations::fluid::passes::PARTS;
 use crate::neighbors::Periodic;
 use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
 use crate::world::Force;

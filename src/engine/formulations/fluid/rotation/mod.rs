@@ -6,6 +6,5 @@ mod body_spin;
 
 mod couples;
 
-pub use body_spin::Neighborhood;
 pub use couples::Couples;
 pub use spin::Spin;

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::surface_distance::dyad;
+use crate::linalg::dyad;
 use crate::neighbors::Periodic;
 
 /// Largest distance of a particle from where the map puts it, over the spacing.

@@ -12,7 +12,7 @@ mod wall_pressure;
 
 mod wall_state;
 
-pub use repulsion::{RangeShortfall, Repelled, Repulsion};
-pub use surface_distance::{apart, dyad};
+pub use repulsion::{RangeShortfall, Repulsion};
+pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody};
 pub use wall_state::WallState;

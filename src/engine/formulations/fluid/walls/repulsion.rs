@@ -12,8 +12,7 @@
 use glam::DVec3;
 
 use super::surface_distance::Shape;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, Role, part};
-use crate::formulations::fluid::passes::PARTS;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, Repelled, Role, Shares, part};
 use crate::parallel::for_each_block;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
@@ -30,31 +29,6 @@ const RANGE: f64 = 0.15;
 const FREQUENCY: f64 = 3.0;
 /// Distance from the shape of a boundary within which its nearest particle is, over its spacing.
 const NEAREST: f64 = 1.2;
-
-/// The repulsion of one fluid particle.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Repelled {
-    /// The particle, as a row of the cloud.
-    i: usize,
-    /// First row of the boundary in the cloud.
-    boundary: usize,
-    /// Distance from its shape, m.
-    distance: f64,
-    /// Force on the particle, N; before that is known, over `l_i - d`, N/m.
-    force: DVec3,
-    /// How the opposite is given to the particles of the boundary.
-    shares: Shares,
-}
-
-/// Shares of particles near a point in what acts there, `V_w W (1 + (x_w - x_i - mean) . slope) / total`: they add up to one, and their centre is the point.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Shares {
-    pub total: f64,
-    pub mean: DVec3,
-    pub slope: DVec3,
-    /// The particle that bears all of it, if there is one.
-    pub only: Option<u32>,
-}
 
 /// Finds the particles that are repelled.
 pub struct Repulsion {

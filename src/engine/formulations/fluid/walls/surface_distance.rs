@@ -9,9 +9,9 @@
 use glam::{DMat3, DVec3};
 
 use super::body_motion::BodyMotion;
-use super::repulsion::Shares;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, part};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
 use crate::formulations::fluid::lanes::Record;
+use crate::linalg::dyad;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
@@ -191,9 +191,4 @@ pub fn apart(
     let periods = now - (position(second) - position(first));
     let home = origin(second) - origin(first);
     [now, if cloud.periods.any() { home + periods } else { home }]
-}
-
-/// `a (x) b`.
-pub fn dyad(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

@@ -6,7 +6,8 @@
 use glam::{DMat3, DVec3};
 
 use crate::formulations::fluid::cloud::{FlowCloud, Group, part};
-use crate::formulations::fluid::walls::{apart, dyad};
+use crate::formulations::fluid::walls::apart;
+use crate::linalg::dyad;
 use crate::notation::quantity;
 use crate::plugin::SimBuilder;
 use crate::schedule::{Step, StepError};

@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 use super::super::bonds::Bonds;
 use super::super::rows::Site;
 use super::rows::HessianRows;
-use crate::linalg::Sym3;
+use crate::linalg::{Sym3, dyad};
 use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::{
     CorrectedStress, FoldedEnergy, HessianForm, HessianResidual, HessianStiffness, SolidBodies,
@@ -201,10 +201,4 @@ impl HotLoop for ForceBlock<'_, '_> {
             *self_force += own * reach + pull[i] * bonds.weight_sum[i];
         }
     }
-}
-
-/// a (x) b.
-#[inline(always)]
-fn dyad(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

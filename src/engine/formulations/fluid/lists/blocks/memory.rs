@@ -3,9 +3,17 @@
 use super::lists::Lists;
 use super::record::{Packed, Units};
 use crate::formulations::fluid::lists::NearRows;
-use crate::formulations::fluid::passes::blocks::Rates;
 use crate::pair::Fastest;
 use crate::parallel::Lanes8;
+
+/// What the pass of the compression finds for a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rates {
+    /// Rates of compression over the weight at r = 0.
+    pub rate: Lanes8,
+    /// A bit for each particle within reach of a boundary.
+    pub is_close: usize,
+}
 
 /// The blocks of a flow, and what their passes read and write.
 pub struct Blocks {

@@ -9,6 +9,6 @@ mod lists;
 mod memory;
 
 pub use lists::{Lists, Sources};
-pub use memory::Blocks;
+pub use memory::{Blocks, Rates};
 pub use record::{Other, Own, Packed, Units, dot, pack, pack_states};
 pub use table::{Rows, Table};

@@ -2,18 +2,9 @@
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, dot, pack};
+use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, Rates, dot, pack};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block, run_blocks_on};
-
-/// What the pass finds for a block.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Rates {
-    /// Rates of compression over the weight at r = 0.
-    rate: Lanes8,
-    /// A bit for each particle within reach of a boundary.
-    is_close: usize,
-}
 
 impl FlowCloud {
     /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::super::pair_force::ForceRows;
+use crate::formulations::fluid::cloud::PARTS;
 use crate::formulations::fluid::lists::blocks::Table;
-use crate::formulations::fluid::passes::{ForceRows, PARTS};
 use crate::pair::TermRows;
 use crate::parallel::{Lanes8, Split, for_each_block};
 use crate::world::Force;

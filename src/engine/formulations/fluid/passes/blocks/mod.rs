@@ -14,6 +14,5 @@ mod rows;
 mod tests;
 
 pub use choose::choose;
-pub use compression::Rates;
 pub use force::BlockForce;
 pub use rows::keep_rows;

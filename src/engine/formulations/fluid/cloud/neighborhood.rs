@@ -1,0 +1,61 @@
+//! The particles beside each in the body of a boundary, and how they turn around it.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::lanes::Record;
+use crate::linalg::Sym3;
+use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
+use crate::plugin::BodyPlan;
+use crate::world::BodyId;
+
+/// Distance of the particles that turn with one, over the spacing of the fluid.
+const REACH: f64 = 1.5;
+
+/// The neighbours of the particles of a body at its start.
+#[derive(Debug)]
+pub struct Neighborhood {
+    pub body: BodyId,
+    pub list: NeighborList,
+}
+
+/// A particle and its neighbours in the body, weighed by their volumes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cluster {
+    /// Centre of mass, from the particle, m.
+    pub mean: DVec3,
+    /// Moment matrix about the centre, m5.
+    pub moment: Sym3,
+    /// Angular momentum about the centre over the density, m5/s.
+    pub angular: DVec3,
+}
+
+impl Neighborhood {
+    /// That of a body in a flow of that spacing, m.
+    pub fn new(body: &BodyPlan, spacing: f64, periodic: &Periodic) -> Result<Self, NeighborError> {
+        let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let list = NeighborList::reference(Cloud::uniform(&positions, REACH * spacing), periodic)?;
+        Ok(Self { body: body.id, list })
+    }
+
+    /// The cluster of particle `k`, all zero for a removed particle.
+    pub fn cluster(&self, records: &[Record], k: usize, periodic: &Periodic) -> Cluster {
+        let own = &records[k];
+        if own.volume() == 0.0 {
+            return Cluster::default();
+        }
+        let (mut volume, mut first, mut momentum) = (own.volume(), DVec3::ZERO, DVec3::ZERO);
+        let (mut moment, mut angular) = (Sym3::ZERO, DVec3::ZERO);
+        for &j in self.list.row(k) {
+            let other = &records[j as usize];
+            let x = periodic.minimal_image(other.position() - own.position());
+            let v = other.velocity() - own.velocity();
+            volume += other.volume();
+            first += other.volume() * x;
+            momentum += other.volume() * v;
+            moment += Sym3::dyad(x) * other.volume();
+            angular += other.volume() * x.cross(v);
+        }
+        let mean = first / volume;
+        Cluster { mean, moment: moment - Sym3::dyad(mean) * volume, angular: angular - mean.cross(momentum) }
+    }
+}
