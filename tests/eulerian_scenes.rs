@@ -7,6 +7,7 @@ use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, si
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
+use meshless::world::{BodyId, PlasticStrain, ReferencePosition};
 
 #[test]
 fn bits_do_not_depend_on_threads_or_on_a_restart() {
@@ -97,6 +98,32 @@ fn a_clamp_that_the_kernel_sees_through_is_said() {
             .any(|text| text.contains("body `block` is clamped over less than its kernel support"))
     };
     assert!(warned(1) && warned(2) && !warned(3));
+}
+
+/// Mean plastic strain in the middle of a metal strip that is drawn by its sides to 1.08 times its length.
+fn drawn(formulation: &str) -> f64 {
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"metal": J2(density: 7850, young: 2.1e11, poisson: 0.3, hardening: Linear(yield_stress: 2.5e8, modulus: 1e9))}},
+            bodies: [(name: "strip", material: "metal", shape: Box(min: (0, 0), max: (0.1, 0.02)), spacing: 0.004,
+                      formulation: {formulation}, plugins: [hourglass_control()])],
+            conditions: [Velocity(on: Select(face: MinX), value: ("-5*smoothstep(t/3e-4)", None)),
+                         Velocity(on: Select(face: MaxX), value: ("5*smoothstep(t/3e-4)", None))],
+            time: (end: 1e-3))"#
+    );
+    let mut sim = simulation(&Source::new("drawn.ron", text));
+    sim.run(|_| true).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let x = view.read::<ReferencePosition>().expect("places");
+    let strain = view.read::<PlasticStrain>().expect("plastic strain");
+    let middle: Vec<usize> = rows.filter(|&row| (x[row].0.x - 0.05).abs() < 0.01).collect();
+    middle.iter().map(|&row| strain[row].0).sum::<f64>() / middle.len() as f64
+}
+
+#[test]
+fn metal_that_is_drawn_by_its_sides_yields_as_in_a_fixed_reference() {
+    let (eulerian, fixed) = (drawn("Eulerian()"), drawn("TotalLagrangian"));
+    assert!(fixed > 0.08 && (eulerian / fixed - 1.0).abs() < 0.03, "{eulerian} {fixed}");
 }
 
 /// What is wrong with a scene.

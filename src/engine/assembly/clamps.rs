@@ -4,18 +4,21 @@
 
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::notation::quantity;
-use crate::plugin::{BodyPlan, Offer, Registry, SimBuilder};
-use crate::scene::Scene;
+use crate::plugin::{BodyKind, BodyPlan, Offer, Registry, SimBuilder};
+use crate::scene::{Edge, Scene};
 
 /// Warns of every body that is held along all axes and nowhere thick enough.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     let mut held: Vec<Vec<bool>> = sim.bodies.iter().map(|body| vec![false; body.sites.len()]).collect();
+    let sides_are_placed = sim.bodies.iter().all(|body| body.kind != BodyKind::Fluid);
     for item in &scene.conditions {
         registry.support(item, |support| {
             let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
+            // A layer that stands on its side needs nothing behind it.
+            let is_side = support.on.face.is_some() && support.edge == Edge::Stated;
             // What is wrong with a selection is told where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
-            for (id, rows) in selection.parts.iter().filter(|_| all) {
+            for (id, rows) in selection.parts.iter().filter(|_| all && !(is_side && sides_are_placed)) {
                 let first = sim.bodies[id.0].rows.start;
                 rows.iter().for_each(|row| held[id.0][*row as usize - first] = true);
             }
@@ -41,7 +44,7 @@ fn of_body(body: &BodyPlan, held: &[bool]) -> Option<String> {
     let is_thin = (0..inside.len()).all(|row| !list.row(row).is_empty());
     is_thin.then(|| {
         format!(
-            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it",
+            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it, or hold its side by `face`",
             body.name,
             quantity((reach / body.spacing).ceil() * body.spacing, "m")
         )

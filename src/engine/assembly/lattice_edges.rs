@@ -11,7 +11,8 @@ const OF_SIDE: f64 = 1.0;
 /// How far before the edge of a shape it ends.
 const OF_PART: f64 = 0.5;
 
-/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a side where the formulation leaves particles in their lattice.
+/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a side where the formulation leaves particles in their lattice. Where kernels follow
+/// the present configuration, a part that is held as deep as they reach ends where its shape does: 0.3 % too soft on a strip of 25 spacings.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     let mut warnings = Vec::new();
     for item in scene.conditions.iter().filter(|item| item.name() == "Fix") {
@@ -28,8 +29,10 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
                     continue;
                 }
                 warnings.extend(match support.on.face {
-                    Some(face) if !body.offers(Offer::Supports) => of_side(body, face.outward().0),
-                    None if some && support.on.within.is_some() => of_part(body),
+                    Some(face) if !body.offers(Offer::Sides) => of_side(body, face.outward().0),
+                    None if some && support.on.within.is_some() && body.offers(Offer::Supports) => {
+                        of_part(body)
+                    }
                     _ => None,
                 });
             }

@@ -39,7 +39,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                 let (Ok(region), false) = (region, is_mirrored(scene, face, at, body.spacing)) else {
                     continue;
                 };
-                if !body.offers(Offer::Supports) || rows.len() == body.sites.len() {
+                if !body.offers(Offer::Sides) || rows.len() == body.sites.len() {
                     continue;
                 }
                 for number in rows.iter().map(|row| *row as usize - body.rows.start) {

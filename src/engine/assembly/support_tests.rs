@@ -145,8 +145,8 @@ fn supports_that_end_in_the_lattice_are_told() {
     let side = "Fix(on: Select(face: MinX))";
     for (formulation, condition, expected) in [
         ("TotalLagrangian", within, Some("4 % softer")),
-        ("Eulerian", within, Some("4 % softer")),
-        ("Eulerian", side, Some("8 % stiffer")),
+        ("Eulerian", within, None),
+        ("Eulerian", side, None),
         ("TotalLagrangian", side, None),
         ("TotalLagrangian", "Fix(on: Select(within: Box(min: (-1, -1), max: (0, 1))))", None),
         ("TotalLagrangian", "Fix(on: Select(), axes: [Y])", None),

@@ -54,6 +54,8 @@ pub enum Offer {
     Dilatation,
     /// Held particles that end where a condition says, and carry but a share of their stress.
     Supports,
+    /// Held particles that stand on a side of their body, one and a half spacings from the next ones.
+    Sides,
 }
 
 impl Offer {
@@ -66,6 +68,7 @@ impl Offer {
         Self::SelfContact,
         Self::DeformedContact,
         Self::Supports,
+        Self::Sides,
     ];
 
     /// What the formulations of solids with a Lagrangian kernel take.
@@ -78,6 +81,7 @@ impl Offer {
         Self::SelfContact,
         Self::DeformedContact,
         Self::Supports,
+        Self::Sides,
     ];
 
     /// What it is, in words.
@@ -93,6 +97,7 @@ impl Offer {
             Self::DeformedContact => "contact with deformed particles",
             Self::Dilatation => "changes of volume without a motion",
             Self::Supports => "supports that end between particles",
+            Self::Sides => "supports on a side of the body",
         }
     }
 }

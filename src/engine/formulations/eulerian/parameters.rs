@@ -87,6 +87,7 @@ impl Formulation for Eulerian {
         Offer::DeformedContact,
         Offer::SelfContact,
         Offer::Dilatation,
+        Offer::Sides,
     ];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {

@@ -65,6 +65,7 @@ impl Formulation for TotalLagrangian {
         Offer::SelfContact,
         Offer::DeformedContact,
         Offer::Supports,
+        Offer::Sides,
     ];
 
     fn support(&self, body: &BodyPlan) -> Option<f64> {
