@@ -31,7 +31,7 @@ impl Plugin for CentralField {
             Stage::External,
             Self::NAME,
             sim.scope().clone(),
-            (Self::NAME, AccountKind::Stored),
+            EnergyAccount { name: Self::NAME, kind: AccountKind::Stored },
             move |_, (force, mass, position)| {
                 let stretch = position.0 - center;
                 force.0 -= mass.0 * omega * omega * stretch;

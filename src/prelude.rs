@@ -13,7 +13,9 @@ pub use meshless_engine::record::read_series;
 pub use meshless_engine::scene::{
     Dimension, Expression, Item, Scene, SceneError, Select, Source, Vec3, load, parse,
 };
-pub use meshless_engine::schedule::{AccountKind, Adds, Clock, Run, Stage, Step, StepError, System};
+pub use meshless_engine::schedule::{
+    AccountKind, Adds, Clock, EnergyAccount, Run, Stage, Step, StepError, System,
+};
 pub use meshless_engine::schemars::JsonSchema;
 pub use meshless_engine::serde::Deserialize;
 pub use meshless_engine::simulation::{Checkpoint, RunError, Simulation};

@@ -156,9 +156,6 @@ fn module_files_only_list() {
     }
 }
 
-/// Folders of the engine whose functions are longer still, or have more arguments.
-const WITH_LONG_FUNCTIONS: &[&str] = &["formulations/fluid", "neighbors", "pair", "parallel"];
-
 /// A function of a file: its name, number of lines, and number of arguments without `self`.
 fn functions(text: &str) -> Vec<(String, usize, usize)> {
     let lines: Vec<&str> = text.lines().collect();
@@ -207,13 +204,23 @@ fn functions_of_the_engine_are_short_and_have_few_arguments() {
     collect_sources(&root().join("src/engine"), &mut files);
     for path in &files {
         let file = shown(path);
-        if WITH_LONG_FUNCTIONS.iter().any(|folder| file.contains(&format!("/{folder}/"))) {
-            continue;
-        }
         let Some(text) = without_tests(path) else { continue };
         for (name, length, arguments) in functions(&text) {
             assert!(length <= 60, "{file}: `{name}` has {length} lines");
             assert!(arguments <= 5, "{file}: `{name}` has {arguments} arguments");
+        }
+    }
+}
+
+/// Systems run one after another and find what they share among the resources.
+#[test]
+fn systems_share_without_locks() {
+    let mut files = Vec::new();
+    collect_sources(&root().join("src/engine"), &mut files);
+    for path in &files {
+        let Some(text) = without_tests(path) else { continue };
+        for lock in ["Mutex", "RwLock"] {
+            assert!(!text.contains(lock), "{} has a {lock}", shown(path));
         }
     }
 }

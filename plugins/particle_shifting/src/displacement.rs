@@ -45,7 +45,7 @@ pub struct Displacements {
 
 impl Displacements {
     /// Those of a strength, a speed of sound, m/s, and a length of the step, s.
-    pub fn new(cloud: &FlowCloud, (strength, sound_speed, dt): (f64, f64, f64)) -> Self {
+    pub fn new(cloud: &FlowCloud, strength: f64, sound_speed: f64, dt: f64) -> Self {
         let h = cloud.kernel.smoothing_length();
         Self { factor: -4.0 * strength * h * h * dt, largest: FASTEST * sound_speed * dt }
     }

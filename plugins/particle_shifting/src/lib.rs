@@ -139,7 +139,7 @@ impl Run for Shifting {
         for &(id, strength) in bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
-            let displacements = Displacements::new(cloud, (strength, sound_speed, dt));
+            let displacements = Displacements::new(cloud, strength, sound_speed, dt);
             let old = view.read::<PendingDilation>()?;
             for row in rows {
                 shifts[row] = displacements.of(&locals[row], near_surface[row]);
@@ -155,7 +155,7 @@ impl Run for Shifting {
             self.repayment.pay(step, cloud, id, SHIFTING_ENERGY)?;
             step.ledger.add(account, id, lost);
             displace(step, id, &moves[rows], self.gravity, SHIFTING_ENERGY)?;
-            response::change_density(step, cloud, id, (locals, responses))?;
+            response::change_density(step, cloud, id, locals, responses)?;
         }
         Ok(())
     }

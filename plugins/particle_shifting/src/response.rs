@@ -106,7 +106,8 @@ pub fn change_density(
     step: &Step<'_>,
     cloud: &FlowCloud,
     id: BodyId,
-    (locals, responses): (&[Local], &[Response]),
+    locals: &[Local],
+    responses: &[Response],
 ) -> Result<(), StepError> {
     let (view, rows) = step.world.body_view(id);
     let density = view.read::<Density>()?;

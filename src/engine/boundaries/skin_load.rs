@@ -77,7 +77,7 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
         return None;
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
-    Skin::of(body, shape, &[], (sim.dimension(), sim.folder())).map(Arc::new)
+    Skin::of(body, shape, &[], sim.dimension(), sim.folder()).map(Arc::new)
 }
 
 /// What a scene says of a loaded surface.

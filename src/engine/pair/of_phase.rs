@@ -1,6 +1,6 @@
 //! The pair terms of the bodies of a phase, and what they make.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use super::work;
 use crate::parallel::{BlockSum, EIGHT, Split};
 use crate::plugin::{ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
-use crate::schedule::{Access, Mode, Step, StepError};
+use crate::schedule::{Access, Mode, Shared, Step, StepError};
 use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId};
 
 /// Largest number of pair terms on one body.
@@ -33,7 +33,11 @@ pub(crate) struct BodyTerms {
 /// The terms of all bodies of a phase.
 pub(crate) struct PhaseTerms {
     terms: Vec<Arc<PairTermOfBodies>>,
-    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+    bodies: BodySet,
+    /// The bodies whose density a term changes.
+    of_changing_density: BodySet,
+    /// What the terms make, shared with the systems that book their work.
+    forces: Shared<Vec<BodyTerms>>,
     sums: Vec<Fastest>,
     /// What the terms read of the pairs.
     pub reads: PairReads,
@@ -72,9 +76,20 @@ impl PhaseTerms {
             reads.kernel |= term.term.reads().kernel;
             reads.velocity |= term.term.reads().velocity;
         }
-        let bodies = Arc::new(Mutex::new(bodies));
-        work::add_work_systems(sim, phase, accounts, Arc::clone(&bodies));
-        Ok(Some(Self { terms, bodies, sums: Vec::new(), reads, of_density }))
+        let changes = |body: &&BodyTerms| body.terms.iter().any(|&k| terms[k].term.changes_density());
+        let of_changing_density = BodySet::new(bodies.iter().filter(changes).map(|body| body.id));
+        let ids = BodySet::new(bodies.iter().map(|body| body.id));
+        let forces = sim.share(bodies);
+        work::add_work_systems(sim, phase, accounts, forces);
+        Ok(Some(Self {
+            terms,
+            bodies: ids,
+            of_changing_density,
+            forces,
+            sums: Vec::new(),
+            reads,
+            of_density,
+        }))
     }
 
     /// What the terms read, and the density rates that they write.
@@ -86,19 +101,17 @@ impl PhaseTerms {
 
     /// Whether a body has terms.
     pub fn act_on(&self, id: BodyId) -> bool {
-        self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|body| body.id == id)
+        self.bodies.contains(id)
     }
 
     /// Whether a body has a term that changes its density.
     pub fn change_density_of(&self, id: BodyId) -> bool {
-        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
-        let own = bodies.iter().filter(|body| body.id == id).flat_map(|body| &body.terms);
-        own.into_iter().any(|&k| self.terms[k].term.changes_density())
+        self.of_changing_density.contains(id)
     }
 
     /// The bodies that have terms.
     pub fn bodies(&self) -> Vec<BodyId> {
-        self.bodies.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|body| body.id).collect()
+        self.bodies.iter().collect()
     }
 
     /// Binds the terms of a body and calls `run` with them, with the rows that they write, and with scratch memory for the largest rates
@@ -111,7 +124,7 @@ impl PhaseTerms {
         run: &mut dyn FnMut(&BoundTerms<'_>, TermRows<'_>, &mut Vec<Fastest>) -> Fastest,
     ) -> Result<Fastest, StepError> {
         let mut fastest = Fastest::default();
-        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut bodies = step.resources.of_mut(self.forces);
         let body = bodies.iter_mut().find(|body| body.id == id);
         let Some(BodyTerms { terms: indices, forces, .. }) = body else { return Ok(fastest) };
         let Some(&first) = indices.first() else { return Ok(fastest) };

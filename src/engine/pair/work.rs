@@ -4,15 +4,13 @@
 //! is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with the velocity v and the
 //! acceleration a between the two: two sums over the particles give both.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use glam::DVec3;
 
 use super::of_phase::{BodyTerms, MAX_TERMS};
 use crate::integrate::DRIFT;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, Split, for_each_block, run_hot};
 use crate::plugin::SimBuilder;
-use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::world::{BodyId, Column, Force, Mobility, PhaseId, Velocity};
 
 /// Power f.v, W, and f.a, W/s, of every term of a body.
@@ -31,18 +29,25 @@ impl BlockSum for Power {
     }
 }
 
-/// What the two systems share: the powers of the last right-hand side, body by body.
-type Powers = Arc<Mutex<Vec<(BodyId, Vec<usize>, Power)>>>;
+/// The powers of the terms of a body in the last right-hand side.
+struct BodyPowers {
+    id: BodyId,
+    terms: Vec<usize>,
+    power: Power,
+}
 
-/// Adds the booking of the two kicks.
+/// What the two systems share.
+type Powers = Shared<Vec<BodyPowers>>;
+
+/// Adds the booking of the two kicks of what others put into `bodies`.
 pub(crate) fn add_work_systems(
     sim: &mut SimBuilder<'_>,
     phase: PhaseId,
     accounts: Vec<String>,
-    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+    bodies: Shared<Vec<BodyTerms>>,
 ) {
-    let powers = Powers::default();
-    let first = FirstKick { accounts: accounts.clone(), powers: Arc::clone(&powers) };
+    let powers = sim.share(Vec::new());
+    let first = FirstKick { accounts: accounts.clone(), powers };
     sim.add_system(
         System::new(Stage::InitialIntegrate, "pair_work_of_first_kick", first)
             .on_phases([phase])
@@ -61,17 +66,13 @@ pub(crate) fn add_work_systems(
 }
 
 /// Books half a step; `side` is -1 for the kick before the velocity, +1 for the kick after it.
-fn book(
-    step: &mut Step<'_>,
-    accounts: &[String],
-    (body, terms, power): &(BodyId, Vec<usize>, Power),
-    side: f64,
-) {
+fn book(step: &mut Step<'_>, accounts: &[String], body: &BodyPowers, side: f64) {
     let dt = step.clock.dt;
+    let BodyPowers { id, terms, power } = body;
     for (slot, &k) in terms.iter().enumerate() {
         let account = step.ledger.account(&accounts[k], AccountKind::Dissipated);
         let mean = power.of_velocity[slot] + side * 0.25 * dt * power.of_acceleration[slot];
-        step.ledger.add(account, *body, -0.5 * dt * mean);
+        step.ledger.add(account, *id, -0.5 * dt * mean);
     }
 }
 
@@ -82,15 +83,15 @@ struct FirstKick {
 
 impl Run for FirstKick {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
-        powers.iter().for_each(|entry| book(step, &self.accounts, entry, 1.0));
+        let powers = step.resources.of(self.powers);
+        powers.iter().for_each(|body| book(step, &self.accounts, body, 1.0));
         Ok(())
     }
 }
 
 struct SecondKick {
     accounts: Vec<String>,
-    bodies: Arc<Mutex<Vec<BodyTerms>>>,
+    bodies: Shared<Vec<BodyTerms>>,
     powers: Powers,
     sums: Vec<Power>,
 }
@@ -167,9 +168,10 @@ impl WorkRows<'_> {
 
 impl Run for SecondKick {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
-        powers.resize_with(bodies.len(), || (BodyId(0), Vec::new(), Power::default()));
+        let bodies = step.resources.of(self.bodies);
+        let mut powers = step.resources.of_mut(self.powers);
+        let none = || BodyPowers { id: BodyId(0), terms: Vec::new(), power: Power::default() };
+        powers.resize_with(bodies.len(), none);
         for (BodyTerms { id, terms, forces }, entry) in bodies.iter().zip(powers.iter_mut()) {
             let (view, rows) = step.world.body_view(*id);
             let (velocity, force, mobility) =
@@ -181,29 +183,31 @@ impl Run for SecondKick {
                 by_term: forces,
                 terms: terms.len(),
             };
-            entry.0 = *id;
-            entry.1.clone_from(terms);
-            entry.2 = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| run_hot(block));
+            entry.id = *id;
+            entry.terms.clone_from(terms);
+            entry.power = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| run_hot(block));
             book(step, &self.accounts, entry, -1.0);
         }
         Ok(())
     }
 
-    fn save(&self) -> Vec<u8> {
-        let powers = self.powers.lock().unwrap_or_else(PoisonError::into_inner);
+    fn save_with(&self, resources: &Resources) -> Vec<u8> {
+        let powers = resources.of(self.powers);
         let numbers = powers
             .iter()
-            .map(|(body, terms, power)| (body.0, terms, power.of_velocity, power.of_acceleration));
+            .map(|BodyPowers { id, terms, power }| (id.0, terms, power.of_velocity, power.of_acceleration));
         postcard::to_stdvec(&numbers.collect::<Vec<_>>()).unwrap_or_default()
     }
 
-    fn restore(&mut self, state: &[u8]) -> bool {
+    fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
         type Saved = Vec<(usize, Vec<usize>, [f64; MAX_TERMS], [f64; MAX_TERMS])>;
         let Ok(saved) = postcard::from_bytes::<Saved>(state) else { return false };
-        let entries = saved.into_iter().map(|(body, terms, of_velocity, of_acceleration)| {
-            (BodyId(body), terms, Power { of_velocity, of_acceleration })
+        let bodies = saved.into_iter().map(|(id, terms, of_velocity, of_acceleration)| BodyPowers {
+            id: BodyId(id),
+            terms,
+            power: Power { of_velocity, of_acceleration },
         });
-        *self.powers.lock().unwrap_or_else(PoisonError::into_inner) = entries.collect();
+        *resources.of_mut(self.powers) = bodies.collect();
         true
     }
 }

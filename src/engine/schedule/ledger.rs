@@ -15,6 +15,15 @@ pub enum AccountKind {
     Dissipated,
 }
 
+/// Name and kind of the account of a system.
+#[derive(Clone, Copy, Debug)]
+pub struct EnergyAccount {
+    /// Name of the account.
+    pub name: &'static str,
+    /// What its energies are.
+    pub kind: AccountKind,
+}
+
 /// One account of the ledger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Account {

@@ -1,7 +1,7 @@
 //! A system: a part of the step with a stage, a label, declared access to columns, and a position in the order.
 
 use super::each::EachRow;
-use super::ledger::AccountKind;
+use super::ledger::{AccountKind, EnergyAccount};
 use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
@@ -143,20 +143,21 @@ impl System {
         stage: Stage,
         label: impl Into<String>,
         bodies: BodySet,
-        (account, kind): (&'static str, AccountKind),
+        account: EnergyAccount,
         f: impl for<'r> Fn(&super::step::Clock, Q::Row<'r>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         let of = bodies.clone();
         let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
             let clock = step.clock;
-            let account_id = step.ledger.account(account, kind);
+            let EnergyAccount { name, kind } = account;
+            let account = step.ledger.account(name, kind);
             for body in step.turn.due(step.world, &bodies) {
                 let (phase, rows) = step.world.body_view(body);
                 let energy = Q::for_each(&phase, rows, &|row| f(&clock, row))?;
                 match kind {
-                    AccountKind::Stored => step.ledger.set(account_id, body, energy),
+                    AccountKind::Stored => step.ledger.set(account, body, energy),
                     AccountKind::Supplied | AccountKind::Dissipated => {
-                        step.ledger.add(account_id, body, energy);
+                        step.ledger.add(account, body, energy);
                     }
                 }
             }

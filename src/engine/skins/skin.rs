@@ -50,7 +50,8 @@ impl Skin {
         body: &BodyPlan,
         shape: &Shape,
         planes: &[MirrorPlane],
-        (dimension, folder): (Dimension, &Path),
+        dimension: Dimension,
+        folder: &Path,
     ) -> Option<Self> {
         let axes = dimension.count();
         let mut facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;

@@ -61,7 +61,7 @@ pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -
         offers: &[],
         support: None,
     };
-    Skin::of(&plan, &shape, &[], (axes, folder)).unwrap_or_else(|| panic!("no skin"))
+    Skin::of(&plan, &shape, &[], axes, folder).unwrap_or_else(|| panic!("no skin"))
 }
 
 const SHAPES: [(&str, &str); 3] = [

@@ -46,7 +46,7 @@ impl Skins {
         }
         if !self.known.iter().any(|(id, _)| *id == body.id) {
             let shape = &sim.scene().bodies[body.id.0].shape;
-            let skin = Skin::of(body, shape, planes, (sim.dimension(), sim.folder()));
+            let skin = Skin::of(body, shape, planes, sim.dimension(), sim.folder());
             self.known.push((body.id, skin.map(Arc::new)));
         }
         let known = self.known.iter().find(|(id, _)| *id == body.id);

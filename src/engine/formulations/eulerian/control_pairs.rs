@@ -38,6 +38,14 @@ struct Own<A: FourLanes> {
     modulus_before: f64,
 }
 
+/// The kernel at four neighbours.
+struct FourKernel {
+    /// Pair weight `w = -W' / r`.
+    weight: Lanes4,
+    /// Second derivative `W''`.
+    curvature: Lanes4,
+}
+
 /// The sums so far.
 struct Sums<A: FourLanes> {
     force: Vector<A>,
@@ -71,15 +79,17 @@ impl ControlPairs<'_> {
         let (weight_fours, weight_rest) = weights.as_chunks::<4>();
         let (curvature_fours, curvature_rest) = curvatures.as_chunks::<4>();
         for n in 0..fours.len() {
-            let kernel = (Lanes4(weight_fours[n]), Lanes4(curvature_fours[n]));
+            let kernel =
+                FourKernel { weight: Lanes4(weight_fours[n]), curvature: Lanes4(curvature_fours[n]) };
             self.add(a, &own, fours[n], kernel, &mut sums);
         }
         if !rest.is_empty() {
             // The particle itself fills the lanes that are left, without a weight.
-            let (mut four, mut kernel) = ([i as u32; 4], (Lanes4::ZERO, Lanes4::ZERO));
+            let mut four = [i as u32; 4];
+            let mut kernel = FourKernel { weight: Lanes4::ZERO, curvature: Lanes4::ZERO };
             for lane in 0..rest.len() {
                 four[lane] = rest[lane];
-                (kernel.0.0[lane], kernel.1.0[lane]) = (weight_rest[lane], curvature_rest[lane]);
+                (kernel.weight.0[lane], kernel.curvature.0[lane]) = (weight_rest[lane], curvature_rest[lane]);
             }
             self.add(a, &own, four, kernel, &mut sums);
         }
@@ -93,16 +103,9 @@ impl ControlPairs<'_> {
         }
     }
 
-    /// Adds four neighbours with their weights and second derivatives of the kernel.
+    /// Adds four neighbours.
     #[inline(always)]
-    fn add<A: FourLanes>(
-        &self,
-        a: A,
-        own: &Own<A>,
-        four: [u32; 4],
-        (weight, curvature): (Lanes4, Lanes4),
-        sums: &mut Sums<A>,
-    ) {
+    fn add<A: FourLanes>(&self, a: A, own: &Own<A>, four: [u32; 4], kernel: FourKernel, sums: &mut Sums<A>) {
         let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let points = [&self.points[j], &self.points[k], &self.points[l], &self.points[m]];
         let of = [&self.carried[j], &self.carried[k], &self.carried[l], &self.carried[m]];
@@ -121,7 +124,7 @@ impl ControlPairs<'_> {
         ]);
         let (modulus, before) = (Number::new(a, modulus), Number::new(a, before));
         let volume = Number::new(a, volume);
-        let (weight, curvature) = (Number::new(a, weight), Number::new(a, curvature));
+        let (weight, curvature) = (Number::new(a, kernel.weight), Number::new(a, kernel.curvature));
         let (own_guess, other_guess) = (own.deformation * original, deformation * original);
         let square = arm.length_squared().max(f64::MIN_POSITIVE);
         // s over |x| of both.

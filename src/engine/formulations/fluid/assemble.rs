@@ -1,5 +1,7 @@
 //! The systems of a flow, once all fluids and walls of the scene are known.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::formulation::FluidBody;
@@ -12,10 +14,32 @@ use crate::formulations::fluid::lists::{FlowPairs, NearRows, Skins, Thickness, T
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
+use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Dimension, Problem};
 use crate::world::BodyId;
+
+/// What all fluids of a scene have in common.
+struct Common {
+    kernel: FluidKernel,
+    /// Support radius, m.
+    support: f64,
+    /// Spacing of the particles, m.
+    spacing: f64,
+    periodic: Periodic,
+    plane: bool,
+}
+
+/// The bodies of a flow, in the order of the cloud.
+#[derive(Default)]
+struct Bodies {
+    groups: Vec<Group>,
+    /// Number of fluid particles.
+    fluid: usize,
+    /// Those that the flow does not see across.
+    thin: Vec<ThinBody>,
+}
 
 /// Adds the systems of all fluids and walls of the scene; nothing where there are none.
 ///
@@ -24,59 +48,136 @@ use crate::world::BodyId;
 pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let fluids: Vec<FluidBody> = sim.take_extensions();
     let walls: Vec<WallBody> = sim.take_extensions();
-    let Some(first) = fluids.first() else {
+    if fluids.is_empty() {
         return checks::walls_have_fluid(&walls, sim);
-    };
+    }
+    let common = in_common(&fluids, sim)?;
+    let moved = moved_bodies(sim);
+    check_boundaries(&walls, &moved, &common, sim)?;
+    let mut bodies = Bodies::default();
+    for fluid in &fluids {
+        let body = sim.body(fluid.id);
+        bodies.add(body, Role::Fluid(fluid_state(body)?));
+    }
+    let given = fluids.into_iter().map(|fluid| (fluid.id, fluid.parameters.pressure));
+    let pressures = rest::pressures(given.collect(), common.support, sim)?;
+    bodies.fluid = bodies.groups.iter().map(|group| group.rows.len()).sum();
+    bodies.add_walls(&walls, sim);
+    bodies.add_moved(&moved, is_confined(&walls, sim), &common, sim)?;
+    let short = systems::short_phases(&bodies.groups, sim);
+    bodies.groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
+    sim.sub_cycle(short);
+    let (repulsion, reach) = Repulsion::new(&bodies.groups, common.kernel.smoothing_length(), sim);
+    let groups = bodies.groups.clone();
+    let mut cloud = cloud(bodies, common, reach, sim)?;
+    let spin = cloud.viscosities.spin;
+    let (walls, contacts, gravity) = (advice::walls(sim), advice::contacts(sim), sim.gravity());
+    sim.add_setup(move |setup| {
+        start(&cloud, &pressures, setup)?;
+        cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
+        checks::flow_is_slow(&mut cloud, setup.world)?;
+        advice::sinking(&cloud, &walls, &contacts, gravity, setup);
+        setup.resources.insert(cloud);
+        Ok(())
+    });
+    systems::add(&groups, spin, repulsion, sim)
+}
+
+/// What the fluids have in common.
+fn in_common(fluids: &[FluidBody], sim: &SimBuilder<'_>) -> Result<Common, SetupError> {
+    let first = &fluids[0];
     let (support, spacing) = (first.support, sim.body(first.id).spacing);
-    let dimension = sim.dimension().count();
-    one_support(&fluids, support, sim)?;
-    let Some(kernel) = FluidKernel::new(first.parameters.kernel, support, dimension) else {
+    one_support(fluids, support, sim)?;
+    let Some(kernel) = FluidKernel::new(first.parameters.kernel, support, sim.dimension().count()) else {
         unreachable!("the formulation has refused other kernels");
     };
     let periodic = sim.periodic();
     checks::periods_are_long(&periodic, support)?;
-    for wall in &walls {
-        if let Some(warning) = checks::wall_is_thick(sim.body(wall.id), spacing, support, &periodic)? {
+    Ok(Common { kernel, support, spacing, periodic, plane: sim.dimension() == Dimension::Two })
+}
+
+/// An error or a warning where a fluid would see through what bounds it.
+fn check_boundaries(
+    walls: &[WallBody],
+    moved: &[BodyId],
+    common: &Common,
+    sim: &mut SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    let Common { support, spacing, periodic, .. } = common;
+    for wall in walls {
+        if let Some(warning) = checks::wall_is_thick(sim.body(wall.id), *spacing, *support, periodic)? {
             sim.warn(warning);
         }
     }
-    let moved = moved_bodies(sim);
-    for &id in &moved {
-        checks::is_fine(sim.body(id), spacing)?;
+    moved.iter().try_for_each(|&id| checks::is_fine(sim.body(id), *spacing))
+}
+
+impl Bodies {
+    /// Adds the particles of a body behind those of the others, and gives their rows in the cloud.
+    fn add(&mut self, body: &BodyPlan, role: Role) -> Range<usize> {
+        let start = self.groups.last().map_or(0, |group| group.cloud.end);
+        let cloud = start..start + body.rows.len();
+        self.groups.push(Group {
+            body: body.id,
+            phase: body.phase,
+            rows: body.rows.clone(),
+            cloud: cloud.clone(),
+            role,
+            held: true,
+            short: false,
+        });
+        cloud
     }
-    let mut groups = Vec::new();
-    for fluid in &fluids {
-        let body = sim.body(fluid.id);
-        groups.push(group(body, Role::Fluid(fluid_state(body)?), &groups));
-    }
-    let given = fluids.into_iter().map(|fluid| (fluid.id, fluid.parameters.pressure));
-    let pressures = rest::pressures(given.collect(), support, sim)?;
-    let fluid: usize = groups.iter().map(|group| group.rows.len()).sum();
-    for WallBody { id, parameters } in &walls {
-        let surface = Surface {
-            no_slip: parameters.slip == Slip::No,
-            suction: parameters.suction,
-            velocity: parameters.surface_velocity.0,
-            moved: false,
-        };
-        groups.push(group(sim.body(*id), Role::Boundary(surface), &groups));
-    }
-    let (mut thin, plane) = (Vec::new(), sim.dimension() == Dimension::Two);
-    let suction = is_confined(&walls, sim);
-    for id in moved {
-        let surface = Surface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true };
-        let body = sim.body(id);
-        groups.push(group(body, Role::Boundary(surface), &groups));
-        if Thickness::of(body, support, &periodic)?.thin(1).is_some() {
-            let other = group(body, Role::Boundary(surface), &groups);
-            let first = other.cloud.start - body.rows.len()..other.cloud.start;
-            thin.push(ThinBody::new(body, [first, other.cloud.clone()], support, plane)?);
-            groups.push(other);
+
+    /// Adds the walls.
+    fn add_walls(&mut self, walls: &[WallBody], sim: &SimBuilder<'_>) {
+        for WallBody { id, parameters } in walls {
+            let surface = Surface {
+                no_slip: parameters.slip == Slip::No,
+                suction: parameters.suction,
+                velocity: parameters.surface_velocity.0,
+                moved: false,
+            };
+            self.add(sim.body(*id), Role::Boundary(surface));
         }
     }
-    let short = systems::short_phases(&groups, sim);
-    groups.iter_mut().for_each(|group| group.short = short.contains(&group.phase));
-    sim.sub_cycle(short);
+
+    /// Adds the bodies that the fluid moves, thin ones twice.
+    fn add_moved(
+        &mut self,
+        moved: &[BodyId],
+        suction: bool,
+        common: &Common,
+        sim: &SimBuilder<'_>,
+    ) -> Result<(), SetupError> {
+        let role = Role::Boundary(Surface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true });
+        for &id in moved {
+            let body = sim.body(id);
+            let first = self.add(body, role);
+            let thickness = Thickness::of(body, common.support, &common.periodic)?;
+            if thickness.thin(1).is_some() {
+                let copies = [first, self.add(body, role)];
+                let thickness = if common.periodic.any() {
+                    Thickness::of(body, common.support, &Periodic::NONE)?
+                } else {
+                    thickness
+                };
+                self.thin.push(ThinBody::new(body, copies, thickness, common.plane));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The cloud of the particles of all bodies, before the first step; `reach` is that of the repulsion of boundaries, m.
+fn cloud(
+    bodies: Bodies,
+    common: Common,
+    reach: f64,
+    sim: &mut SimBuilder<'_>,
+) -> Result<FlowCloud, SetupError> {
+    let Bodies { groups, fluid, thin } = bodies;
+    let Common { kernel, support, spacing, periodic, plane } = common;
     let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
     let spin = viscosities.spin;
     let is_thin = |group: &&Group| thin.iter().any(|thin| thin.copies[0] == group.cloud);
@@ -84,10 +185,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
-    let (repulsion, reach) = Repulsion::new(&groups, kernel.smoothing_length(), sim);
     let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
-    let mut cloud = FlowCloud {
-        groups: groups.clone(),
+    Ok(FlowCloud {
+        groups,
         fluid,
         kernel,
         viscosities,
@@ -106,17 +206,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         loads: Vec::new(),
         spins: if spin { vec![Lanes4::ZERO; total] } else { Vec::new() },
         neighborhoods,
-    };
-    let (walls, contacts, gravity) = (advice::walls(sim), advice::contacts(sim), sim.gravity());
-    sim.add_setup(move |setup| {
-        start(&cloud, &pressures, setup)?;
-        cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
-        checks::flow_is_slow(&mut cloud, setup.world)?;
-        advice::sinking(&cloud, &walls, &contacts, gravity, setup);
-        setup.resources.insert(cloud);
-        Ok(())
-    });
-    systems::add(&groups, spin, repulsion, sim)
+    })
 }
 
 /// Who is beside whom in the bodies to which fluids stick.
@@ -140,19 +230,6 @@ fn moved_bodies(sim: &SimBuilder<'_>) -> Vec<BodyId> {
     let mut solids: Vec<&BodyPlan> = of(BodyKind::Solid).collect();
     solids.sort_by_key(|body| body.phase);
     solids.into_iter().chain(of(BodyKind::Rigid)).map(|body| body.id).collect()
-}
-
-fn group(body: &BodyPlan, role: Role, before: &[Group]) -> Group {
-    let start = before.last().map_or(0, |group| group.cloud.end);
-    Group {
-        body: body.id,
-        phase: body.phase,
-        rows: body.rows.clone(),
-        cloud: start..start + body.rows.len(),
-        role,
-        held: true,
-        short: false,
-    }
 }
 
 fn fluid_state(body: &BodyPlan) -> Result<FluidState, SetupError> {

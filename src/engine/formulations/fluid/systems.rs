@@ -1,7 +1,5 @@
 //! The systems of a flow and of its effect on what bounds it.
 
-use std::sync::{Arc, Mutex};
-
 use super::fields::fields;
 use crate::formulations::fluid::cloud::{ACCOUNTS, Group, NEIGHBORS, Neighbors, Role};
 use crate::formulations::fluid::coupling::add_force_on_bodies;
@@ -81,6 +79,19 @@ pub fn add(
                 .after(COMPRESSION),
         );
     }
+    add_state(sim, fluid, account);
+    fields().into_iter().for_each(|field| sim.add_field(field));
+    add_force(sim, groups, fluid, FLUID_FORCE, terms);
+    if spin {
+        let system = System::new(Stage::Boundary, "fluid_spin", Spin::default()).on_phases([fluid]);
+        sim.add_system(if boundaries.is_empty() { system } else { system.after(WALL_PRESSURE) });
+    }
+    add_boundaries(sim, groups, boundaries, spin);
+    Ok(())
+}
+
+/// Adds what turns compression into density, with its energy in an account, and density into pressure.
+fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) {
     let continuity = Continuity { account, sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)
@@ -90,28 +101,23 @@ pub fn add(
             .reads::<Removed>()
             .writes::<Density>(),
     );
+    let pressure = EquationOfState { mach: Vec::new(), sums: Vec::new() };
     sim.add_system(
-        System::new(
-            Stage::Constitutive,
-            "fluid_pressure",
-            EquationOfState { mach: Vec::new(), sums: Vec::new() },
-        )
-        .on_phases([fluid])
-        .reads::<Density>()
-        .reads::<Mass>()
-        .reads::<Removed>()
-        .writes::<Pressure>(),
+        System::new(Stage::Constitutive, "fluid_pressure", pressure)
+            .on_phases([fluid])
+            .reads::<Density>()
+            .reads::<Mass>()
+            .reads::<Removed>()
+            .writes::<Pressure>(),
     );
-    fields().into_iter().for_each(|field| sim.add_field(field));
-    let gravity = sim.gravity();
-    add_force(sim, groups, fluid, FLUID_FORCE, terms);
-    if spin {
-        let system = System::new(Stage::Boundary, "fluid_spin", Spin::default()).on_phases([fluid]);
-        sim.add_system(if boundaries.is_empty() { system } else { system.after(WALL_PRESSURE) });
-    }
+}
+
+/// Adds the pressure of what bounds the flow, and the force on it.
+fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<PhaseId>, spin: bool) {
     if !boundaries.is_empty() {
+        let state = WallState { gravity: sim.gravity(), beside: Vec::new() };
         sim.add_system(
-            System::new(Stage::Boundary, WALL_PRESSURE, WallState { gravity, beside: Vec::new() })
+            System::new(Stage::Boundary, WALL_PRESSURE, state)
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
                 .reads::<Velocity>()
@@ -133,7 +139,6 @@ pub fn add(
             add_force(sim, groups, phase, label, None);
         }
     }
-    Ok(())
 }
 
 /// Adds the force on particles that take long steps; those that flow get their weight and their pair terms with it.
@@ -150,11 +155,11 @@ fn add_force(
         terms: (0..ACCOUNTS.len()).collect(),
         forces: Vec::new(),
     };
-    let parts = Arc::new(Mutex::new(of_phase().map(own).collect()));
+    let parts = sim.share(of_phase().map(own).collect::<Vec<_>>());
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
     let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
-    let force = FlowForce { phase, gravity, parts: Arc::clone(&parts), couples: Couples::default(), terms };
+    let force = FlowForce { phase, gravity, parts, couples: Couples::default(), terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
     let system = system.reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::thickness::{Thickness, axes};
 use crate::neighbors::{NeighborList, Periodic};
-use crate::plugin::{BodyPlan, SetupError};
+use crate::plugin::BodyPlan;
 
 /// A line between two particles crosses a body within this distance of one of its particles, over their spacing.
 const REACH: f64 = 0.8;
@@ -37,15 +37,10 @@ struct Frame {
 }
 
 impl ThinBody {
-    /// The body with its copies in the cloud.
-    pub fn new(
-        body: &BodyPlan,
-        copies: [Range<usize>; 2],
-        support: f64,
-        plane: bool,
-    ) -> Result<Self, SetupError> {
+    /// The body with its copies in the cloud; `thickness` is that without periods.
+    pub fn new(body: &BodyPlan, copies: [Range<usize>; 2], thickness: Thickness, plane: bool) -> Self {
         let sites: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let thickness = Thickness::of(body, support, &Periodic::NONE)?;
+        let support = thickness.support;
         let thin = thickness.thin_parts();
         let mut list = thickness.neighbors;
         // Where the body is thick it has no mid-surface, normals are zero, and all sides see the first copy.
@@ -67,7 +62,7 @@ impl ThinBody {
             frames.push(frame);
         }
         orient(&mut frames, &normals, &list);
-        Ok(Self { copies, spacing: body.spacing, frames })
+        Self { copies, spacing: body.spacing, frames }
     }
 
     /// Normal at particle `k`, of any length, from the positions of the cloud.

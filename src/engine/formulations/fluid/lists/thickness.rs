@@ -25,7 +25,8 @@ pub struct Thin {
 pub struct Thickness {
     positions: Vec<DVec3>,
     spacing: f64,
-    support: f64,
+    /// Support radius of the fluid, m.
+    pub support: f64,
     /// Neighbours within the support.
     pub neighbors: NeighborList,
     /// Extent of the neighbours along the axis in which they are closest together, m.

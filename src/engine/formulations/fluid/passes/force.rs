@@ -1,7 +1,5 @@
 //! The system that makes the forces of a flow, and its opposite on what bounds it.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use glam::DVec3;
 
 use super::blocks::BlockForce;
@@ -10,7 +8,7 @@ use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, PARTS, Role};
 use crate::formulations::fluid::rotation::Couples;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::for_each_block;
-use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
 /// Label of the system that makes the forces of fluids and walls.
@@ -22,7 +20,7 @@ pub struct FlowForce {
     /// Acceleration of gravity, m/s2; none where another system has given the particles their weight.
     pub gravity: Option<DVec3>,
     /// The parts of the force on each body, for the booking of their work.
-    pub parts: Arc<Mutex<Vec<BodyTerms>>>,
+    pub parts: Shared<Vec<BodyTerms>>,
     pub couples: Couples,
     /// Pair terms of plugins, run in the same pass.
     pub terms: Option<PhaseTerms>,
@@ -39,7 +37,7 @@ impl Run for FlowForce {
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let mut force = view.write::<Force>()?;
-        let mut parts = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut parts = step.resources.of_mut(self.parts);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
         for (number, (group, BodyTerms { forces, .. })) in groups.zip(parts.iter_mut()).enumerate() {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::pair_sums::{Between, Forces, Pairs};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
-use crate::formulations::fluid::lanes::{Own, sums};
+use crate::formulations::fluid::lanes::{FluidKernel, Own, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
 use crate::parallel::{BlockSum, FourLanes, PlaneOrSolid, Split, for_each_block, run_hot_in};
 use crate::schedule::{Step, StepError};
@@ -102,61 +102,24 @@ impl Rows<'_> {
     #[inline(always)]
     fn rows<A: FourLanes, const D: usize, const P: bool>(self, a: A) {
         let PairForce { cloud, group, adds } = *self.pass;
-        let kernel = cloud.kernel;
         let ForceRows { mut written, parts } = self.rows;
         let mut terms = self.terms;
-        let own_is_fluid = group.fluid().is_some();
-        let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
-        let factor = cloud.viscosities.factor();
+        let row = Row::of_group(cloud, group);
         let first = group.cloud.start + self.first;
         let count = written.total.len();
         // Rows whose terms have not been run begin here.
         let mut open = 0;
         for k in 0..count {
             let i = first + k;
-            let own = &cloud.records[i];
-            let lanes = Own::<D>::new(own);
             if let Some(Terms { batch, .. }) = &mut terms
                 && k == open
             {
-                batch.begin(Extras::default(), kernel.support);
+                batch.begin(Extras::default(), row.kernel.support);
             }
-            let mut is_in_batch = false;
-            let mut rest =
-                if own_is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
-            let mut forces = Forces::<D>::ZERO;
-            // By number: zipped iterators would be called.
-            for n in 0..groups.len() {
-                if rest.is_empty() {
-                    break;
-                }
-                let (other, viscosity) = (&groups[n], factor * viscosities[n]);
-                let row = take_until(&mut rest, other.cloud.end);
-                if row.is_empty() {
-                    continue;
-                }
-                let pairs = Pairs { cloud, kernel, own: lanes, i, row, viscosity };
-                match &mut terms {
-                    Some(Terms { terms, batch, .. })
-                        if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>
-                    {
-                        is_in_batch = true;
-                        let room = batch.add_row(own.volume(), row.len());
-                        pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
-                    }
-                    _ => {
-                        let between = match (own_is_fluid, other.fluid().is_some()) {
-                            (true, true) => Between::Fluids,
-                            (true, false) => Between::FluidAndBoundary,
-                            _ => Between::BoundaryAndFluid,
-                        };
-                        pairs.add::<A, P>(a, between, &mut forces);
-                    }
-                }
-            }
+            let (forces, is_in_batch) = row.sums::<A, D, P>(a, i, &mut terms);
+            let volume = cloud.records[i].volume();
             let Forces { pressure, viscous, wall } = &forces;
             let (pressure, viscous, wall) = (sums(a, pressure), sums(a, viscous), sums(a, wall));
-            let volume = own.volume();
             let force = (viscous - pressure - wall) * volume;
             let total = &mut written.total[k];
             total.0 = if adds { total.0 + force } else { force };
@@ -172,5 +135,74 @@ impl Rows<'_> {
                 }
             }
         }
+    }
+}
+
+/// What the sums over the neighbours of all particles of a group have in common.
+struct Row<'a> {
+    cloud: &'a FlowCloud,
+    group: &'a Group,
+    kernel: FluidKernel,
+    viscosities: &'a [f64],
+    factor: f64,
+    is_fluid: bool,
+}
+
+impl<'a> Row<'a> {
+    #[inline(always)]
+    fn of_group(cloud: &'a FlowCloud, group: &'a Group) -> Self {
+        Self {
+            cloud,
+            group,
+            kernel: cloud.kernel,
+            viscosities: cloud.viscosities.of(group),
+            factor: cloud.viscosities.factor(),
+            is_fluid: group.fluid().is_some(),
+        }
+    }
+
+    /// The sums over the neighbours of particle `i`, and whether the batch of the terms has its pairs within its body.
+    #[inline(always)]
+    fn sums<A: FourLanes, const D: usize, const P: bool>(
+        &self,
+        a: A,
+        i: usize,
+        terms: &mut Option<Terms<'_>>,
+    ) -> (Forces<D>, bool) {
+        let Self { cloud, group, kernel, viscosities, factor, is_fluid } = *self;
+        let own = &cloud.records[i];
+        let lanes = Own::<D>::new(own);
+        let mut rest = if is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
+        let (groups, mut forces, mut is_in_batch) = (&cloud.groups[..], Forces::<D>::ZERO, false);
+        // By number: zipped iterators would be called.
+        for n in 0..groups.len() {
+            if rest.is_empty() {
+                break;
+            }
+            let (other, viscosity) = (&groups[n], factor * viscosities[n]);
+            let row = take_until(&mut rest, other.cloud.end);
+            if row.is_empty() {
+                continue;
+            }
+            let pairs = Pairs { cloud, kernel, own: lanes, i, row, viscosity };
+            match terms {
+                Some(Terms { terms, batch, .. })
+                    if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>
+                {
+                    is_in_batch = true;
+                    let room = batch.add_row(own.volume(), row.len());
+                    pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
+                }
+                _ => {
+                    let between = match (is_fluid, other.fluid().is_some()) {
+                        (true, true) => Between::Fluids,
+                        (true, false) => Between::FluidAndBoundary,
+                        _ => Between::BoundaryAndFluid,
+                    };
+                    pairs.add::<A, P>(a, between, &mut forces);
+                }
+            }
+        }
+        (forces, is_in_batch)
     }
 }

@@ -23,7 +23,8 @@ impl BodyMotion {
     pub fn new(
         x: impl Iterator<Item = DVec3> + Clone,
         reference: impl Iterator<Item = DVec3> + Clone,
-        (spacing, plane): (f64, bool),
+        spacing: f64,
+        plane: bool,
     ) -> Option<Self> {
         let pairs = || x.clone().zip(reference.clone());
         let margin = MARGIN * spacing;
@@ -80,7 +81,7 @@ mod tests {
     }
 
     fn motion(now: &[DVec3], home: &[DVec3], plane: bool) -> Option<BodyMotion> {
-        BodyMotion::new(now.iter().copied(), home.iter().copied(), (0.01, plane))
+        BodyMotion::new(now.iter().copied(), home.iter().copied(), 0.01, plane)
     }
 
     #[test]

@@ -60,7 +60,7 @@ impl Shape {
     /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
     pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
         let now = cloud.records[self.group.cloud.clone()].iter().map(Record::position);
-        BodyMotion::new(now, reference.iter().map(|x| x.0), (self.spacing, cloud.plane))
+        BodyMotion::new(now, reference.iter().map(|x| x.0), self.spacing, cloud.plane)
     }
 
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.

@@ -112,10 +112,11 @@ fn deepest(
     reference: &[ReferencePosition],
     least: f64,
 ) -> Option<Deepest> {
+    let beside = Beside { cloud, group: other, spacing: body.spacing, reference };
     let mut found: Option<Deepest> = None;
     for (row, i) in fluid.cloud.clone().enumerate().filter(|(_, i)| cloud.records[*i].volume() > 0.0) {
         let near = part(cloud.near_row(i), &other.cloud);
-        let Some(place) = place_in_body(cloud, i, near, other, body.spacing, reference) else { continue };
+        let Some(place) = beside.place_in_body(i, near) else { continue };
         // The shape tells nothing of a body that has lost particles.
         if body.is_worn && !is_enclosed(cloud, i, near, body.spacing) {
             continue;
@@ -133,42 +134,46 @@ fn deepest(
     found
 }
 
-/// Where a fluid particle would be in a body as the scene has it; none if it is not among its particles.
-fn place_in_body(
-    cloud: &FlowCloud,
-    i: usize,
-    near: &[u32],
-    other: &Group,
+/// A body that bounds the flow, and where its particles are in the scene.
+struct Beside<'a> {
+    cloud: &'a FlowCloud,
+    group: &'a Group,
     spacing: f64,
-    reference: &[ReferencePosition],
-) -> Option<DVec3> {
-    let position = |j: u32| cloud.records[j as usize].position();
-    let from = cloud.records[i].position();
-    let away = |j: u32| -cloud.offset(from, position(j));
-    let is_there = |j: &u32| cloud.records[*j as usize].volume() > 0.0;
-    let nearest = near
-        .iter()
-        .copied()
-        .filter(is_there)
-        .min_by(|a, b| away(*a).length().total_cmp(&away(*b).length()))?;
-    let x = away(nearest);
-    if x.length() > NEAREST * spacing {
-        return None;
+    reference: &'a [ReferencePosition],
+}
+
+impl Beside<'_> {
+    /// Where fluid particle `i` would be in the body as the scene has it; none if it is not among the particles of it that are near.
+    fn place_in_body(&self, i: usize, near: &[u32]) -> Option<DVec3> {
+        let Self { cloud, group, spacing, reference } = *self;
+        let position = |j: u32| cloud.records[j as usize].position();
+        let from = cloud.records[i].position();
+        let away = |j: u32| -cloud.offset(from, position(j));
+        let is_there = |j: &u32| cloud.records[*j as usize].volume() > 0.0;
+        let nearest = near
+            .iter()
+            .copied()
+            .filter(is_there)
+            .min_by(|a, b| away(*a).length().total_cmp(&away(*b).length()))?;
+        let x = away(nearest);
+        if x.length() > NEAREST * spacing {
+            return None;
+        }
+        let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
+        for &j in near.iter().filter(|j| is_there(j)) {
+            let [now, home] = apart(cloud, group, reference, from, [nearest, j]);
+            moment += dyad(now, now);
+            map += dyad(home, now);
+        }
+        if cloud.plane {
+            moment.z_axis.z = 1.0;
+            map.z_axis.z = 1.0;
+        }
+        // Too few particles to fit a map to: those of a body that has barely moved.
+        let fits = moment.determinant() > 1e-6 * spacing.powi(if cloud.plane { 4 } else { 6 });
+        let moved = if fits { map * (moment.inverse() * x) } else { x };
+        Some(reference[nearest as usize - group.cloud.start].0 + moved)
     }
-    let (mut moment, mut map) = (DMat3::ZERO, DMat3::ZERO);
-    for &j in near.iter().filter(|j| is_there(j)) {
-        let [now, home] = apart(cloud, other, reference, from, [nearest, j]);
-        moment += dyad(now, now);
-        map += dyad(home, now);
-    }
-    if cloud.plane {
-        moment.z_axis.z = 1.0;
-        map.z_axis.z = 1.0;
-    }
-    // Too few particles to fit a map to: those of a body that has barely moved.
-    let fits = moment.determinant() > 1e-6 * spacing.powi(if cloud.plane { 4 } else { 6 });
-    let moved = if fits { map * (moment.inverse() * x) } else { x };
-    Some(reference[nearest as usize - other.cloud.start].0 + moved)
 }
 
 /// Mean direction of the particles of a body, over the sum of their distances, below which they surround a fluid particle.
