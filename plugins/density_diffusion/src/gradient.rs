@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass, keep_rows};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, RowPass, keep_rows};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{FourLanes, Vector};
 use meshless_engine::plugin::SimBuilder;
-use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Density};
 
 meshless_engine::column! {
@@ -22,7 +22,9 @@ pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
     sim.add_system(
         System::new(Stage::Boundary, "density_gradient", Gradient { bodies: bodies.clone() })
             .on_bodies(bodies)
-            .reads::<Density>()
+            .after_any("wall_pressure")
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_near::<Density>()
             .writes::<DensityGradient>(),
     );
 }

@@ -8,12 +8,12 @@ mod local;
 mod response;
 
 use meshless_engine::formulations::fluid::{
-    DensityShift, FlowCloud, Repayment, SHIFTING_ENERGY, displace, keep_rows,
+    DensityShift, FLOW_RECORDS, FlowCloud, Repayment, SHIFTING_ENERGY, displace, keep_rows,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{AccountKind, Run, Shared, Stage, Step, StepError, System};
+use meshless_engine::schedule::{AccountKind, Mode, Run, Shared, Stage, Step, StepError, System};
 use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -83,11 +83,13 @@ impl Plugin for ParticleShifting {
                 .on_phases(phases)
                 .after_any("local_damping")
                 .after_any("xsph")
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads::<Mass>()
                 .reads::<Density>()
                 .reads::<Removed>()
                 .writes::<Velocity>()
                 .writes::<DensityShift>()
+                .reads_near::<PendingDilation>()
                 .writes::<PendingDilation>()
                 .adds::<Position>(),
         );

@@ -5,11 +5,11 @@
 //! no better than particles are evenly spread. Energy that it has given is paid back by friction between neighbours.
 
 use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, Repayment, RowPass, keep_rows};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, Repayment, RowPass, keep_rows};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{FourLanes, Vector, sum_over_blocks};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Force, Mass, Pressure, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -37,6 +37,7 @@ impl Plugin for TensileControl {
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
                 .on_bodies(bodies.clone())
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads::<Pressure>()
                 .reads::<Velocity>()
                 .adds::<Force>(),
@@ -48,6 +49,7 @@ impl Plugin for TensileControl {
                 .after_any("local_damping")
                 .after_any("xsph")
                 .after_any("particle_shifting")
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads::<Mass>()
                 .reads::<Removed>()
                 .writes::<Velocity>(),

@@ -4,13 +4,13 @@
 
 use std::ops::Range;
 
-use meshless_engine::formulations::fluid::{FlowCloud, RowPass, displace, keep_rows};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, RowPass, displace, keep_rows};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::parallel::{FourLanes, Vector};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
-use meshless_engine::world::{BodySet, Mass, Position, Velocity};
+use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
+use meshless_engine::world::{BodySet, Mass, Position, Removed, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -54,8 +54,10 @@ impl Plugin for Xsph {
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_bodies(bodies)
                 .after_any("local_damping")
-                .reads::<Velocity>()
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_near::<Velocity>()
                 .reads::<Mass>()
+                .reads::<Removed>()
                 .adds::<Position>(),
         );
         Ok(())

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::load::LoadLaw;
 use super::part::Part;
-use crate::formulations::fluid::FlowCloud;
+use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};
-use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Mass, PhaseId};
 
 /// Adds the system that tells what a load does to fluids, where anything bounds them.
@@ -25,7 +25,7 @@ pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut
     let accelerations = vec![Vec::new(); parts.len()];
     let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
     let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
-    sim.add_system(system.on_phases(phases).reads::<Mass>());
+    sim.add_system(system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds).reads::<Mass>());
 }
 
 struct FlowLoad {

@@ -9,7 +9,7 @@ use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
 use crate::parallel::{BlockLoop, EightLanes, FourLanes, HotLoop, run_blocks_on, run_hot_on};
 use crate::schedule::{Access, Mode};
-use crate::world::{Column, DensityRate, Force, MissingColumn, PhaseView, Velocity};
+use crate::world::{DensityRate, Force, MissingColumn, PhaseView};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
@@ -168,7 +168,7 @@ type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 
 /// A pair term whose type is erased.
 pub(super) trait ErasedTerm: Send + Sync {
-    /// Columns it reads.
+    /// Columns it reads, those of neighbours as such; not the relative velocity, which whoever runs the term gives.
     fn access(&self) -> Vec<Access>;
     /// What it reads of a pair.
     fn reads(&self) -> PairReads;
@@ -185,11 +185,10 @@ pub(super) trait ErasedTerm: Send + Sync {
 
 impl<T: PairTerm> ErasedTerm for T {
     fn access(&self) -> Vec<Access> {
-        let mut access = T::ReadI::access();
-        if T::READS_VELOCITY {
-            access.push(Access { column: Velocity::NAME, mode: Mode::Reads });
-        }
-        access.extend(T::ReadJ::access());
+        let of_j = T::ReadJ::access();
+        let is_alone = |own: &Access| of_j.iter().all(|near| near.column != own.column);
+        let mut access: Vec<Access> = T::ReadI::access().into_iter().filter(is_alone).collect();
+        access.extend(of_j.iter().map(|near| Access { mode: Mode::ReadsNear, ..*near }));
         access
     }
 

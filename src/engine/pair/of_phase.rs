@@ -92,11 +92,17 @@ impl PhaseTerms {
         }))
     }
 
-    /// What the terms read, and the density rates that they write.
+    /// Columns that the terms read, and the density rates that they write.
     pub fn access(&self, sim: &SimBuilder<'_>, phase: PhaseId) -> Vec<Access> {
         let rates = sim.columns(phase).get(DensityRate::NAME).is_some();
         let rates = rates.then_some(Access { column: DensityRate::NAME, mode: Mode::Writes });
-        rates.into_iter().chain(self.terms.iter().flat_map(|term| term.term.access())).collect()
+        let mut access: Vec<Access> = rates.into_iter().collect();
+        for read in self.terms.iter().flat_map(|term| term.term.access()) {
+            if !access.contains(&read) {
+                access.push(read);
+            }
+        }
+        access
     }
 
     /// Whether a body has terms.

@@ -9,7 +9,7 @@ use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, PhaseId};
+use crate::world::{BodyId, Force, PhaseId, Position, Velocity};
 
 thread_local! {
     /// The geometry of some rows; kept, so that a step does not allocate.
@@ -49,10 +49,14 @@ pub fn add_pair_systems(
 ) -> Result<(), SetupError> {
     let Some(terms) = PhaseTerms::take(sim, phase)? else { return Ok(()) };
     let bodies = terms.bodies();
-    let access = terms.access(sim, phase);
+    let (access, reads) = (terms.access(sim, phase), terms.reads);
     let pass = PairPass { phase, source, terms, bodies };
-    let system = System::new(Stage::Rates, "pair_terms", pass).on_phases([phase]).adds::<Force>();
-    sim.add_system(system.touches_all(access));
+    let system = System::new(Stage::Rates, "pair_terms", pass)
+        .on_phases([phase])
+        .reads_near::<Position>()
+        .adds::<Force>()
+        .touches_all(access);
+    sim.add_system(if reads.velocity { system.reads_near::<Velocity>() } else { system });
     Ok(())
 }
 

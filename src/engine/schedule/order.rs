@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
-use super::system::{Mode, System};
+use super::system::{Access, Mode, System};
 use super::turn::Pace;
 use crate::world::PhaseId;
 
@@ -137,8 +137,8 @@ impl Schedule {
                 };
                 let _ = write!(text, "  {}{when}", system.label);
                 for (mode, verb) in Mode::VERBS {
-                    let columns: Vec<_> =
-                        system.access.iter().filter(|a| a.mode == mode).map(|a| a.column).collect();
+                    let all = system.access.iter().chain(&system.packed);
+                    let columns: Vec<_> = all.filter(|a| a.mode == mode).map(|a| a.column).collect();
                     if !columns.is_empty() {
                         let _ = write!(text, "; {verb} {}", columns.join(", "));
                     }
@@ -156,16 +156,18 @@ impl Schedule {
         text
     }
 
-    /// Of every system: the columns that it reads near ([`Mode::ReadsNear`]) and that have been changed since they were last read so. Several machines would
+    /// Of every system: the columns and packed rows that it reads near ([`Mode::ReadsNear`]) and that have been changed since they were last read so. Several machines would
     /// exchange them before the system.
     fn exchanges(&self) -> Vec<Vec<&'static str>> {
         let mut found = vec![Vec::new(); self.systems.len()];
+        let near = |access: &&Access| access.mode == Mode::ReadsNear;
+        let changes = |access: &&Access| matches!(access.mode, Mode::Writes | Mode::Adds);
         // Who has changed what since the last exchange, from one step to the next.
-        let mut changed: Vec<(usize, &'static str)> = Vec::new();
+        let (mut changed, mut changed_packed) = (Vec::<(usize, &str)>::new(), Vec::<&str>::new());
         for _ in 0..2 {
             for (k, system) in self.systems.iter().enumerate() {
                 found[k].clear();
-                for near in system.access.iter().filter(|access| access.mode == Mode::ReadsNear) {
+                for near in system.access.iter().filter(near) {
                     let stale = |(by, column): &(usize, &str)| {
                         *column == near.column && self.systems[*by].shares_rows_with(system)
                     };
@@ -174,9 +176,14 @@ impl Schedule {
                         found[k].push(near.column);
                     }
                 }
-                let changes =
-                    system.access.iter().filter(|access| matches!(access.mode, Mode::Writes | Mode::Adds));
-                changed.extend(changes.map(|access| (k, access.column)));
+                for near in system.packed.iter().filter(near) {
+                    if changed_packed.contains(&near.column) {
+                        changed_packed.retain(|rows| *rows != near.column);
+                        found[k].push(near.column);
+                    }
+                }
+                changed.extend(system.access.iter().filter(changes).map(|access| (k, access.column)));
+                changed_packed.extend(system.packed.iter().filter(changes).map(|access| access.column));
             }
         }
         found
@@ -344,5 +351,23 @@ mod tests {
         assert!(line("first").ends_with(&format!("{told}{}", Position::NAME)), "{text}");
         // Positions are those of the first; masses never change.
         assert!(line("second").contains("reads near") && !line("second").contains(told), "{text}");
+    }
+
+    #[test]
+    fn packed_rows_that_another_phase_has_changed_are_told() {
+        let of = |stage, label: &str, phase, mode| {
+            System::new(stage, label, |_: &mut Step<'_>| Ok(()))
+                .on_phases([PhaseId(phase)])
+                .touches_packed("records", mode)
+        };
+        let systems = vec![
+            of(Stage::Boundary, "walls", 1, Mode::Writes),
+            of(Stage::Rates, "force on fluids", 0, Mode::ReadsNear),
+            of(Stage::External, "load", 0, Mode::ReadsNear),
+        ];
+        let text = Schedule::new(systems, &[]).expect("an order").describe();
+        let told = "reads near records; rows of neighbours changed since they were last read: records";
+        assert!(text.contains(&format!("force on fluids; {told}")), "{text}");
+        assert!(text.ends_with("load; reads near records\n"), "{text}");
     }
 }

@@ -86,6 +86,8 @@ pub struct System {
     pub(super) label: String,
     pub(super) stage: Stage,
     pub(super) access: Vec<Access>,
+    /// Access to rows that are packed from several phases.
+    pub(super) packed: Vec<Access>,
     pub(super) phases: Option<Vec<PhaseId>>,
     bodies: Option<BodySet>,
     long: bool,
@@ -103,6 +105,7 @@ impl System {
             label: label.into(),
             stage,
             access: Vec::new(),
+            packed: Vec::new(),
             phases: None,
             bodies: None,
             long: false,
@@ -191,6 +194,13 @@ impl System {
     /// Declares access to the column of that name, or to something that systems share.
     pub fn touches(mut self, column: &'static str, mode: Mode) -> Self {
         self.access.push(Access { column, mode });
+        self
+    }
+
+    /// Declares access to rows that a formulation packs from columns of several phases, by the name that it gives them: systems that touch them share
+    /// rows whatever their phases are.
+    pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
+        self.packed.push(Access { column: rows, mode });
         self
     }
 
@@ -308,11 +318,11 @@ impl System {
     }
 
     pub(super) fn conflict_with(&self, other: &System) -> Option<&'static str> {
-        if !self.shares_rows_with(other) {
-            return None;
-        }
-        let pairs = self.access.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));
-        pairs.filter(|(a, b)| a.conflicts(b)).map(|(a, _)| a.column).next()
+        let columns = if self.shares_rows_with(other) { &self.access[..] } else { &[] };
+        let of_columns = columns.iter().flat_map(|a| other.access.iter().map(move |b| (a, b)));
+        let of_packed = self.packed.iter().flat_map(|a| other.packed.iter().map(move |b| (a, b)));
+        let mut pairs = of_columns.chain(of_packed);
+        pairs.find(|(a, b)| a.conflicts(b)).map(|(a, _)| a.column)
     }
 }
 
@@ -329,6 +339,17 @@ mod tests {
         let writes = System::each::<(&mut Force,)>(Stage::External, "writes", bodies(), |_, _| ());
         assert_eq!(adds("one").conflict_with(&adds("other")), None);
         assert_eq!(adds("one").conflict_with(&writes), Some(Force::NAME));
+    }
+
+    #[test]
+    fn systems_that_touch_packed_rows_need_an_order_whatever_their_phases_are() {
+        let of = |phase, mode| {
+            System::new(Stage::Rates, "of a phase", |_: &mut Step<'_>| Ok(()))
+                .on_phases([PhaseId(phase)])
+                .touches_packed("records", mode)
+        };
+        assert_eq!(of(0, Mode::Writes).conflict_with(&of(1, Mode::ReadsNear)), Some("records"));
+        assert_eq!(of(0, Mode::Reads).conflict_with(&of(1, Mode::ReadsNear)), None);
     }
 
     #[test]

@@ -29,16 +29,16 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
     let contacts = sim.share(contacts);
     let mut system = System::new(Stage::Boundary, CONTACT, ContactSystem(contacts));
     if deforms {
-        system = system.reads::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
+        system = system.reads_near::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
     }
     sim.add_system(
         system
             .on_phases(phases.clone())
-            .reads::<Position>()
-            .reads::<ReferencePosition>()
-            .reads::<Velocity>()
-            .reads::<Mobility>()
-            .reads::<Removed>()
+            .reads_near::<Position>()
+            .reads_near::<ReferencePosition>()
+            .reads_near::<Velocity>()
+            .reads_near::<Mobility>()
+            .reads_near::<Removed>()
             .touches("rigid_bodies", Mode::Adds),
     );
     let push = move |step: &mut Step<'_>| step.resources.of(contacts).push(step);

@@ -56,6 +56,8 @@ mod assemble;
 mod tests;
 
 pub use assemble::add_systems;
+pub(crate) use cloud::FLOW_LOADS;
+pub use cloud::FLOW_RECORDS;
 pub use cloud::{FlowCloud, FluidState, Group, Near, Role, Surface};
 pub use cloud::{FourNear, Fours, RowPass, SmallestEigenvalue, smallest_eigenvalue};
 pub use coupling::damp_ringing;

@@ -1,10 +1,12 @@
 //! The systems of a flow and of its effect on what bounds it.
 
 use super::fields::fields;
-use crate::formulations::fluid::cloud::{ACCOUNTS, Group, NEIGHBORS, Neighbors, Role};
+use crate::formulations::fluid::cloud::{
+    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, Group, NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
+};
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{Continuity, EquationOfState};
-use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce};
+use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::{Couples, Spin};
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{PreviousVelocity, RangeShortfall, Repulsion, WallState};
@@ -13,9 +15,7 @@ use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::schedule::{Mode, Stage, System};
-use crate::world::{
-    Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed, Velocity,
-};
+use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed};
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
 const COMPRESSION: &str = "fluid_compression";
@@ -65,16 +65,24 @@ pub fn add(
     watch::add(phases.clone(), sim.body(groups[0].body).spacing, sim);
     let lists = System::new(Stage::Neighbors, NEIGHBORS, Neighbors::default())
         .on_phases(phases.iter().copied())
+        .touches_packed(FLOW_RECORDS, Mode::Writes)
+        .touches_packed(FLOW_LOADS, Mode::Writes)
         .after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
     sim.add_system(
-        System::new(Stage::Neighbors, COMPRESSION, Compression).on_phases([fluid]).after(NEIGHBORS),
+        System::new(Stage::Neighbors, COMPRESSION, Compression)
+            .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .touches_packed(COMPRESSION_RATES, Mode::Writes)
+            .after(NEIGHBORS),
     );
     if !boundaries.is_empty() {
         sim.add_system(
             System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
                 .on_phases(phases)
-                .reads::<ReferencePosition>()
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(REPELLED, Mode::Writes)
+                .reads_near::<ReferencePosition>()
                 .writes::<RangeShortfall>()
                 .after(COMPRESSION),
         );
@@ -83,7 +91,10 @@ pub fn add(
     fields().into_iter().for_each(|field| sim.add_field(field));
     add_force(sim, groups, fluid, FLUID_FORCE, terms);
     if spin {
-        let system = System::new(Stage::Boundary, "fluid_spin", Spin::default()).on_phases([fluid]);
+        let system = System::new(Stage::Boundary, "fluid_spin", Spin::default())
+            .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .touches_packed(SPINS, Mode::Writes);
         sim.add_system(if boundaries.is_empty() { system } else { system.after(WALL_PRESSURE) });
     }
     add_boundaries(sim, groups, boundaries, spin);
@@ -96,6 +107,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)
             .on_phases([fluid])
+            .touches_packed(COMPRESSION_RATES, Mode::Reads)
             .reads::<DensityRate>()
             .reads::<Mass>()
             .reads::<Removed>()
@@ -105,6 +117,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
     sim.add_system(
         System::new(Stage::Constitutive, "fluid_pressure", pressure)
             .on_phases([fluid])
+            .touches_packed(FLOW_RECORDS, Mode::Writes)
             .reads::<Density>()
             .reads::<Mass>()
             .reads::<Removed>()
@@ -120,7 +133,9 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
             System::new(Stage::Boundary, WALL_PRESSURE, state)
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
-                .reads::<Velocity>()
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(FLOW_RECORDS, Mode::Writes)
+                .touches_packed(FLOW_LOADS, Mode::ReadsNear)
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );
@@ -161,7 +176,7 @@ fn add_force(
     let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
     let force = FlowForce { phase, gravity, parts, couples: Couples::default(), terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
-    let system = system.reads::<Mass>().reads::<Removed>();
+    let system = reads_flow(system).reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });
     add_work_systems(sim, phase, ACCOUNTS.map(str::to_owned).to_vec(), parts);
 }

@@ -2,6 +2,8 @@
 
 mod group;
 
+mod shared;
+
 mod parts;
 
 mod viscosities;
@@ -31,5 +33,6 @@ pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{NEIGHBORS, Neighbors};
 pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
+pub use shared::{COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, REPELLED, SPINS};
 pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};

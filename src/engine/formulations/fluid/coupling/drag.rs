@@ -49,6 +49,11 @@ pub fn add(sim: &mut SimBuilder<'_>, bodies: &BodySet, phase: PhaseId, label: &s
         System::new(Stage::Rates, format!("{label}_drag"), Drag { bodies: bodies.clone() })
             .on_phases([phase])
             .reads::<Velocity>()
+            .reads::<CouplingDrag>()
+            .writes::<CouplingMotion>()
+            .writes::<CouplingDamping>()
+            .writes::<CouplingImpulse>()
+            .writes::<CouplingWork>()
             .adds::<Force>(),
     );
 }

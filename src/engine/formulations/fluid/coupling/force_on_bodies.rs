@@ -13,7 +13,7 @@ use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchang
 use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::Record;
-use crate::formulations::fluid::passes::PairForce;
+use crate::formulations::fluid::passes::{PairForce, reads_flow};
 use crate::formulations::fluid::rotation::Couples;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
@@ -66,9 +66,12 @@ pub fn add_force_on_bodies(
         sums: Vec::new(),
     };
     sim.add_system(
-        System::new(Stage::FinalIntegrate, label, coupling)
+        reads_flow(System::new(Stage::FinalIntegrate, label, coupling))
             .on_phases([phase])
             .in_long_steps()
+            .writes::<CouplingForce>()
+            .writes::<CouplingFriction>()
+            .writes::<CouplingPressure>()
             .reads::<Mass>()
             .reads::<Mobility>()
             .reads::<Removed>()

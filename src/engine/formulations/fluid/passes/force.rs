@@ -4,15 +4,23 @@ use glam::DVec3;
 
 use super::blocks::BlockForce;
 use super::pair_force::PairForce;
-use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, PARTS, Role};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FLOW_RECORDS, FlowCloud, PARTS, REPELLED, Role, SPINS};
 use crate::formulations::fluid::rotation::Couples;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::for_each_block;
-use crate::schedule::{AccountKind, Run, Shared, Step, StepError};
+use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
 /// Label of the system that makes the forces of fluids and walls.
 pub const FLUID_FORCE: &str = "fluid_force";
+
+/// Declares what the force of a flow reads of the particles beside each.
+pub fn reads_flow(system: System) -> System {
+    system
+        .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+        .touches_packed(SPINS, Mode::ReadsNear)
+        .touches_packed(REPELLED, Mode::Reads)
+}
 
 /// Makes the forces on the particles of one phase.
 pub struct FlowForce {

@@ -14,5 +14,5 @@ mod reaction;
 
 pub use blocks::keep_rows;
 pub use compression::Compression;
-pub use force::{FLUID_FORCE, FlowForce};
+pub use force::{FLUID_FORCE, FlowForce, reads_flow};
 pub use pair_force::PairForce;

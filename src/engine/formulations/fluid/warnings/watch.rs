@@ -6,10 +6,10 @@ use super::friction::Friction;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
 use super::unevenness::Unevenness;
-use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
-use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{ParticleId, PhaseId, Position, ReferencePosition};
 
 /// Steps between two looks for particles inside of something: what has entered stays for some time.
@@ -46,8 +46,9 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
     sim.add_system(
         System::new(Stage::Record, "fluid_watch", watch)
             .on_phases(phases)
+            .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
             .reads::<Position>()
-            .reads::<ReferencePosition>()
+            .reads_near::<ReferencePosition>()
             .reads::<ParticleId>(),
     );
 }

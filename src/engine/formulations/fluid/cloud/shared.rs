@@ -1,0 +1,12 @@
+//! Names of what the systems of a flow share beside columns, for their declared access.
+
+/// Position, volume, velocity and pressure of every particle of a flow ([`Record`](crate::formulations::fluid::Record)).
+pub const FLOW_RECORDS: &str = "flow_records";
+/// Rates of compression of fluid particles.
+pub const COMPRESSION_RATES: &str = "compression_rates";
+/// Fluid particles that boundaries repel.
+pub const REPELLED: &str = "repelled_particles";
+/// Accelerations of fluid particles by loads.
+pub const FLOW_LOADS: &str = "flow_loads";
+/// Spins of fluid particles.
+pub const SPINS: &str = "fluid_spins";
