@@ -39,4 +39,5 @@ pub(super) use internal_force::InternalForce;
 pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
 pub(super) use reach::{Ellipsoid, Ellipsoids};
 pub use rows::Site;
+pub(super) use set_up::BodySetUp;
 pub(super) use spread::fit;

@@ -24,7 +24,7 @@ use crate::world::{
 };
 
 /// A body, with what its bonds are made of.
-pub(super) struct BodySetUp {
+pub(in crate::formulations) struct BodySetUp {
     pub id: BodyId,
     pub kernel: KernelName,
     /// Support radius, m.
@@ -37,7 +37,8 @@ pub(super) struct BodySetUp {
 }
 
 impl BodySetUp {
-    fn kernel(&self, dimension: usize) -> BodyKernel {
+    /// Its kernel in that many dimensions.
+    pub fn kernel(&self, dimension: usize) -> BodyKernel {
         let Some(kernel) = Kernel::new(self.kernel, dimension) else {
             unreachable!("every kernel has a two- and a three-dimensional form");
         };

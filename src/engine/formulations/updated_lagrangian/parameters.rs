@@ -6,9 +6,9 @@ use serde::Deserialize;
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::force::InternalForce;
 use super::phase::UpdatedRows;
-use super::set_up::{BodySetUp, SetUp};
+use super::set_up::SetUp;
 use super::system::UpdatedSolids;
-use crate::formulations::total_lagrangian::{BondPairs, Held};
+use crate::formulations::total_lagrangian::{BodySetUp, BondPairs, Held};
 use crate::kernels::KernelName;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
@@ -110,6 +110,7 @@ impl Formulation for UpdatedLagrangian {
             id: *id,
             kernel: parameters.kernel,
             support: parameters.support * sim.body(*id).spacing,
+            neighbors: None,
             estimate: solid.estimate,
             hessian: solid.hessian,
             repeats,

@@ -5,38 +5,16 @@ use glam::{DMat3, DVec3};
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
-use crate::formulations::total_lagrangian::{BodyKernel, Bonds, Cracks, Held, HessianRows};
-use crate::kernels::{Kernel, KernelName};
+use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
 use crate::removal::Leaving;
-use crate::solids::{HessianDifference, StepEstimate};
-use crate::symmetry::{Ghosts, Repeat};
+use crate::solids::StepEstimate;
+use crate::symmetry::Ghosts;
 use crate::world::{
-    BodyId, DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius,
-    World,
+    DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
 };
-
-/// A body, with what its lists are made of.
-pub(super) struct BodySetUp {
-    pub id: BodyId,
-    pub kernel: KernelName,
-    /// Support radius, m.
-    pub support: f64,
-    pub estimate: StepEstimate,
-    pub hessian: Option<HessianDifference>,
-    pub repeats: Vec<Repeat>,
-}
-
-impl BodySetUp {
-    fn kernel(&self, dimension: usize) -> BodyKernel {
-        let Some(kernel) = Kernel::new(self.kernel, dimension) else {
-            unreachable!("every kernel has a two- and a three-dimensional form");
-        };
-        BodyKernel { body: self.id, kernel, support: Some(self.support) }
-    }
-}
 
 /// The bodies of a phase before the first step.
 pub(super) struct SetUp {
