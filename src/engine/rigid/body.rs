@@ -114,6 +114,13 @@ impl RigidBody {
         direction.dot(free * direction) / self.mass + lever.dot(spin)
     }
 
+    /// Acceleration of the point at `place`, m/s2, by forces about the centre.
+    #[inline]
+    pub fn response_at(&self, place: DVec3, forces: &Wrench) -> DVec3 {
+        let spin = self.constraint.angular_response(&self.inertia, self.state.rotation, forces.torque);
+        self.constraint.free_axes() * forces.force / self.mass + spin.cross(place - self.state.center)
+    }
+
     /// Whether nothing that touches it can move it.
     pub fn is_driven(&self) -> bool {
         self.constraint.is_complete()

@@ -18,8 +18,9 @@ pub fn restitution(zeta: f64) -> f64 {
     }
 }
 
-/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite.
-const LEAST: f64 = 1e-3;
+/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5 more than the steps of an impact bear: it would turn the velocity
+/// around within one.
+const LEAST: f64 = 0.01;
 
 /// Damping ratio of a restitution from 0 to 1.
 pub fn damping_ratio(wanted: f64) -> f64 {
@@ -62,10 +63,10 @@ mod tests {
 
     #[test]
     fn the_damping_ratio_is_the_inverse() {
-        for wanted in [0.001, 0.01, 0.1, 0.36, 0.5717, 0.9, 0.999, 1.0] {
+        for wanted in [0.01, 0.1, 0.36, 0.5717, 0.9, 0.999, 1.0] {
             let zeta = damping_ratio(wanted);
             assert!((restitution(zeta) - wanted).abs() < 1e-9, "{wanted}: {zeta}");
         }
-        assert!(damping_ratio(0.0).is_finite());
+        assert!(damping_ratio(0.0) < 6.0);
     }
 }

@@ -60,16 +60,18 @@ impl SurfaceContact {
                 if of_particles.is_none() {
                     contacts.reserve(nodes.len());
                 }
-                let on = OnSurface { interaction, sides, nodes, tool, dt };
+                let mut on = OnSurface { interaction, sides, nodes, tool, dt, together: None };
                 let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
                     on.touching(node, near_nodes)
                 });
+                on.together = on.act_together(contacts.met());
                 let energies = contacts.respond(
                     nodes.len(),
                     |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
                     |(node, _), history, energies| on.end(node, history, energies),
                 );
-                (energies, near, on.expected(near.held, speed, *gravity), nodes.len())
+                let expected = on.expected(&near, speed, *gravity);
+                (energies, near, expected, nodes.len())
             })?;
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {

@@ -4,6 +4,8 @@ mod nearby;
 
 mod reaction;
 
+mod together;
+
 mod on_surface;
 
 mod contact;

@@ -4,12 +4,14 @@ use glam::DVec3;
 
 use super::nearby::NEAR;
 use super::reaction::NodePush;
+use super::together::{Spot, Together};
 use crate::contact::active::Least;
 use crate::contact::bodies::{Nearness, NodeMotion, NodeView, Sides};
 use crate::contact::laws::Touch;
-use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::BlockSum;
 use crate::rigid::RigidBody;
+use crate::world::sum_by_row;
 
 /// A node that touches.
 #[derive(Clone, Copy, Default)]
@@ -29,12 +31,15 @@ pub(in crate::contact) struct NearNodes {
     pub least: Least,
     /// The first particle near the surface that nothing moves but conditions.
     pub held: Option<usize>,
+    /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
+    pub massless: usize,
 }
 
 impl BlockSum for NearNodes {
     fn add(&mut self, next: &Self) {
         self.least.add(&next.least);
         self.held = self.held.or(next.held);
+        self.massless += next.massless;
     }
 }
 
@@ -46,6 +51,8 @@ pub(super) struct OnSurface<'a> {
     pub tool: &'a RigidBody,
     /// Length of the step, s.
     pub dt: f64,
+    /// What the contacts of the step do to the rigid bodies together, if dashpots ask for that.
+    pub together: Option<Together>,
 }
 
 impl OnSurface<'_> {
@@ -64,7 +71,8 @@ impl OnSurface<'_> {
             return None;
         }
         let held = nodes.is_held(i).then_some(i);
-        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held });
+        let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
+        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless });
         let touches = near.overlap > 0.0;
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| NodeTouch { x, shift: own_place - x, point: nearest.point, near })
@@ -96,7 +104,11 @@ impl OnSurface<'_> {
             velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
         };
         let own = motion.inverse_mass(arm, place + shift);
-        let inverse_mass = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
+        let alone = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
+        let among = self.together.as_ref().map_or(1.0, |together| {
+            together.share(&self.spot(i, touch), nodes, tool, alone(normal), own(normal))
+        });
+        let inverse_mass = |n: DVec3| among * alone(n);
         let response = interaction.respond(&state, inverse_mass, *dt, before);
         losses.add_work(1.0, &response.history, state.velocity, *dt);
         losses.keep(1.0, before, &response.history);
@@ -113,9 +125,28 @@ impl OnSurface<'_> {
         (response.history, NodePush { arm, place, shift, force, center: x, turning, heat, stiffness })
     }
 
+    /// What all contacts of the step do to rigid bodies, where dashpots ask for it.
+    pub fn act_together(&self, met: &[(PairKey, NodeTouch)]) -> Option<Together> {
+        let Self { interaction, nodes, tool, .. } = self;
+        let shares_a_mass = matches!(nodes, NodeView::Rigid(_)) || !tool.is_driven();
+        (interaction.damping_ratio > 0.0 && shares_a_mass).then(|| {
+            let node = |k: usize| met[k].0.0 as usize;
+            let of = |k: usize| Together::of(&self.spot(node(k), &met[k].1), nodes, tool);
+            sum_by_row(nodes.len(), met.len(), &node, &of)
+        })
+    }
+
+    fn spot(&self, i: usize, touch: &NodeTouch) -> Spot {
+        let Self { interaction, nodes, tool, .. } = self;
+        let NodeTouch { x, shift, point, near } = *touch;
+        let place = nodes.place(i, x, near.arms[0], || tool.place(point));
+        let stiffness = interaction.law.at(&self.touch(i, near.overlap)).along(near.scale).stiffness;
+        Spot { place, shift, normal: near.normal, stiffness }
+    }
+
     /// Takes in the energy of a contact that has ended.
     pub fn end(&self, node: u32, history: &History, energies: &mut ContactEnergy) {
-        let Self { interaction, sides, nodes, tool, dt } = self;
+        let Self { interaction, sides, nodes, tool, dt, .. } = self;
         let i = node as usize;
         let motion = nodes.motion(i, !interaction.is_elastic());
         self.add_work_before(node, &motion, history, &mut energies.losses);
@@ -152,12 +183,14 @@ impl OnSurface<'_> {
     }
 
     /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, of which one is
-    /// `held`, 1/s2: a spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise.
-    pub fn expected(&self, held: Option<usize>, speed: f64, gravity: f64) -> f64 {
+    /// held, 1/s2: a spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise. All nodes that are near may
+    /// touch at once.
+    pub fn expected(&self, near: &NearNodes, speed: f64, gravity: f64) -> f64 {
         let Self { interaction, nodes, tool, .. } = self;
+        let count = near.massless.max(1) as f64;
         let inverse = |body: &RigidBody| if body.is_driven() { 0.0 } else { 1.0 / body.mass };
         let pull = |body: &RigidBody| (body.state.force / body.mass).length();
-        let (node, inverse_mass, own_pull) = match (nodes, held) {
+        let (node, inverse_mass, own_pull) = match (nodes, near.held) {
             (NodeView::Rigid(body), _) => (0, inverse(body) + inverse(tool), pull(body)),
             (NodeView::Particles(_), Some(node)) => (node, inverse(tool), 0.0),
             (NodeView::Particles(_), None) => return 0.0,
@@ -169,6 +202,7 @@ impl OnSurface<'_> {
         // A body at rest may fall: what it gains over the length of a node counts as its speed.
         let gain = gravity.max(own_pull).max(pull(tool));
         let speed = speed + (2.0 * gain * touch.length).sqrt();
+        let inverse_mass = count * inverse_mass;
         interaction.law.stiffness_of_impact(&touch, 1.0 / inverse_mass, speed) * inverse_mass
     }
 
