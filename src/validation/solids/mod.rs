@@ -19,6 +19,7 @@ pub mod rubber_rings;
 pub mod taylor;
 pub mod taylor_bars;
 pub mod taylor_plane;
+pub mod taylor_soft;
 pub mod tensile_failure;
 pub mod thick_ring;
 pub mod turek_hron;
