@@ -57,7 +57,7 @@ macro_rules! for_each_case {
             S19 solids::quarter_punch::CASE;
             S21 solids::upsetting::CASE;
             S22 solids::bar_impact::CASE;
-            S23 solids::thick_ring::CASE;
+            S23 solids::pressurised::RING;
             S23b solids::pressurised::TUBE;
             S23c solids::pressurised::SPHERE;
             S23d solids::plate_with_hole::CASE;

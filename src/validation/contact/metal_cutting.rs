@@ -7,7 +7,7 @@ use meshless_engine::world::{BodyId, Damage, PlasticStrain, ReferencePosition, T
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{body, run, state};
+use crate::measure::{Kind, body, run, state};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -39,9 +39,8 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     .set("bodies.workpiece.shape.max", format!("({}, 4.0e-4)", 1.0e-3 + held))?
     .build(registry)?;
     let workpiece = body(&simulation, "workpiece")?;
-    let (mut cutting, mut thrust, mut count, mut balance) = (0.0, 0.0, 0.0, 0.0f64);
-    run(&mut simulation, |simulation| {
-        balance = balance.max(simulation.ledger().relative_error().abs());
+    let (mut cutting, mut thrust, mut count) = (0.0, 0.0, 0.0);
+    let balance = run(&mut simulation, |simulation| {
         if simulation.clock().time > FROM {
             let force = state(simulation, "tool")?.force;
             (cutting, thrust, count) = (cutting - force.x, thrust + force.y, count + 1.0);
@@ -63,7 +62,7 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "friction",
         ),
         Check::below("failed particles from the cut, in depths", off, 0.4, "the chip parts along the cut"),
-        Check::below("energy balance error", balance, 0.02, "every joule is booked"),
+        balance.check(Kind::Abrupt),
     ])
 }
 

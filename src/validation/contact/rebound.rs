@@ -9,7 +9,7 @@ use meshless_engine::world::{Mass, Position, Velocity};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{body, run, state};
+use crate::measure::{Kind, body, run, state};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -47,7 +47,7 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         simulation.start()?;
         let (momentum, angular) = momenta(&simulation)?;
         let mut deepest = f64::INFINITY;
-        run(&mut simulation, |simulation| {
+        let balance = run(&mut simulation, |simulation| {
             deepest = deepest.min(least_distance(simulation)?);
             Ok(())
         })?;
@@ -72,13 +72,7 @@ fn rebound(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             -0.5,
             "it flies away",
         ));
-        let balance = simulation.ledger().relative_error().abs();
-        checks.push(Check::below(
-            format!("{name}: energy balance error"),
-            balance,
-            1e-2,
-            "energy is conserved",
-        ));
+        checks.push(balance.check_of(name, Kind::Abrupt));
     }
     checks.extend(bounces(registry, BOUNCES[usize::from(across != CASE.ci_resolution)])?);
     Ok(checks)

@@ -8,7 +8,7 @@ use meshless_engine::world::{Force, ReferencePosition};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{body, run};
+use crate::measure::{Balance, Kind, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -24,7 +24,7 @@ const BLOCK: f64 = 0.4;
 
 /// `across` is the number of particles over the height of the blocks.
 fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    let slides = |friction: f64| -> Result<(Vec<f64>, f64)> {
+    let slides = |friction: f64| -> Result<(Vec<f64>, Balance)> {
         let spacing = BLOCK / across as f64;
         let mut simulation = Template::new(
             "tests/validation/sliding_blocks/scene.ron",
@@ -35,22 +35,22 @@ fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .set("contacts[0].friction", friction)?
         .build(registry)?;
         let mut ratios = Vec::new();
-        run(&mut simulation, |simulation| {
+        let balance = run(&mut simulation, |simulation| {
             if simulation.clock().time > SLIDING {
                 let held = held(simulation, spacing)?;
                 ratios.push(held.x / held.y);
             }
             Ok(())
         })?;
-        Ok((ratios, simulation.ledger().relative_error().abs()))
+        Ok((ratios, balance))
     };
-    let (without, energy) = slides(0.0)?;
+    let (without, balance) = slides(0.0)?;
     let (with, _) = slides(0.3)?;
     let rms = (without.iter().map(|ratio| ratio * ratio).sum::<f64>() / without.len() as f64).sqrt();
     let mean = with.iter().sum::<f64>() / with.len() as f64;
     Ok(vec![
         Check::below("blocks, friction 0: tangential over normal force, rms", rms, 0.01, "no friction"),
-        Check::below("blocks, friction 0: energy balance error", energy, 1e-4, "energy is conserved"),
+        balance.check_of("blocks, friction 0", Kind::Smooth),
         Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb"),
     ])
 }

@@ -11,7 +11,7 @@ use meshless_engine::world::{
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{body, run};
+use crate::measure::{Kind, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case =
@@ -39,10 +39,9 @@ fn abrasive_flow(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     .set("plugins", "[]")?
     .build(registry)?;
     let (floor, fluid) = (body(&simulation, "floor")?, body(&simulation, "fluid")?);
-    let (mut off, mut balance, mut deepest) = (0.0f64, 0.0f64, 0.0f64);
-    run(&mut simulation, |simulation| {
+    let (mut off, mut deepest) = (0.0f64, 0.0f64);
+    let balance = run(&mut simulation, |simulation| {
         off = off.max((mean_speed(simulation)? / SPEED - 1.0).abs());
-        balance = balance.max(simulation.ledger().relative_error().abs());
         deepest = deepest.max(deepest_damage(simulation, floor)?);
         Ok(())
     })?;
@@ -80,7 +79,7 @@ fn abrasive_flow(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "no voids",
         ),
         Check::below("mean speed, largest deviation", off, 0.02, "kept by the force"),
-        Check::below("energy balance error", balance, 0.02, "every joule is booked"),
+        balance.check(Kind::Abrupt),
     ])
 }
 

@@ -8,7 +8,7 @@ use meshless_engine::world::BodyId;
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{Record, body, run};
+use crate::measure::{Kind, Record, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -36,7 +36,7 @@ fn moving_square(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let square = body(&simulation, "square")?;
     let (mut pressure, mut friction) = (Record::default(), Record::default());
     let mut next = 0.0;
-    run(&mut simulation, |simulation| {
+    let balance = run(&mut simulation, |simulation| {
         let time = simulation.clock().time;
         if time >= next {
             next = time + 0.005;
@@ -62,8 +62,7 @@ fn moving_square(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     }
     // That at the start goes through zero from below.
     checks[3].converges = true;
-    let balance = simulation.ledger().relative_error().abs();
-    checks.push(Check::below("energy balance error", balance, 5e-3, "energy is conserved"));
+    checks.push(balance.check(Kind::Smooth));
     Ok(checks)
 }
 

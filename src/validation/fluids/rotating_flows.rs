@@ -8,7 +8,7 @@ use meshless_engine::world::{BodyId, Mass, Position, Velocity};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{Record, body, run};
+use crate::measure::{Kind, Record, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -93,7 +93,7 @@ fn disc(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .build(registry)?;
     let disc = body(&simulation, "disc")?;
     let mut spin = Record::default();
-    run(&mut simulation, |simulation| {
+    let balance = run(&mut simulation, |simulation| {
         let (view, rows) = simulation.world().body_view(disc);
         let (mass, x, v) = (view.read::<Mass>()?, view.read::<Position>()?, view.read::<Velocity>()?);
         let (mut momentum, mut inertia) = (0.0, 0.0);
@@ -119,7 +119,6 @@ fn disc(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "finite volumes in r, reference.csv",
         ));
     }
-    let balance = simulation.ledger().relative_error().abs();
-    checks.push(Check::below("energy balance error of the disc", balance, 5e-3, "energy is conserved"));
+    checks.push(balance.check_of("disc", Kind::Smooth));
     Ok(checks)
 }

@@ -6,7 +6,7 @@ use meshless_engine::world::{Mass, Velocity};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{Record, body, run};
+use crate::measure::{Kind, Record, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -36,7 +36,7 @@ fn standing_wave(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .set("bodies.floor.shape.min", format!("(0.0, {})", -4.0 * spacing))?
         .build(registry)?;
     let mut kinetic = Record::default();
-    run(&mut simulation, |simulation| {
+    let balance = run(&mut simulation, |simulation| {
         kinetic.push(simulation.clock().time, simulation.ledger().total_named("kinetic"));
         Ok(())
     })?;
@@ -63,12 +63,7 @@ fn standing_wave(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "Lamb, viscous waves of small height",
         )
         .converging(),
-        Check::below(
-            "energy balance error of the wave",
-            simulation.ledger().relative_error().abs(),
-            5e-3,
-            "energy is conserved",
-        ),
+        balance.check_of("wave", Kind::Smooth),
     ])
 }
 

@@ -6,7 +6,7 @@ use meshless_engine::plugin::Registry;
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{Record, body, run};
+use crate::measure::{Kind, Record, body, run};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -38,7 +38,7 @@ fn wedge_entry(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .build(registry)?;
     let wedge = body(&simulation, "wedge")?;
     let mut force = Record::default();
-    run(&mut simulation, |simulation| {
+    let balance = run(&mut simulation, |simulation| {
         let time = simulation.clock().time;
         if time >= 0.06 {
             let cloud = simulation.resources().get::<FlowCloud>();
@@ -61,11 +61,6 @@ fn wedge_entry(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "similarity solution",
         )
         .converging(),
-        Check::below(
-            "energy balance error",
-            simulation.ledger().relative_error().abs(),
-            1e-2,
-            "energy is conserved",
-        ),
+        balance.check(Kind::Smooth),
     ])
 }

@@ -1,6 +1,7 @@
 //! What cases measure, and how they run.
 
 mod disorder;
+mod energy;
 mod motion;
 mod random;
 mod record;
@@ -8,6 +9,7 @@ mod rigid;
 mod runs;
 
 pub use disorder::Disorder;
+pub use energy::{Balance, Kind};
 pub use motion::{MaterialPoint, body, momentum};
 pub use random::Random;
 pub use record::{Record, rows};

@@ -3,6 +3,8 @@
 use anyhow::{Result, ensure};
 use meshless_engine::simulation::Simulation;
 
+use super::energy::Balance;
+
 /// Runs until the bodies are at rest, which a relaxation has to notice before the end.
 pub fn relax(simulation: &mut Simulation) -> Result<()> {
     simulation.run(|_| true)?;
@@ -17,14 +19,16 @@ pub fn run_until(simulation: &mut Simulation, time: f64) -> Result<()> {
     Ok(())
 }
 
-/// Runs to the end and calls `see` after every step.
-pub fn run(simulation: &mut Simulation, mut see: impl FnMut(&Simulation) -> Result<()>) -> Result<()> {
+/// Runs to the end, calls `see` after every step, and gives the energy balance.
+pub fn run(simulation: &mut Simulation, mut see: impl FnMut(&Simulation) -> Result<()>) -> Result<Balance> {
+    let mut balance = Balance::default();
     simulation.start()?;
     see(simulation)?;
     while !simulation.is_finished() {
         simulation.step()?;
+        balance.see(simulation);
         see(simulation)?;
     }
     ensure!(simulation.clock().time >= simulation.end(), "the run stopped before its end");
-    Ok(())
+    Ok(balance)
 }

@@ -21,7 +21,6 @@ pub mod taylor_bars;
 pub mod taylor_plane;
 pub mod taylor_soft;
 pub mod tensile_failure;
-pub mod thick_ring;
 pub mod turek_hron;
 pub mod twisting_column;
 pub mod updated_lagrangian;

@@ -155,7 +155,7 @@ fn breathe(registry: &Registry, across: usize, control: Control, periods: f64) -
         History { dilatation: Record::default(), disorder: 0.0, closest: 1.0, energy: 0.0, end: Ok(()) };
     simulation.start()?;
     let start = simulation.ledger().stored();
-    history.end = run(&mut simulation, |simulation| {
+    let end = run(&mut simulation, |simulation| {
         history.dilatation.push(simulation.clock().time, mean_dilatation(simulation)?);
         history.energy = history.energy.max((simulation.ledger().stored() / start - 1.0).abs());
         if simulation.clock().step % 20 == 0 {
@@ -164,6 +164,7 @@ fn breathe(registry: &Registry, across: usize, control: Control, periods: f64) -
         }
         Ok(())
     });
+    history.end = end.map(|_| ());
     Ok(history)
 }
 

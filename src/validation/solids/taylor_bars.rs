@@ -7,6 +7,7 @@ use meshless_engine::plugin::Registry;
 use super::taylor::{Shape, impact};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
+use crate::measure::Kind;
 use crate::template::Template;
 
 pub(crate) const COPPER: Case = Case {
@@ -75,6 +76,6 @@ fn checks(
         Check::new("length", shape.length, length, Tolerance::Relative(of_length), "m", SOURCE),
         Check::new("largest radius", shape.radius, radius, Tolerance::Relative(of_radius), "m", SOURCE),
         Check::above("largest plastic strain", shape.plastic_strain, strain, "finite elements"),
-        Check::below("energy balance error", shape.balance, 0.01, "every joule is booked"),
+        shape.balance.check(Kind::Inelastic),
     ]
 }

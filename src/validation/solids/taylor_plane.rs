@@ -8,7 +8,7 @@ use meshless_engine::world::BodyId;
 use super::taylor::{Shape, impact};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::Disorder;
+use crate::measure::{Disorder, Kind};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -33,7 +33,7 @@ fn taylor_plane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             source,
         )
         .converging(),
-        Check::below("energy balance error", shape.balance, 0.01, "every joule is booked"),
+        shape.balance.check(Kind::Inelastic),
     ];
     let (elastic, _) = bar(registry, across, "hourglass_control(after_yield: Young)")?;
     checks.push(Check::below(

@@ -8,6 +8,7 @@ use meshless_engine::world::{BodyId, DeformationGradient, Mass};
 use super::taylor::{Shape, impact};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
+use crate::measure::Kind;
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -39,7 +40,7 @@ fn taylor_soft(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             0.7,
             "what the formulation is for",
         ),
-        Check::below("energy balance error", shape.balance, 0.01, "every joule is booked"),
+        shape.balance.check(Kind::Abrupt),
     ])
 }
 

@@ -11,7 +11,7 @@ use meshless_engine::world::{
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{body, state};
+use crate::measure::{Balance, Kind, body, state};
 use crate::template::Template;
 
 pub(crate) const CASE: Case = Case {
@@ -38,10 +38,11 @@ fn upsetting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     .build(registry)?;
     let billet = body(&simulation, "billet")?;
     simulation.start()?;
-    let (mut forces, mut height) = (Vec::new(), HEIGHT);
+    let (mut forces, mut height, mut balance) = (Vec::new(), HEIGHT, Balance::default());
     while height > END {
         ensure!(!simulation.is_finished(), "the billet is still {height} m high");
         simulation.step()?;
+        balance.see(&simulation);
         height = height_of(&simulation, billet)?;
         if height < WINDOW {
             let (upper, lower) = (state(&simulation, "upper")?, state(&simulation, "lower")?);
@@ -51,7 +52,6 @@ fn upsetting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let force = forces.iter().sum::<f64>() / forces.len() as f64;
     let shape = measure(&simulation, billet)?;
     let plates = state(&simulation, "upper")?.center.z - state(&simulation, "lower")?.center.z - 2.0e-3;
-    let energy = simulation.ledger().relative_error().abs();
     let volume = Tolerance::Relative(0.01);
     Ok(vec![
         Check::new("force", force, 59.906e3, Tolerance::Relative(0.05), "N", SOURCE),
@@ -67,7 +67,7 @@ fn upsetting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "",
             "none",
         ),
-        Check::below("energy balance error", energy, 0.01, "every joule is booked"),
+        balance.check(Kind::Inelastic),
     ])
 }
 
