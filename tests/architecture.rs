@@ -225,6 +225,23 @@ fn systems_share_without_locks() {
     }
 }
 
+/// What sums over the particles of a flow says so to the schedule.
+#[test]
+fn plugins_that_go_through_the_neighbours_of_fluids_declare_it() {
+    let mut found = 0;
+    for plugin in plugins() {
+        let mut files = Vec::new();
+        collect_sources(&plugin.join("src"), &mut files);
+        let text: String = files.iter().filter_map(|file| without_tests(file)).collect();
+        let sums = [".fours(", ".for_each_row(", ".for_each_neighbor(", "Repayment::"];
+        if sums.iter().any(|call| text.contains(call)) {
+            found += 1;
+            assert!(text.contains("touches_packed(FLOW_RECORDS"), "{} does not declare it", name(&plugin));
+        }
+    }
+    assert!(found >= 4, "only {found} plugins are found");
+}
+
 /// Targets of the links of a page, without those to other sites.
 fn links(page: &str) -> impl Iterator<Item = &str> {
     page.split("](")
