@@ -48,6 +48,33 @@ fn a_run_ends_with_a_summary_and_leaves_a_checkpoint_if_it_is_cut_short() {
     assert!(text.contains("meshless view out/cantilever"), "{text}");
 }
 
+/// AVX-512 lends its registers to the loops and changes no sum. Where a processor has one path only, there is nothing to compare.
+#[test]
+fn an_instruction_path_can_be_taken_and_avx_512_has_the_bits_of_avx2() {
+    let folder = folder();
+    let refused = meshless(&folder, &["run", &cantilever(), "--instructions", "x86-64-v9"]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = err(&refused);
+    assert!(message.contains("no instruction path `x86-64-v9`; it has "), "{message}");
+    let flow = scene("dam_break.ron").display().to_string();
+    for (scene, set) in
+        [(cantilever(), "time.end=0.01"), (flow.clone(), "precision=Double"), (flow, "precision=Mixed")]
+    {
+        let run = |path| {
+            let arguments = ["run", &scene, "--set", set, "--steps", "20", "--force", "--instructions", path];
+            let output = meshless(&folder, &arguments);
+            assert_success(&output);
+            state_hash(&output)
+        };
+        if message.contains("x86-64-v4") {
+            assert_eq!(run("x86-64-v4"), run("x86-64-v3"), "{scene} {set}");
+        }
+        if message.contains("x86-64-v3") {
+            assert_ne!(run("x86-64"), run("x86-64-v3"), "{scene} {set}: no other path was taken");
+        }
+    }
+}
+
 #[test]
 fn a_quiet_run_prints_nothing() {
     let folder = folder();

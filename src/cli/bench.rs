@@ -15,6 +15,7 @@ use std::time::Duration;
 use clap::Args;
 use meshless_engine::plugin::Registry;
 
+use super::execution::take_instructions;
 use super::failure::Failure;
 use super::text::say;
 use measure::Measurement;
@@ -32,6 +33,9 @@ pub struct Arguments {
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Vec<u16>,
+    /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
+    #[arg(long, value_name = "PATH")]
+    instructions: Option<String>,
     /// Minimum wall time of a measurement [s]
     #[arg(long, default_value_t = 3.0, value_parser = seconds, value_name = "S")]
     seconds: f64,
@@ -72,6 +76,8 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
         say(&report::list(&works));
         return Ok(());
     }
+    let instructions = arguments.instructions.as_deref();
+    take_instructions(instructions)?;
     if !arguments.json {
         say(&report::heading(&machine::describe()));
     }
@@ -83,7 +89,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
                 let measurement = if alone {
                     Measurement::take(work, particles, threads, least, registry)?
                 } else {
-                    apart::take(work, particles, threads, least)?
+                    apart::take(work, particles, threads, least, instructions)?
                 };
                 say(&if arguments.json {
                     report::json(&measurement)?

@@ -6,6 +6,7 @@ use std::time::{Duration, SystemTime};
 use clap::Args;
 use meshless_engine::assembly::{self, BuildOptions};
 use meshless_engine::notation::count;
+use meshless_engine::parallel::take_instruction_path;
 use meshless_engine::plugin::Registry;
 use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{Scene, Source};
@@ -29,6 +30,9 @@ pub struct How {
     /// Number of threads; without it, all cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
+    #[arg(long, value_name = "PATH")]
+    pub instructions: Option<String>,
     /// Stop after this many steps and leave a checkpoint
     #[arg(long, value_name = "N")]
     pub steps: Option<u64>,
@@ -41,12 +45,18 @@ pub struct How {
 }
 
 impl How {
-    /// Sets the number of threads of this program; once, before anything runs.
-    pub fn set_threads(&self) -> Result<(), Failure> {
+    /// Sets the number of threads and the instruction path of this program; once, before anything runs.
+    pub fn prepare(&self) -> Result<(), Failure> {
+        take_instructions(self.instructions.as_deref())?;
         let Some(threads) = self.threads else { return Ok(()) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
         pool.build_global().map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))
     }
+}
+
+/// Takes the instruction path of that name, if there is one.
+pub fn take_instructions(name: Option<&str>) -> Result<(), Failure> {
+    name.map_or(Ok(()), take_instruction_path).map_err(|error| Failure::Usage(error.to_string()))
 }
 
 /// A simulation with the folder that it writes to.

@@ -39,7 +39,7 @@ pub struct Arguments {
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let Arguments { path, until, scene: moved, set, how } = arguments;
     // Before the checkpoint is read, which takes threads of its own.
-    how.set_threads()?;
+    how.prepare()?;
     let file = folder::checkpoint(&path)?;
     let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
     let mut source = checkpoint.source();

@@ -31,7 +31,7 @@ pub struct Arguments {
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let Arguments { scene: file, out, force, how } = arguments;
     let (scene, source) = file.load()?;
-    how.set_threads()?;
+    how.prepare()?;
     let folder = out.unwrap_or_else(|| default_folder(file.named()));
     let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };

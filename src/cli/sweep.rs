@@ -47,7 +47,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
         .iter()
         .map(|case| scene::load(&arguments.path, &case.settings))
         .collect::<Result<Vec<(Scene, Source)>, _>>()?;
-    arguments.how.set_threads()?;
+    arguments.how.prepare()?;
     let interrupt = Interrupt::listen()?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.path));
     let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
@@ -87,7 +87,7 @@ fn run(
     how: &How,
 ) -> Result<Row, Failure> {
     let mut execution = Execution::new(scene, source, registry, options)?;
-    let quiet = How { quiet: true, threads: None, ..*how };
+    let quiet = How { quiet: true, threads: None, instructions: None, ..*how };
     match execution.carry_out(&quiet) {
         Ok(()) | Err(Failure::Interrupted(_)) => {}
         Err(failure) => failure.report(),

@@ -8,7 +8,13 @@ use super::measure::Measurement;
 use super::work::Work;
 
 /// Calls this program with the one work and reads what it measures.
-pub fn take(work: &Work, particles: usize, threads: u16, least: Duration) -> Result<Measurement, Failure> {
+pub fn take(
+    work: &Work,
+    particles: usize,
+    threads: u16,
+    least: Duration,
+    instructions: Option<&str>,
+) -> Result<Measurement, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
     let program = std::env::current_exe().map_err(|error| failed(&error))?;
     let output = Command::new(program)
@@ -16,6 +22,7 @@ pub fn take(work: &Work, particles: usize, threads: u16, least: Duration) -> Res
         .args(["--particles", &particles.to_string()])
         .args(["--threads", &threads.to_string()])
         .args(["--seconds", &least.as_secs_f64().to_string()])
+        .args(instructions.map(|path| format!("--instructions={path}")))
         .stderr(Stdio::inherit())
         .output()
         .map_err(|error| failed(&error))?;

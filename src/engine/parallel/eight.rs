@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::arithmetic::{Arithmetic, FourLanes};
-use super::path::HotLoop;
-use super::plane::run_hot_on;
+use super::path::{HotLoop, run_wide};
+use super::plane::InPlane;
 
 /// Lanes of a block.
 pub const EIGHT: usize = 8;
@@ -64,7 +64,7 @@ impl<L: BlockLoop> HotLoop for Wide<L> {
 
 /// Runs a loop over blocks on the best path of this processor, with vectors of the plane or of space.
 pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
-    run_hot_on(plane, Wide(hot))
+    if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }
 }
 
 /// An instruction path with eight lanes of single precision.

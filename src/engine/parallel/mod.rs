@@ -23,7 +23,7 @@ pub use eight::{BlockLoop, EIGHT, EightLanes, Lanes8, run_blocks_on};
 pub use lanes::Lanes4;
 pub use largest::Largest;
 pub use number::Number;
-pub use path::{HotLoop, instruction_path, run_hot};
+pub use path::{HotLoop, PathError, have_same_bits, instruction_path, run_hot, take_instruction_path};
 pub use picked::Picked;
 pub use plane::run_hot_on;
 pub use vector::{Matrix, Vector};

@@ -1,7 +1,11 @@
-//! The instruction path: one binary runs on any x86-64 machine and uses AVX2 and FMA where the processor has them.
+//! The instruction path: one binary runs on any x86-64 machine, and uses AVX2 and FMA, or AVX-512, where the processor has them.
 //!
-//! A hot loop is written once, generic over [`FourLanes`], and compiled for both paths. The two differ in the last
-//! bits (a fused multiply-add rounds once), so the path is part of a checkpoint.
+//! A hot loop is written once, generic over [`FourLanes`], and compiled for every path. With FMA a multiply-add rounds once, so that the last bits differ from those of the
+//! baseline. AVX-512 adds registers (thirty-two in the place of sixteen) and masks, but vectors stay as long and sums keep their order: its bits are those of AVX2.
+
+use std::sync::OnceLock;
+
+use thiserror::Error;
 
 use super::arithmetic::{FourLanes, Portable};
 
@@ -15,14 +19,34 @@ pub trait HotLoop {
     fn run<A: FourLanes>(self, arithmetic: A) -> Self::Output;
 }
 
-#[cfg(target_arch = "x86_64")]
-mod detected {
-    use std::sync::OnceLock;
+/// Why an instruction path cannot be taken.
+#[derive(Debug, Error, PartialEq, Eq)]
+pub enum PathError {
+    /// No path has that name, or this processor does not have its instructions.
+    #[error("this processor has no instruction path `{name}`; it has {}", names())]
+    Absent {
+        /// What was asked for.
+        name: String,
+    },
+    /// Loops have run on another one.
+    #[error("the instruction path is {0} already")]
+    Taken(&'static str),
+}
 
+#[cfg(target_arch = "x86_64")]
+mod paths {
     use pulp::NullaryFnOnce;
-    use pulp::x86::V3;
+    use pulp::x86::{V3, V4};
 
     use super::{HotLoop, Portable};
+
+    /// A path that this processor has.
+    #[derive(Clone, Copy)]
+    pub enum Path {
+        Baseline,
+        V3(V3),
+        V4(V4),
+    }
 
     struct WithV3<L>(L, V3);
 
@@ -35,42 +59,127 @@ mod detected {
         }
     }
 
-    fn v3() -> Option<V3> {
-        static V3_PATH: OnceLock<Option<V3>> = OnceLock::new();
-        *V3_PATH.get_or_init(V3::try_new)
-    }
-
-    pub fn run<L: HotLoop>(hot: L) -> L::Output {
-        match v3() {
-            Some(v3) => v3.vectorize(WithV3(hot, v3)),
-            None => hot.run(Portable),
+    impl Path {
+        /// Those that this processor has, the best one first.
+        pub fn all() -> impl Iterator<Item = Self> {
+            let wide = V4::try_new().map(Self::V4).into_iter().chain(V3::try_new().map(Self::V3));
+            wide.chain([Self::Baseline])
         }
-    }
 
-    pub fn name() -> &'static str {
-        if v3().is_some() { "x86-64-v3" } else { "x86-64" }
+        pub fn name(self) -> &'static str {
+            match self {
+                Self::Baseline => "x86-64",
+                Self::V3(_) => "x86-64-v3",
+                Self::V4(_) => "x86-64-v4",
+            }
+        }
+
+        pub fn run<L: HotLoop>(self, hot: L) -> L::Output {
+            match self {
+                Self::Baseline => hot.run(Portable),
+                Self::V3(v3) => v3.vectorize(WithV3(hot, v3)),
+                Self::V4(v4) => (*v4).vectorize(WithV3(hot, *v4)),
+            }
+        }
+
+        pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
+            match self {
+                Self::V4(v4) => v4.vectorize(WithV3(hot, *v4)),
+                other => other.run(hot),
+            }
+        }
     }
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-mod detected {
+mod paths {
     use super::{HotLoop, Portable};
 
-    pub fn run<L: HotLoop>(hot: L) -> L::Output {
-        hot.run(Portable)
-    }
+    /// The only path.
+    #[derive(Clone, Copy)]
+    pub struct Path;
 
-    pub fn name() -> &'static str {
-        std::env::consts::ARCH
+    impl Path {
+        pub fn all() -> impl Iterator<Item = Self> {
+            [Self].into_iter()
+        }
+
+        pub fn name(self) -> &'static str {
+            std::env::consts::ARCH
+        }
+
+        pub fn run<L: HotLoop>(self, hot: L) -> L::Output {
+            hot.run(Portable)
+        }
+
+        pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
+            hot.run(Portable)
+        }
     }
 }
 
-/// Runs a hot loop on the best path of this processor.
+use paths::Path;
+
+static PATH: OnceLock<Path> = OnceLock::new();
+
+fn best() -> Path {
+    Path::all().next().expect("every processor has the baseline")
+}
+
+fn path() -> Path {
+    *PATH.get_or_init(best)
+}
+
+fn names() -> String {
+    Path::all().map(Path::name).collect::<Vec<_>>().join(", ")
+}
+
+/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is left out: what gathers and transposes is no faster with it.
 pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
-    detected::run(hot)
+    path().run(hot)
 }
 
-/// Name of the instruction path in use, such as `x86-64-v3`.
+/// Runs a hot loop over blocks on the instruction path of this program.
+pub(super) fn run_wide<L: HotLoop>(hot: L) -> L::Output {
+    path().run_wide(hot)
+}
+
+/// Name of the instruction path in use, such as `x86-64-v3`: the best that this processor has, unless another one was taken.
 pub fn instruction_path() -> &'static str {
-    detected::name()
+    PATH.get().copied().unwrap_or_else(best).name()
+}
+
+/// Takes the instruction path of that name for the whole program, before any loop has run.
+///
+/// # Errors
+/// The processor does not have it, or loops have run on another one.
+pub fn take_instruction_path(name: &str) -> Result<(), PathError> {
+    let asked = Path::all().find(|path| path.name() == name);
+    let asked = asked.ok_or_else(|| PathError::Absent { name: name.to_owned() })?;
+    let taken = PATH.get_or_init(|| asked).name();
+    if taken == asked.name() { Ok(()) } else { Err(PathError::Taken(taken)) }
+}
+
+/// Whether two instruction paths make the same bits.
+pub fn have_same_bits(one: &str, other: &str) -> bool {
+    let rounding = |path| if path == "x86-64-v4" { "x86-64-v3" } else { path };
+    rounding(one) == rounding(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_that_the_processor_lacks_is_refused() {
+        let error = take_instruction_path("x86-64-v9").expect_err("there is none");
+        assert!(error.to_string().contains("`x86-64-v9`; it has "), "{error}");
+        assert_eq!(take_instruction_path(instruction_path()), Ok(()));
+    }
+
+    #[test]
+    fn registers_and_masks_change_no_bits() {
+        assert!(have_same_bits("x86-64-v3", "x86-64-v4"));
+        assert!(!have_same_bits("x86-64", "x86-64-v4"));
+    }
 }

@@ -62,7 +62,7 @@ impl<A: EightLanes> EightLanes for Plane<A> {
     }
 }
 
-struct InPlane<L>(L);
+pub(super) struct InPlane<L>(pub L);
 
 impl<L: HotLoop> HotLoop for InPlane<L> {
     type Output = L::Output;

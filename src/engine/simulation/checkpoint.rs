@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::Simulation;
 use super::inputs::Inputs;
 use super::sub_steps::SubStepState;
-use crate::parallel::instruction_path;
+use crate::parallel::{have_same_bits, instruction_path};
 use crate::record::output::OUTPUT;
 use crate::record::{
     Container, ContainerError, ContainerWriter, Existing, RecordError, StateHash, StateHasher,
@@ -100,7 +100,7 @@ impl Checkpoint {
     /// A warning where the run was made on another instruction path, so that the last bits will differ.
     pub fn path_warning(&self) -> Option<String> {
         let (then, now) = (self.header.instruction_path.as_str(), instruction_path());
-        (then != now).then(|| {
+        (!have_same_bits(then, now)).then(|| {
             format!("the checkpoint was written on the instruction path {then}, this machine uses {now}: the last bits will differ")
         })
     }
