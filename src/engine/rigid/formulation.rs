@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
 use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, Turning};
 use super::inertia::MassProperties;
-use super::nodes::Nodes;
+use super::nodes::{Nodes, RigidNode};
 use super::rotation::Inertia;
 use super::systems;
 use crate::integrate::OwnMotion;
@@ -152,8 +152,8 @@ impl Rigid {
         self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
         let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing);
-        let reach =
-            nodes.points.iter().map(|x| x.distance(of_shape.center)).fold(0.0, f64::max) + nodes.radius;
+        let reach_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
+        let reach = nodes.list().iter().map(reach_of).fold(0.0, f64::max);
         let points = of_shape.points * factor;
         let parts = RigidParts {
             id,

@@ -5,6 +5,7 @@ mod constraint;
 mod formulation;
 mod inertia;
 mod nodes;
+mod outline;
 mod rotation;
 mod systems;
 #[cfg(test)]
@@ -16,6 +17,7 @@ pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};
 pub(crate) use inertia::sphere_of;
-pub use nodes::Nodes;
+pub use nodes::{Nodes, RigidNode, Round};
+pub use outline::Rim;
 pub use rotation::Inertia;
 pub use wrench::Wrench;

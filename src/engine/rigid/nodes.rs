@@ -1,56 +1,119 @@
-//! The points with which a rigid body touches others.
+//! The nodes with which a rigid body touches others.
 
 use std::collections::BTreeSet;
 
 use glam::DVec3;
 
 use super::inertia::sphere_of;
+use super::outline::{Outline, Rim};
 use crate::shapes::{Shape, Site, Surface};
 
 /// Cosine of the angle between two normals above which two faces do not touch: some 96 degrees.
 const ACROSS: f64 = -0.1;
 
-/// The points with which a rigid body touches the surfaces of other rigid bodies.
+/// What touches at a node.
+#[derive(Clone, Copy, Debug)]
+pub enum Round {
+    /// The point itself.
+    Point,
+    /// The whole body, a sphere or disc of that radius about it, m.
+    Ball(f64),
+    /// The lowest point of a circle about it.
+    Rim(Rim),
+}
+
+/// A place at which a rigid body touches others.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidNode {
+    /// The place in the reference configuration, m.
+    pub point: DVec3,
+    /// Outward normal of the surface there; zero on edges and corners, and for what is round.
+    normal: DVec3,
+    /// What touches there.
+    pub round: Round,
+    /// Length that it stands for, m.
+    pub size: f64,
+}
+
+impl RigidNode {
+    /// Radius of what is round, else zero, m.
+    pub fn radius(&self) -> f64 {
+        match self.round {
+            Round::Point => 0.0,
+            Round::Ball(radius) => radius,
+            Round::Rim(rim) => rim.radius,
+        }
+    }
+
+    /// Whether the surface there may touch one of that outward normal, in the reference configuration: a face does not touch what stands across it. Where the corner of another body passes a
+    /// point of a face, the nearest surface of that body is for a moment the side beside the corner.
+    pub fn faces(&self, normal: DVec3) -> bool {
+        self.normal == DVec3::ZERO || self.normal.dot(normal) < ACROSS
+    }
+
+    /// Whether it is a point of a face, neither of an edge nor of something round.
+    pub fn is_of_face(&self) -> bool {
+        self.normal != DVec3::ZERO
+    }
+}
+
+/// The nodes with which a rigid body touches the surfaces of other rigid bodies; what is round comes first.
 #[derive(Clone, Debug)]
 pub struct Nodes {
-    /// Their places in the reference configuration, m.
-    pub points: Vec<DVec3>,
-    /// Outward normals of the surface there; zero on edges and corners, and for a sphere.
-    normals: Vec<DVec3>,
-    /// Radius of the sphere about each, m: that of a body that is one sphere, else zero.
-    pub radius: f64,
-    /// Distance between them, m.
-    pub spacing: f64,
+    list: Vec<RigidNode>,
+    outline: Option<Outline>,
 }
 
 impl Nodes {
-    /// The centre of a sphere or disc. Of other shapes points on sharp edges and corners, and the outermost particles,
+    /// The centre of a sphere or disc. Of other shapes circles where the outline is round, and elsewhere points on sharp edges and corners, and the outermost particles,
     /// moved to the surface.
     pub(super) fn new(shape: &Shape, surface: &dyn Surface, sites: &[Site], spacing: f64) -> Self {
+        let outline = Outline::of(shape);
+        let node = |point, normal, round, size| RigidNode { point, normal, round, size };
         if let Some((center, radius)) = sphere_of(shape) {
-            return Self { points: vec![center], normals: vec![DVec3::ZERO], radius, spacing: 2.0 * radius };
+            let ball = node(center, DVec3::ZERO, Round::Ball(radius), 2.0 * radius);
+            return Self { list: vec![ball], outline };
         }
-        let mut points = along(&surface.edges(spacing), spacing);
-        let mut normals = vec![DVec3::ZERO; points.len()];
+        let mut list = Vec::new();
+        if let Some(outline) = &outline {
+            let (centers, rim) = outline.rims(spacing);
+            let size = if centers.len() == 1 { 2.0 * rim.radius } else { spacing };
+            list.extend(centers.iter().map(|&center| node(center, DVec3::ZERO, Round::Rim(rim), size)));
+        }
+        let is_round = |x: DVec3| outline.is_some_and(|outline| outline.holds(x));
+        let edges = along(&surface.edges(spacing), spacing);
+        let corners = edges.into_iter().filter(|&x| !is_round(x));
+        list.extend(corners.map(|x| node(x, DVec3::ZERO, Round::Point, spacing)));
         for site in sites {
             let nearest = surface.closest(site.position);
-            if nearest.signed_distance.abs() < 0.75 * spacing {
-                points.push(nearest.point);
-                normals.push(nearest.normal);
+            if nearest.signed_distance.abs() < 0.75 * spacing && !is_round(nearest.point) {
+                list.push(node(nearest.point, nearest.normal, Round::Point, spacing));
             }
         }
-        Self { points, normals, radius: 0.0, spacing }
+        Self { list, outline }
     }
 
-    /// Whether the surface at point `i` may touch one of that outward normal, in the reference configuration: a face does not touch what stands across it. Where the corner of another body passes a
-    /// point of a face, the nearest surface of that body is for a moment the side beside the corner.
-    pub fn faces(&self, i: usize, normal: DVec3) -> bool {
-        self.normals[i] == DVec3::ZERO || self.normals[i].dot(normal) < ACROSS
+    /// The nodes.
+    pub fn list(&self) -> &[RigidNode] {
+        &self.list
     }
 
     /// Radius of the body if it is one sphere, m.
     pub fn sphere(&self) -> Option<f64> {
-        (self.radius > 0.0).then_some(self.radius)
+        match self.list[..] {
+            [RigidNode { round: Round::Ball(radius), .. }] => Some(radius),
+            _ => None,
+        }
+    }
+
+    /// Whether a place on the surface, in the reference configuration, is on the round outline: there the body touches with its own circles.
+    pub fn is_round(&self, x: DVec3) -> bool {
+        self.outline.is_some_and(|outline| outline.holds(x))
+    }
+
+    /// Whether the round outline has circles in every plane: nothing can be between them.
+    pub fn is_ball(&self) -> bool {
+        matches!(self.outline, Some(Outline::Ball { .. }))
     }
 }
 

@@ -16,6 +16,6 @@ pub use error::CONTACT;
 pub(super) use error::failed;
 pub(super) use members::{MemberColumns, Members, Particles};
 pub(super) use motion::MotionBounds;
-pub(super) use node_view::{NodeMotion, NodeView};
+pub(super) use node_view::{NodeMotion, NodeView, Turn};
 pub(super) use shape::{Nearness, of_pair};
 pub(super) use sides::{Nodes, Sides};

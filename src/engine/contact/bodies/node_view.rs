@@ -4,8 +4,21 @@ use glam::DVec3;
 
 use super::members::Members;
 use super::shape::{Nearness, on_surface};
-use crate::rigid::RigidBody;
+use crate::rigid::{RigidBody, Round};
+use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
+
+/// Steps in which the lowest point of a rim is found: one is exact on a plane, and a circle on a circle or cylinder is near it.
+const TURNS: usize = 2;
+
+/// Which of the two contacts of a pair of rigid bodies, of the nodes of each with the surface of the other, it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::contact) enum Turn {
+    /// There is no other.
+    Alone,
+    First,
+    Second,
+}
 
 /// The nodes of a body as they are now.
 pub(in crate::contact) enum NodeView<'a> {
@@ -20,7 +33,7 @@ impl NodeView<'_> {
     pub fn len(&self) -> usize {
         match self {
             Self::Particles(members) => members.len(),
-            Self::Rigid(body) => body.nodes.points.len(),
+            Self::Rigid(body) => body.nodes.list().len(),
         }
     }
 
@@ -44,7 +57,7 @@ impl NodeView<'_> {
     pub fn faces(&self, i: usize, normal: DVec3) -> bool {
         match self {
             Self::Particles(_) => true,
-            Self::Rigid(body) => body.nodes.faces(i, body.state.rotation.inverse() * normal),
+            Self::Rigid(body) => body.nodes.list()[i].faces(body.state.rotation.inverse() * normal),
         }
     }
 
@@ -52,7 +65,7 @@ impl NodeView<'_> {
     pub fn position(&self, i: usize) -> DVec3 {
         match self {
             Self::Particles(members) => members.position(i),
-            Self::Rigid(body) => body.place(body.nodes.points[i]),
+            Self::Rigid(body) => body.place(body.nodes.list()[i].point),
         }
     }
 
@@ -60,7 +73,7 @@ impl NodeView<'_> {
     pub fn radius(&self, i: usize) -> f64 {
         match self {
             Self::Particles(members) => members.radius(i),
-            Self::Rigid(body) => body.nodes.radius,
+            Self::Rigid(body) => body.nodes.list()[i].radius(),
         }
     }
 
@@ -68,17 +81,49 @@ impl NodeView<'_> {
     pub fn size(&self, i: usize) -> f64 {
         match self {
             Self::Particles(members) => 2.0 * members.radius(i),
-            Self::Rigid(body) => body.nodes.spacing,
+            Self::Rigid(body) => body.nodes.list()[i].size,
         }
     }
 
-    /// How near a node is to a surface at a signed distance, m, with that outward normal.
+    /// How near a node is to a surface at a signed distance of its foot, m, with that outward normal.
     pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Nearness {
         let shape = match self {
             Self::Particles(members) => members.shape(i),
-            Self::Rigid(body) => (body.nodes.radius, None),
+            Self::Rigid(body) => match body.nodes.list()[i].round {
+                Round::Ball(radius) => (radius, None),
+                Round::Point | Round::Rim(_) => (0.0, None),
+            },
         };
         on_surface(distance, normal, shape)
+    }
+
+    /// The point of a node with its centre at `x` that is deepest in a tool, m, and the nearest point of its surface: the centre itself but for a rim. None where a rim lies flat.
+    pub fn foot(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<(DVec3, SurfacePoint)> {
+        let nearest = |x| tool.surface.closest(tool.reference(x));
+        let mut foot = (x, nearest(x));
+        if let Self::Rigid(body) = self
+            && let Round::Rim(rim) = body.nodes.list()[i].round
+        {
+            for _ in 0..TURNS {
+                let normal = body.state.rotation.inverse() * (tool.state.rotation * foot.1.normal);
+                let place = x + body.state.rotation * rim.lowest(normal)?;
+                foot = (place, nearest(place));
+            }
+        }
+        Some(foot)
+    }
+
+    /// Whether contact there is left to the nodes of the tool: its round outline touches with circles of its own.
+    pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: Turn) -> bool {
+        let Self::Rigid(body) = self else { return false };
+        let node = &body.nodes.list()[i];
+        // The corner of a body may come between two rims.
+        let is_met = matches!(node.round, Round::Rim(_)) || node.is_of_face() || tool.nodes.is_ball();
+        match turn {
+            Turn::Alone => false,
+            Turn::First => is_met && !matches!(node.round, Round::Rim(_)) && tool.nodes.is_round(point),
+            Turn::Second => is_met && tool.nodes.is_round(point),
+        }
     }
 
     /// The place at which both bodies are pushed: where the material touches, `arm` beside the particle in the reference configuration. A sphere

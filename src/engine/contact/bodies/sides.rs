@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::error::failed;
 use super::members::{MemberColumns, Particles};
-use super::node_view::NodeView;
+use super::node_view::{NodeView, Turn};
+use super::shape::Nearness;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
 use crate::schedule::{Resources, StepError};
@@ -37,6 +38,8 @@ pub(in crate::contact) struct Sides {
     pub nodes: Nodes,
     /// Rigid body with the surface.
     pub second: BodyId,
+    /// Which of the contacts of a pair of rigid bodies it is.
+    pub turn: Turn,
     /// Periodic axes: the image of a node that is nearest to the centre of the surface's body touches it.
     pub periodic: Periodic,
 }
@@ -76,8 +79,8 @@ impl Sides {
     /// Place of the first node that is deeper inside the other body than one may start, m.
     pub fn inside(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
         let deep = |i: usize, x: DVec3| {
-            let x = tool.reference(self.near(x, tool));
-            let overlap = nodes.radius(i) - tool.surface.closest(x).signed_distance;
+            let Some((_, nearest)) = nodes.foot(i, self.near(x, tool), tool) else { return false };
+            let Nearness { overlap, .. } = nodes.nearness(i, nearest.signed_distance, nearest.normal);
             let radius = nodes.radius(i);
             overlap > if radius > 0.0 { RADIUS_SHARE * radius } else { SPACING_SHARE * nodes.size(i) }
         };

@@ -6,7 +6,7 @@ use super::body::{elastic_of, find, is_rigid};
 use super::checks::Named;
 use super::images::mirrors;
 use super::skins_of::Skins;
-use crate::contact::bodies::{Nodes, Particles, Sides};
+use crate::contact::bodies::{Nodes, Particles, Sides, Turn};
 use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
@@ -88,7 +88,7 @@ impl Planner<'_> {
     ) -> Result<Touching, Vec<Problem>> {
         let nodes = Nodes::Particles(self.particles(soft));
         let Some(skin) = self.skin(soft, named) else {
-            return self.on_surface(named, nodes, [soft, tool]);
+            return self.on_surface(named, self.sides(nodes, [soft, tool]));
         };
         let interaction = self.interaction(named, ContactSurface::Skin)?;
         let sides = self.sides(nodes, [soft, tool]);
@@ -104,28 +104,26 @@ impl Planner<'_> {
         let bodies = &self.sim.scene().bodies;
         let is_sphere = |body: &BodyPlan| sphere_of(&bodies[body.id.0].shape).is_some();
         // A sphere is one node, and touches the surface of the other exactly.
-        let of_nodes: &[[&BodyPlan; 2]] = match (is_sphere(first), is_sphere(second)) {
-            (true, _) => &[[first, second]],
-            (false, true) => &[[second, first]],
-            (false, false) => &[[first, second], [second, first]],
+        let of_nodes: &[([&BodyPlan; 2], Turn)] = match (is_sphere(first), is_sphere(second)) {
+            (true, _) => &[([first, second], Turn::Alone)],
+            (false, true) => &[([second, first], Turn::Alone)],
+            (false, false) => &[([first, second], Turn::First), ([second, first], Turn::Second)],
         };
-        of_nodes.iter().map(|bodies| self.on_surface(named, Nodes::Rigid, *bodies)).collect()
+        let touching = |(bodies, turn): &([&BodyPlan; 2], Turn)| {
+            self.on_surface(named, Sides { turn: *turn, ..self.sides(Nodes::Rigid, *bodies) })
+        };
+        of_nodes.iter().map(touching).collect()
     }
 
     /// The nodes of the first body on the surface of the second.
-    fn on_surface(
-        &self,
-        named: &Named<'_>,
-        nodes: Nodes,
-        bodies: [&BodyPlan; 2],
-    ) -> Result<Touching, Vec<Problem>> {
+    fn on_surface(&self, named: &Named<'_>, sides: Sides) -> Result<Touching, Vec<Problem>> {
         let interaction = self.interaction(named, ContactSurface::Particles)?;
-        let (sides, gravity) = (self.sides(nodes, bodies), self.sim.gravity().length());
+        let gravity = self.sim.gravity().length();
         Ok(Touching::Surface(Box::new(SurfaceContact::new(interaction, sides, gravity))))
     }
 
     fn sides(&self, nodes: Nodes, [of, on]: [&BodyPlan; 2]) -> Sides {
-        Sides { first: of.id, nodes, second: on.id, periodic: self.sim.periodic() }
+        Sides { first: of.id, nodes, second: on.id, turn: Turn::Alone, periodic: self.sim.periodic() }
     }
 
     fn particles(&self, body: &BodyPlan) -> Particles {

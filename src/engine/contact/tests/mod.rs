@@ -8,6 +8,7 @@ mod loaded;
 mod long;
 mod particles;
 mod rigid;
+mod rolling;
 mod skin_energy;
 mod skins;
 mod walls;

@@ -62,11 +62,15 @@ impl OnSurface<'_> {
         let Self { nodes, tool, .. } = self;
         let i = node as usize;
         let own_place = nodes.position(i);
-        let x = self.sides.near(own_place, tool);
-        let nearest = tool.surface.closest(tool.reference(x));
+        let center = self.sides.near(own_place, tool);
+        let (x, nearest) = nodes.foot(i, center, tool)?;
         let normal = tool.state.rotation * nearest.normal;
         let near = nodes.nearness(i, nearest.signed_distance, normal);
-        if near.overlap <= -NEAR * near.scale * nodes.size(i) || !nodes.is_there(i) || !nodes.faces(i, normal)
+        let is_far = near.overlap <= -NEAR * near.scale * nodes.size(i);
+        if is_far
+            || !nodes.is_there(i)
+            || !nodes.faces(i, normal)
+            || nodes.leaves_to(i, tool, nearest.point, self.sides.turn)
         {
             return None;
         }
@@ -75,7 +79,7 @@ impl OnSurface<'_> {
         near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless });
         let touches = near.overlap > 0.0;
         // Where the body of the node has it, a period away from the image that touches.
-        touches.then(|| NodeTouch { x, shift: own_place - x, point: nearest.point, near })
+        touches.then(|| NodeTouch { x, shift: own_place - center, point: nearest.point, near })
     }
 
     /// The force of a node that touches, with its history.
@@ -175,10 +179,13 @@ impl OnSurface<'_> {
         let Self { sides, nodes, tool, .. } = self;
         let (i, arm) = (node as usize, history.arms[0]);
         let own_place = nodes.position(i);
-        let x = sides.near(own_place, tool);
-        let surface = || tool.place(tool.surface.closest(tool.reference(x)).point);
-        let place = nodes.place(i, x, arm, surface);
-        let velocity = motion.velocity(arm, place + (own_place - x)) - tool.velocity_at(place);
+        let center = sides.near(own_place, tool);
+        let surface = || {
+            let foot = nodes.foot(i, center, tool);
+            tool.place(foot.map_or_else(|| tool.surface.closest(tool.reference(center)), |foot| foot.1).point)
+        };
+        let place = nodes.place(i, center, arm, surface);
+        let velocity = motion.velocity(arm, place + (own_place - center)) - tool.velocity_at(place);
         losses.add_work(1.0, history, velocity, self.dt);
     }
 

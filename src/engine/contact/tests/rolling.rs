@@ -1,0 +1,96 @@
+//! Rigid bodies that roll: round outlines touch like the circles that they are, however coarse the particles.
+
+use glam::DVec3;
+
+use super::{centre, simulation};
+use crate::simulation::Simulation;
+
+/// A body of that shape about (0, 0.1, 0) that starts on a floor with speed 1 m/s and the spin of rolling, under gravity that leans by some degrees towards x.
+fn rolling(dimension: &str, shape: &str, floor: &str, degrees: f64, speed: f64) -> Simulation {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    simulation(&format!(
+        r#"(dimension: {dimension}, gravity: ({}, {}, 0.0),
+            materials: {{"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+            bodies: [
+                (name: "wheel", material: "steel", shape: {shape}, spacing: 0.02, velocity: ({speed:?}, 0, 0), formulation: Rigid(spin: (0, 0, {}))),
+                (name: "floor", material: "steel", shape: {floor}, spacing: 0.02, formulation: Rigid()),
+            ],
+            conditions: [Fix(on: Select(body: "floor"))],
+            contacts: [Contact(between: ("wheel", "floor"), friction: 0.6, restitution: 0.3)],
+            time: (end: 0.5))"#,
+        9.81 * sine,
+        -9.81 * cosine,
+        -10.0 * speed,
+    ))
+}
+
+const PLANE: &str = "HalfSpace(point: (0, 0, 0), normal: (0, 1, 0))";
+
+#[test]
+fn a_ring_rolls_on_at_its_speed() {
+    let ring = "Ring(center: (0, 0.1), inner: 0.06, outer: 0.1)";
+    let drilled = "Difference(Sphere(center: (0, 0.1), radius: 0.1), Sphere(center: (0, 0.1), radius: 0.06))";
+    for (shape, floor) in [(ring, PLANE), (drilled, PLANE), (ring, "Box(min: (-0.2, -0.1), max: (1.0, 0.0))")]
+    {
+        let mut sim = rolling("Two", shape, floor, 0.0, 1.0);
+        sim.run(|_| true).expect("a run");
+        let (x, v) = centre(&sim, 0);
+        assert!(v.distance(DVec3::X) < 2e-3 && (x.x - 0.5).abs() < 1e-3, "{shape} on {floor}: {x} {v}");
+    }
+}
+
+/// `x = g sin(a) t^2 / (2 (1 + k))`, with the inertia `k m R^2` about the axis.
+#[test]
+fn wheels_accelerate_down_a_slope_as_their_inertia_says() {
+    let ends = "from: (0, 0.1, -0.05), to: (0, 0.1, 0.05)";
+    let ratio = |power: i32| 0.6f64.powi(power);
+    let of_shell = 0.4 * (1.0 - ratio(5)) / (1.0 - ratio(3));
+    for (shape, k) in [
+        (format!("Cylinder({ends}, radius: 0.1)"), 0.5),
+        (format!("Tube({ends}, inner: 0.06, outer: 0.1)"), 0.5 * (1.0 + ratio(2))),
+        ("Shell(center: (0, 0.1, 0), inner: 0.06, outer: 0.1)".to_owned(), of_shell),
+    ] {
+        let mut sim = rolling("Three", &shape, PLANE, 20.0, 0.0);
+        sim.run(|_| true).expect("a run");
+        let x = centre(&sim, 0).0.x;
+        let expected = 0.5 * 9.81 * 20f64.to_radians().sin() * 0.25 / (1.0 + k);
+        assert!((x / expected - 1.0).abs() < 5e-3, "{shape}: {x} {expected}");
+    }
+}
+
+/// A cylinder that stands on its end stays where it is, and one that lies across an edge of a box rolls over it.
+#[test]
+fn a_cylinder_stands_on_its_end() {
+    let standing = "Cylinder(from: (0, 0, 0), to: (0, 0.2, 0), radius: 0.05)";
+    let mut sim = rolling("Three", standing, PLANE, 10.0, 0.0);
+    sim.run(|_| true).expect("a run");
+    // It would tip over at 26.6 degrees, and slide at 31.
+    let (x, v) = centre(&sim, 0);
+    assert!(x.distance(DVec3::new(0.0, 0.1, 0.0)) < 2e-3 && v.length() < 1e-2, "{x} {v}");
+}
+
+/// A ring around another one, and a box in a ring: their inner sides touch as before.
+#[test]
+fn what_lies_in_a_ring_touches_its_inner_side() {
+    let pair = |inner: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0, -9.81),
+                materials: {{"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "drum", material: "steel", shape: Ring(center: (0, 0), inner: 0.2, outer: 0.25), spacing: 0.02, formulation: Rigid()),
+                    (name: "inside", material: "steel", shape: {inner}, spacing: 0.02, formulation: Rigid()),
+                ],
+                conditions: [Fix(on: Select(body: "drum"))],
+                contacts: [Contact(between: ("drum", "inside"), friction: 0.6, restitution: 0.1)],
+                time: (end: 1.0))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        centre(&sim, 1)
+    };
+    let (ring, _) = pair("Ring(center: (0, -0.09), inner: 0.05, outer: 0.1)");
+    assert!((ring.y + 0.1).abs() < 1e-3, "{ring}");
+    // Corners at (+-0.05, y - 0.05) on the circle of 0.2.
+    let (block, v) = pair("Box(min: (-0.05, -0.19), max: (0.05, -0.09))");
+    let expected = 0.05 - (0.04f64 - 0.0025).sqrt();
+    assert!((block.y - expected).abs() < 2e-3 && v.length() < 1e-2, "{block} {expected} {v}");
+}
