@@ -4,11 +4,16 @@ use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
 use crate::notation::place;
-use crate::plugin::BodyPlan;
-use crate::scene::Problem;
+use crate::plugin::{BodyKind, BodyPlan};
+use crate::scene::{Problem, Scene};
 
-/// One problem for every pair of bodies that overlap.
-pub(super) fn problems(bodies: &[BodyPlan]) -> Vec<Problem> {
+/// One problem for every pair of bodies that overlap. Rigid bodies with a contact are left to that: it knows their surfaces.
+pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene) -> Vec<Problem> {
+    let contacts: Vec<(String, String)> = scene.contact_pairs().map(|(_, contact)| contact.between).collect();
+    let is_left = |first: &BodyPlan, second: &BodyPlan| {
+        let between = |(a, b): &(String, String)| [(a, b), (b, a)].contains(&(&first.name, &second.name));
+        [first, second].iter().all(|body| body.kind == BodyKind::Rigid) && contacts.iter().any(between)
+    };
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {
         return Vec::new();
@@ -26,6 +31,9 @@ pub(super) fn problems(bodies: &[BodyPlan]) -> Vec<Problem> {
             let pair = (owners[i], owners[j as usize]);
             if pair.0 < pair.1 && !reported.contains(&pair) {
                 reported.push(pair);
+                if is_left(&bodies[pair.0], &bodies[pair.1]) {
+                    continue;
+                }
                 let (first, second) = (&bodies[pair.0].name, &bodies[pair.1].name);
                 let message = format!("body `{second}` overlaps body `{first}` at {}", place(positions[i]));
                 problems.push(

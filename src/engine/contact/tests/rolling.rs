@@ -87,6 +87,9 @@ fn what_lies_in_a_ring_touches_its_inner_side() {
         sim.run(|_| true).expect("a run");
         centre(&sim, 1)
     };
+    // Surfaces that all but touch do not overlap, however near the particles are.
+    let (disc, _) = pair("Sphere(center: (0, -0.0999), radius: 0.1)");
+    assert!((disc.y + 0.1).abs() < 1e-3, "{disc}");
     let (ring, _) = pair("Ring(center: (0, -0.09), inner: 0.05, outer: 0.1)");
     assert!((ring.y + 0.1).abs() < 1e-3, "{ring}");
     // Corners at (+-0.05, y - 0.05) on the circle of 0.2.

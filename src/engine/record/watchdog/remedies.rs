@@ -38,10 +38,10 @@ impl Remedies {
             fluids.any(|group| !self.has(group.body, "density_diffusion"))
         });
         let noise = if lacks_diffusion { "`density_diffusion()` for its noise, " } else { "" };
-        let rest = format!("{noise}no particle inside of a wall, more particles");
+        let rest = format!("{noise}no particle inside of a wall or body, more particles");
         match self.of_tension(step, None) {
             Some(text) => format!("{text}; else {rest}"),
-            None => format!("the pressure of walls does not fit that of the flow: {rest}"),
+            None => format!("the pressure that walls and bodies take from the flow does not fit it: {rest}"),
         }
     }
 

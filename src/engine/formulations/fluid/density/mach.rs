@@ -1,7 +1,7 @@
 //! Mach number of a flow: whether the fluid still is as good as incompressible.
 //!
 //! A tank that moves as a whole with its fluid compresses nothing. The speed that counts is that against the frame in which the fastest of
-//! all that flows and bounds a flow is slowest: at rest, or with one of the bodies that bound the flow.
+//! all that flows and bounds a flow is slowest: at rest, or with one of the bodies that bound the flow, or, where nothing bounds it, with the mean of what flows.
 
 use glam::DVec3;
 
@@ -29,15 +29,17 @@ pub fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], records: &[
         rows(group).map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max).sqrt()
     };
     let bounds = || groups.iter().filter(|group| group.fluid().is_none());
-    let mean = |group: &Group| {
-        let sum: DVec3 = rows(group).map(Record::velocity).sum();
-        sum / rows(group).count().max(1) as f64
+    let mean = |groups: &[Group]| {
+        let sum: DVec3 = groups.iter().flat_map(rows).map(Record::velocity).sum();
+        sum / groups.iter().flat_map(rows).count().max(1) as f64
     };
+    let of_bounds = bounds().map(|group| mean(std::slice::from_ref(group)));
+    let of_all = bounds().next().is_none().then(|| mean(groups));
     let in_frame = |frame| groups.iter().map(|group| fastest(group, frame)).fold(0.0, f64::max);
     let mut least = in_frame(DVec3::ZERO);
     let mut speed = at_rest;
     // A frame that is slow beside the flow is as good as rest.
-    for frame in bounds().map(mean).filter(|frame| frame.length() > (1.0 - SLOWER) * at_rest) {
+    for frame in of_bounds.chain(of_all).filter(|frame| frame.length() > (1.0 - SLOWER) * at_rest) {
         let largest = in_frame(frame);
         if largest < SLOWER * least {
             (least, speed) = (largest, fastest(group, frame).min(at_rest));

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::{FlowCloud, Group};
 use crate::pair::PhaseTerms;
 use crate::plugin::{BodyKind, Setup, SimBuilder};
-use crate::rigid::RigidBodies;
+use crate::rigid::{RigidBodies, RigidBody};
 use crate::world::{BodyId, ReferenceVolume};
 
 /// Warns of fluids whose density nothing diffuses.
@@ -50,7 +50,16 @@ pub fn sinking(
         let density = body.mass / volume[rows].iter().map(|volume| volume.0).sum::<f64>();
         let name = &setup.world.body(body.id).name;
         let name_of = |wall: &BodyId| &setup.world.body(*wall).name;
-        let held = walls.is_empty() || walls.iter().any(|wall| touch(contacts, name, name_of(wall)));
+        let is_free = |other: &str| {
+            let is_it = |body: &&RigidBody| setup.world.body(body.id).name == other;
+            bodies.iter().find(is_it).is_some_and(|body| !body.is_driven())
+        };
+        // A solid, a tool or a wall may hold it; another loose body does not.
+        let rests = contacts.iter().any(|(one, other)| {
+            (one == name && other != name && !is_free(other))
+                || (other == name && one != name && !is_free(one))
+        });
+        let held = walls.is_empty() || rests;
         if falls && density > lightest && !held {
             let wall = name_of(&walls[0]);
             setup.warnings.push(format!(

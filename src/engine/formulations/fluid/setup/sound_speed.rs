@@ -39,7 +39,7 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
             let at = format!("materials.{}", body.material_name);
             problems.push(
                 Problem::at_path(at, message)
-                    .help("give ten times the largest speed that the flow will reach"),
+                    .help("give ten times the largest of the speed that the flow will reach and of sqrt(p / density) of its pressure differences p, which friction and loads make too"),
             );
         }
     }

@@ -4,6 +4,8 @@ mod intrusion;
 
 mod passing;
 
+mod compression;
+
 mod filling;
 
 mod fit;

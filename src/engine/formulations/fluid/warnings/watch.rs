@@ -1,5 +1,6 @@
-//! What a flow must not do, looked at on the way: particles inside of what bounds it, gaps and swelling, rows that break up.
+//! What a flow must not do, looked at on the way: particles inside of what bounds it, compression, gaps and swelling, rows that break up.
 
+use super::compression::Compression;
 use super::filling::Filling;
 use super::fit;
 use super::friction::Friction;
@@ -18,9 +19,10 @@ const INTERVAL: u64 = 50;
 struct FlowWatch {
     intrusion: Intrusion,
     passing: Passing,
+    compression: Compression,
     filling: Filling,
     unevenness: Unevenness,
-    /// Filling and unevenness are looked at with the frames.
+    /// Compression, filling and unevenness are looked at with the frames.
     frames: Trigger,
     end: f64,
     /// Whether the lattices have been looked at.
@@ -35,6 +37,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
         passing: Passing::new(sim),
+        compression: Compression::default(),
         filling: Filling::default(),
         unevenness: Unevenness::default(),
         frames: Trigger::after_interval(sim.scene().record_interval()),
@@ -66,6 +69,7 @@ impl Run for FlowWatch {
             self.passing.look(step)?;
         }
         if is_frame {
+            self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
         }
@@ -74,13 +78,13 @@ impl Run for FlowWatch {
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        postcard::to_stdvec(&(told, &self.filling, self.frames)).unwrap_or_default()
+        postcard::to_stdvec(&(told, &self.compression, &self.filling, self.frames)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, filling, frames)) = postcard::from_bytes(state) else { return false };
+        let Ok((told, compression, filling, frames)) = postcard::from_bytes(state) else { return false };
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
-        self.filling = filling;
+        (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);
         true
     }

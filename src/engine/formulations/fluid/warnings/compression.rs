@@ -1,0 +1,96 @@
+//! Flows that are compressed: whether pressure changes the density by more than the few per cent that a liquid may have.
+//!
+//! The Mach number tells that of flows whose pressure is that of their inertia, rho v^2. Friction and loads make pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a
+//! packed bed, a deep tank. So the standard deviation of the compression p / (rho_0 c_0^2) over a body is looked at. A constant added to the pressure changes nothing, and an impact passes: it has to
+//! last for some frames.
+
+use serde::{Deserialize, Serialize};
+
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
+use crate::formulations::fluid::lanes::Record;
+use crate::notation::quantity;
+use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::schedule::Step;
+
+/// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a tenth of rho_0 c_0^2.
+const DEVIATION: f64 = 0.02;
+/// Frames in sequence for which it has to last.
+const FRAMES: u32 = 3;
+/// Growth of the deviation for which the warning is written anew.
+const GROWTH: f64 = 1.2;
+/// Standard deviation of a flow as one would have it.
+const USUAL: f64 = 0.003;
+
+/// Watches the compression of every body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Compression {
+    bodies: Vec<Told>,
+}
+
+/// What has been seen of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Told {
+    /// Frames in sequence with a large deviation.
+    frames: u32,
+    /// The largest deviation that the user has been told.
+    deviation: f64,
+}
+
+/// Number of particles, and sums of the compression and of its square.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums([f64; 3]);
+
+impl BlockSum for Sums {
+    fn add(&mut self, next: &Self) {
+        (0..3).for_each(|k| self.0[k] += next.0[k]);
+    }
+}
+
+impl Compression {
+    /// Looks at all fluids.
+    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
+        self.bodies.resize(cloud.groups.len(), Told::default());
+        for (group, told) in cloud.groups.iter().zip(&mut self.bodies) {
+            let Some(state) = group.fluid() else { break };
+            let deviation = deviation(&cloud.records[group.cloud.clone()], state.bulk_modulus());
+            told.frames = if deviation > DEVIATION { told.frames + 1 } else { 0 };
+            if told.frames < FRAMES || deviation < GROWTH * told.deviation {
+                continue;
+            }
+            told.deviation = deviation;
+            let (begin, text) = text(group, state, deviation, step);
+            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
+                Some(warning) => *warning = text,
+                None => step.warnings.push(text),
+            }
+        }
+    }
+}
+
+/// The standard deviation of p over that modulus.
+fn deviation(records: &[Record], modulus: f64) -> f64 {
+    let Sums([count, sum, squares]) = sum_over_blocks(records, &|_, records: &[Record]| {
+        let mut sums = Sums::default();
+        for record in records.iter().filter(|record| record.volume() > 0.0) {
+            let compression = record.pressure() / modulus;
+            sums.add(&Sums([1.0, compression, compression * compression]));
+        }
+        sums
+    });
+    let mean = sum / count.max(1.0);
+    (squares / count.max(1.0) - mean * mean).max(0.0).sqrt()
+}
+
+fn text(group: &Group, state: &FluidState, deviation: f64, step: &Step<'_>) -> (String, String) {
+    let begin = format!("`{}` is compressed unevenly: ", step.world.body(group.body).name);
+    let text = format!(
+        "{begin}its density varies by {:.0} % (standard deviation) at {}, where that of a liquid hardly changes; pressures of {} need a larger `sound_speed` of its material, \
+         some {:.3} m/s in the place of {:.3} m/s, at smaller steps",
+        100.0 * deviation,
+        quantity(step.clock.time, "s"),
+        quantity(deviation * state.bulk_modulus(), "Pa"),
+        state.sound_speed * (deviation / USUAL).sqrt(),
+        state.sound_speed,
+    );
+    (begin, text)
+}
