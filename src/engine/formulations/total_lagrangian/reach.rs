@@ -22,9 +22,9 @@ pub(in crate::formulations) struct Ellipsoid {
     tensor: Sym3,
     /// G^(-1/2), which makes it of the unit sphere.
     axes: Sym3,
-    /// Longest half axis.
+    /// Longest and shortest half axis.
     pub longest: f64,
-    shortest: f64,
+    pub shortest: f64,
     /// (det G)^(1/2), one over its volume.
     density: f64,
 }

@@ -170,7 +170,7 @@ impl UpdatedSolids {
             Update::Every(steps) => number > 0 && number.is_multiple_of(steps),
             Update::Adaptive { change } => {
                 let rows = step.world.body(self.solids.id(k)).rows.clone();
-                number.is_multiple_of(INTERVAL) && largest_change(rows, packed) > change * h
+                number.is_multiple_of(INTERVAL) && has_changed(rows, packed, change * h)
             }
         }
     }
@@ -372,22 +372,29 @@ fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), M
     Ok(())
 }
 
-/// The largest change of the length of a pair since the last update, m.
-fn largest_change(rows: std::ops::Range<usize>, packed: &UpdatedRows) -> f64 {
+/// Whether a pair has changed its length by more than `most` since the last update, m.
+fn has_changed(rows: std::ops::Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
     let UpdatedRows { sites, bonds, ghosts, .. } = packed;
     let ellipsoids = Ellipsoids(&packed.ellipsoids);
     let first_row = rows.start;
+    // A length changes by no more than the pair vector does: few pairs need a look at their ellipsoids.
+    let shortest =
+        packed.ellipsoids[rows.clone()].iter().map(|own| own.shortest).fold(f64::INFINITY, f64::min);
+    let least = (most * shortest).powi(2);
     let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
         let changes = own.iter().enumerate().flat_map(|(k, site)| {
             let i = first_row + first + k;
-            bonds.row(i).map(move |(j, _)| {
+            bonds.row(i).filter_map(move |(j, _)| {
+                let change = sites[j].displacement.xyz() - site.displacement.xyz();
+                if change.length_squared() < least {
+                    return None;
+                }
                 let length = |r_ij| ellipsoids.distance(ghosts, i, j, r_ij);
                 let reference = sites[j].reference.xyz() - site.reference.xyz();
-                let present = reference + (sites[j].displacement.xyz() - site.displacement.xyz());
-                (length(present) - length(reference)).abs()
+                Some((length(reference + change) - length(reference)).abs())
             })
         });
         Largest::of(changes)
     });
-    largest.0
+    largest.0 > most
 }
