@@ -8,9 +8,6 @@ use crate::rigid::{RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
 
-/// Steps in which the lowest point of a rim is found: one is exact on a plane, and a circle on a circle or cylinder is near it.
-const TURNS: usize = 2;
-
 /// Which of the two contacts of a pair of rigid bodies, of the nodes of each with the surface of the other, it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::contact) enum Turn {
@@ -85,7 +82,7 @@ impl NodeView<'_> {
         }
     }
 
-    /// How near a node is to a surface at a signed distance of its foot, m, with that outward normal.
+    /// How near a node is to a surface at a signed distance, m, with that outward normal.
     pub fn nearness(&self, i: usize, distance: f64, normal: DVec3) -> Nearness {
         let shape = match self {
             Self::Particles(members) => members.shape(i),
@@ -97,20 +94,30 @@ impl NodeView<'_> {
         on_surface(distance, normal, shape)
     }
 
-    /// The point of a node with its centre at `x` that is deepest in a tool, m, and the nearest point of its surface: the centre itself but for a rim. None where a rim lies flat.
-    pub fn foot(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<(DVec3, SurfacePoint)> {
-        let nearest = |x| tool.surface.closest(tool.reference(x));
-        let mut foot = (x, nearest(x));
-        if let Self::Rigid(body) = self
-            && let Round::Rim(rim) = body.nodes.list()[i].round
-        {
-            for _ in 0..TURNS {
-                let normal = body.state.rotation.inverse() * (tool.state.rotation * foot.1.normal);
-                let place = x + body.state.rotation * rim.lowest(normal)?;
-                foot = (place, nearest(place));
-            }
-        }
-        Some(foot)
+    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a rim the distance is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
+    /// to the centre. None where a rim lies flat.
+    pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
+        let nearest = tool.surface.closest(tool.reference(x));
+        let Some(arm) = self.lowest(i, nearest.normal, tool) else { return Some(nearest) };
+        let arm = arm?;
+        let below = arm.dot(nearest.normal);
+        let signed_distance = nearest.signed_distance + below;
+        let point = tool.reference(x) + arm - nearest.normal * signed_distance;
+        Some(SurfacePoint { point, signed_distance, ..nearest })
+    }
+
+    /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its centre, and does not touch its rim.
+    pub fn reaches(&self, i: usize, x: DVec3, normal: DVec3, tool: &RigidBody) -> bool {
+        let Some(Some(arm)) = self.lowest(i, normal, tool) else { return true };
+        tool.surface.closest(tool.reference(x) + arm).signed_distance < 0.0
+    }
+
+    /// From the centre of a rim to its lowest point over a plane of that normal, both in the reference configuration of the tool, if the node is a rim.
+    fn lowest(&self, i: usize, normal: DVec3, tool: &RigidBody) -> Option<Option<DVec3>> {
+        let Self::Rigid(body) = self else { return None };
+        let Round::Rim(rim) = body.nodes.list()[i].round else { return None };
+        let turn = body.state.rotation.inverse() * tool.state.rotation;
+        Some(rim.lowest(turn * normal).map(|arm| turn.inverse() * arm))
     }
 
     /// Whether contact there is left to the nodes of the tool: its round outline touches with circles of its own.

@@ -79,8 +79,12 @@ impl Sides {
     /// Place of the first node that is deeper inside the other body than one may start, m.
     pub fn inside(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
         let deep = |i: usize, x: DVec3| {
-            let Some((_, nearest)) = nodes.foot(i, self.near(x, tool), tool) else { return false };
+            let x = self.near(x, tool);
+            let Some(nearest) = nodes.nearest(i, x, tool) else { return false };
             let Nearness { overlap, .. } = nodes.nearness(i, nearest.signed_distance, nearest.normal);
+            if !nodes.reaches(i, x, nearest.normal, tool) {
+                return false;
+            }
             let radius = nodes.radius(i);
             overlap > if radius > 0.0 { RADIUS_SHARE * radius } else { SPACING_SHARE * nodes.size(i) }
         };

@@ -58,7 +58,25 @@ fn wheels_accelerate_down_a_slope_as_their_inertia_says() {
     }
 }
 
-/// A cylinder that stands on its end stays where it is, and one that lies across an edge of a box rolls over it.
+/// A ring that falls with its middle on the corner of a box is thrown straight back: the normal there is the line to its centre, not that of a face.
+#[test]
+fn a_ring_that_meets_a_corner_is_pushed_along_the_line_to_its_centre() {
+    let mut sim = simulation(
+        r#"(dimension: Two, materials: {"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "ring", material: "steel", shape: Ring(center: (0.0, 0.101), inner: 0.06, outer: 0.1), spacing: 0.02, velocity: (0, -1, 0), formulation: Rigid()),
+                (name: "edge", material: "steel", shape: Polygon(points: [(0, 0), (-0.1, -0.1), (0, -0.2), (0.1, -0.1)]), spacing: 0.02, formulation: Rigid()),
+            ],
+            conditions: [Fix(on: Select(body: "edge"))],
+            contacts: [Contact(between: ("ring", "edge"))],
+            time: (end: 0.05))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let (_, v) = centre(&sim, 0);
+    assert!(v.distance(DVec3::Y) < 5e-3, "{v}");
+}
+
+/// A cylinder that stands on its end stays where it is.
 #[test]
 fn a_cylinder_stands_on_its_end() {
     let standing = "Cylinder(from: (0, 0, 0), to: (0, 0.2, 0), radius: 0.05)";

@@ -63,7 +63,7 @@ impl OnSurface<'_> {
         let i = node as usize;
         let own_place = nodes.position(i);
         let center = self.sides.near(own_place, tool);
-        let (x, nearest) = nodes.foot(i, center, tool)?;
+        let nearest = nodes.nearest(i, center, tool)?;
         let normal = tool.state.rotation * nearest.normal;
         let near = nodes.nearness(i, nearest.signed_distance, normal);
         let is_far = near.overlap <= -NEAR * near.scale * nodes.size(i);
@@ -77,9 +77,9 @@ impl OnSurface<'_> {
         let held = nodes.is_held(i).then_some(i);
         let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
         near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless });
-        let touches = near.overlap > 0.0;
+        let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
-        touches.then(|| NodeTouch { x, shift: own_place - center, point: nearest.point, near })
+        touches.then(|| NodeTouch { x: center, shift: own_place - center, point: nearest.point, near })
     }
 
     /// The force of a node that touches, with its history.
@@ -181,8 +181,8 @@ impl OnSurface<'_> {
         let own_place = nodes.position(i);
         let center = sides.near(own_place, tool);
         let surface = || {
-            let foot = nodes.foot(i, center, tool);
-            tool.place(foot.map_or_else(|| tool.surface.closest(tool.reference(center)), |foot| foot.1).point)
+            let nearest = nodes.nearest(i, center, tool);
+            tool.place(nearest.map_or(tool.reference(center), |nearest| nearest.point))
         };
         let place = nodes.place(i, center, arm, surface);
         let velocity = motion.velocity(arm, place + (own_place - center)) - tool.velocity_at(place);
