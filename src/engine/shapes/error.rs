@@ -187,7 +187,7 @@ impl FillErrorKind {
                 "leave one of them out; the first point is not repeated at the end".into()
             }
             Self::NoInside => {
-                "it can fill a body, but not be combined with shapes, select particles, or be a rigid body that touches".into()
+                "it can fill a body, but not be combined with shapes, select particles, or be a rigid body or tool".into()
             }
             Self::Unbounded => "cut it with others: `Intersection([Box(...), HalfSpace(...)])`".into(),
             Self::NoSurface(_) => {

@@ -145,7 +145,7 @@ fn numbers_that_cannot_be() {
             "Difference(Sphere(center: (0, 0), radius: 1), Points(file: \"a.csv\"))",
             Two,
             "shape[1]",
-            "a particle file encloses no region; it can fill a body, but not be combined with shapes, select particles, or be a rigid body that touches",
+            "a particle file encloses no region; it can fill a body, but not be combined with shapes, select particles, or be a rigid body or tool",
         ),
     ];
     for (text, dimension, path, message) in cases {
