@@ -120,16 +120,19 @@ impl NodeView<'_> {
         Some(rim.lowest(turn * normal).map(|arm| turn.inverse() * arm))
     }
 
-    /// Whether contact there is left to the nodes of the tool: its round outline touches with circles of its own.
+    /// Whether contact at a point of a tool is left to the nodes of that: its round outline touches with circles of its own. Those of a ball lie in every plane, and go before the rims of a cylinder; of two alike the
+    /// first contact keeps it.
     pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: Turn) -> bool {
         let Self::Rigid(body) = self else { return false };
+        if turn == Turn::Alone || !tool.nodes.is_round(point) {
+            return false;
+        }
         let node = &body.nodes.list()[i];
-        // The corner of a body may come between two rims.
-        let is_met = matches!(node.round, Round::Rim(_)) || node.is_of_face() || tool.nodes.is_ball();
-        match turn {
-            Turn::Alone => false,
-            Turn::First => is_met && !matches!(node.round, Round::Rim(_)) && tool.nodes.is_round(point),
-            Turn::Second => is_met && tool.nodes.is_round(point),
+        match node.round {
+            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => turn == Turn::Second,
+            Round::Rim(_) => tool.nodes.is_ball(),
+            // The corner of a body may come between two rims.
+            Round::Ball(_) | Round::Point => node.is_of_face() || tool.nodes.is_ball(),
         }
     }
 

@@ -136,7 +136,7 @@ fn a_roller_that_is_turned_drives_what_lies_on_it_and_its_work_is_booked() {
 }
 
 /// Momentum and angular momentum about the origin of all rigid bodies.
-fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
+pub(super) fn momenta(sim: &Simulation) -> (DVec3, DVec3) {
     let bodies = sim.resources().get::<RigidBodies>();
     let linear = bodies.iter().map(|body| body.mass * body.state.velocity).sum();
     let angular = |body: &crate::rigid::RigidBody| {

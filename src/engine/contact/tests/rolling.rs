@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::rigid::momenta;
 use super::{centre, simulation};
 use crate::simulation::Simulation;
 
@@ -114,4 +115,46 @@ fn what_lies_in_a_ring_touches_its_inner_side() {
     let (block, v) = pair("Box(min: (-0.05, -0.19), max: (0.05, -0.09))");
     let expected = 0.05 - (0.04f64 - 0.0025).sqrt();
     assert!((block.y - expected).abs() < 2e-3 && v.length() < 1e-2, "{block} {expected} {v}");
+}
+
+/// On the ridge of a cylinder, between two of its rims, and whichever body the contact names first.
+#[test]
+fn a_shell_rests_on_a_cylinder() {
+    for between in [r#""shell", "cylinder""#, r#""cylinder", "shell""#] {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Three, gravity: (0, -9.81, 0),
+                materials: {{"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "shell", material: "steel", shape: Shell(center: (0.013, 0.15, 0), inner: 0.01, outer: 0.05), spacing: 0.02, formulation: Rigid()),
+                    (name: "cylinder", material: "steel", shape: Cylinder(from: (-0.2, 0, 0), to: (0.2, 0, 0), radius: 0.1), spacing: 0.02, formulation: Rigid()),
+                ],
+                conditions: [Fix(on: Select(body: "cylinder"))],
+                contacts: [Contact(between: ({between}), friction: 0.3, restitution: 0.1)],
+                time: (end: 0.2))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        let (x, v) = centre(&sim, 0);
+        assert!(x.distance(DVec3::new(0.013, 0.15, 0.0)) < 1e-4 && v.length() < 1e-3, "{between}: {x} {v}");
+    }
+}
+
+#[test]
+fn rings_that_meet_keep_momentum_angular_momentum_and_energy() {
+    let mut sim = simulation(
+        r#"(dimension: Two, materials: {"steel": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "one", material: "steel", shape: Ring(center: (0, 0), inner: 0.06, outer: 0.1), spacing: 0.02, velocity: (1, 0, 0), formulation: Rigid(spin: (0, 0, 5))),
+                (name: "two", material: "steel", shape: Ring(center: (0.25, 0.08), inner: 0.05, outer: 0.09), spacing: 0.02, formulation: Rigid()),
+            ],
+            contacts: [Contact(between: ("one", "two"), friction: 0.3)],
+            time: (end: 0.2))"#,
+    );
+    sim.start().expect("a start");
+    let (p, l) = momenta(&sim);
+    sim.run(|_| true).expect("a run");
+    let (q, m) = momenta(&sim);
+    assert!((q - p).length() < 1e-12 * p.length(), "{p} {q}");
+    assert!((m - l).length() < 1e-12 * l.length(), "{l} {m}");
+    assert!(centre(&sim, 1).1.length() > 0.1 && sim.ledger().total_named("friction") > 0.0);
+    assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
 }
