@@ -17,7 +17,7 @@ pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shared, SharedValues};
 pub use stage::Stage;
-pub use step::{Clock, Step, StepError};
+pub use step::{Clock, Step, StepError, warn_anew};
 pub use system::{Access, Mode, Run, System};
 pub use trigger::Trigger;
 pub use turn::{Pace, Turn};

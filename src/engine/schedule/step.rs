@@ -114,6 +114,14 @@ pub enum StepError {
     },
 }
 
+/// Warns of something that has grown: in the place of the warning that begins alike, if there is one.
+pub fn warn_anew(warnings: &mut Vec<String>, begin: &str, text: String) {
+    match warnings.iter_mut().find(|warning| warning.starts_with(begin)) {
+        Some(warning) => *warning = text,
+        None => warnings.push(text),
+    }
+}
+
 impl Step<'_> {
     /// The error of a particle that has left the range of what makes sense; `particle` is its number in the body.
     pub fn unstable(&self, what: &str, body: crate::world::BodyId, particle: usize) -> StepError {

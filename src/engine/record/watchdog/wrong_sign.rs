@@ -8,7 +8,7 @@ use crate::formulations::fluid::{FlowCloud, Group};
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{Account, AccountKind, Step};
+use crate::schedule::{Account, AccountKind, Step, warn_anew};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.05;
@@ -73,10 +73,7 @@ impl WrongSign {
                 quantity(step.clock.end(), "s"),
                 advice(&account.name, remedies, step)
             );
-            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
-                Some(warning) => *warning = text,
-                None => step.warnings.push(text),
-            }
+            warn_anew(step.warnings, &begin, text);
         }
     }
 }

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::{FluidState, Group};
 use crate::formulations::fluid::lanes::Record;
 use crate::notation::quantity;
-use crate::schedule::{Step, StepError};
+use crate::schedule::{Step, StepError, warn_anew};
 
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is chosen for. The density then changes by 4 %.
 const FAST: f64 = 0.2;
@@ -85,10 +85,7 @@ impl Mach {
             100.0 * mach * mach,
             10.0 * speed
         );
-        match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
-            Some(warning) => *warning = text,
-            None => step.warnings.push(text),
-        }
+        warn_anew(step.warnings, &begin, text);
         self.told = mach;
         Ok(())
     }

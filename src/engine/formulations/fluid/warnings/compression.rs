@@ -10,7 +10,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::Record;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
-use crate::schedule::Step;
+use crate::schedule::{Step, warn_anew};
 
 /// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a tenth of rho_0 c_0^2.
 const DEVIATION: f64 = 0.02;
@@ -59,10 +59,7 @@ impl Compression {
             }
             told.deviation = deviation;
             let (begin, text) = text(group, state, deviation, step);
-            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
-                Some(warning) => *warning = text,
-                None => step.warnings.push(text),
-            }
+            warn_anew(step.warnings, &begin, text);
         }
     }
 }

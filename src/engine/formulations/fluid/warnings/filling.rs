@@ -9,7 +9,7 @@ use crate::correction::FourMoments;
 use crate::formulations::fluid::cloud::{FlowCloud, RowPass, smallest_eigenvalue};
 use crate::notation::quantity;
 use crate::parallel::{FourLanes, Number};
-use crate::schedule::Step;
+use crate::schedule::{Step, warn_anew};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
@@ -56,10 +56,7 @@ impl Filling {
                     "the flow has collapsed: a larger `sound_speed`, `density_diffusion()` or a smaller step may help"
                 }
             );
-            match step.warnings.iter_mut().find(|warning| warning.starts_with(&begin)) {
-                Some(warning) => *warning = text,
-                None => step.warnings.push(text),
-            }
+            warn_anew(step.warnings, &begin, text);
         }
     }
 }
