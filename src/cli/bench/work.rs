@@ -134,6 +134,16 @@ pub const WORKS: &[Work] = &[
         ],
     },
     Work {
+        name: "solid-updated-3",
+        title: "updated-Lagrangian bodies whose reference is updated every three steps",
+        scene: BLOCK,
+        spacing: cube,
+        set: &[
+            ("bodies.block.spacing", Spacing),
+            ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2, update: Every(3))")),
+        ],
+    },
+    Work {
         name: "solid-updated-hessian",
         title: "the same with differences of second derivatives in the place of hourglass control",
         scene: BLOCK,

@@ -410,6 +410,11 @@ impl SolidBody {
         Ok(Self { id, law, state, estimate, terms, hessian, control: None, damped, stretch_factor: 1.0 })
     }
 
+    /// Whether it has folded terms.
+    pub fn has_terms(&self) -> bool {
+        !self.terms.is_empty()
+    }
+
     /// Whether it has a stabilization with an energy of its own.
     pub fn has_hessian_residual(&self) -> bool {
         self.hessian.is_some_and(|own| own.form == HessianForm::FrameIndifferent)

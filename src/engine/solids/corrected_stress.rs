@@ -56,6 +56,7 @@ impl CorrectedStress {
     }
 
     /// Adds to A_i, and to q_i, what no frame changes, of a particle at that place in the reference configuration.
+    #[inline(always)]
     pub fn add(&mut self, stress: &DMat3, reference: DVec3) {
         CorrectedStressRows(std::slice::from_mut(self)).add_scaled(0, 1.0, stress);
         self.add_traction(stress * reference);

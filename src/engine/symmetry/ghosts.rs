@@ -60,6 +60,7 @@ impl Ghosts {
         (signs != DVec3::ONE).then_some(signs)
     }
 
+    #[inline]
     fn map(&self, row: usize) -> &Map {
         &self.maps[self.which[row - self.rows] as usize]
     }

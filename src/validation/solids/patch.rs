@@ -139,7 +139,9 @@ fn breathe(registry: &Registry, across: usize, control: Control, periods: f64) -
     .set("time.end", periods * PERIOD)?;
     let scene = match control {
         Control::Alpha(alpha) => scene.set("bodies.patch.plugins.hourglass_control.alpha", alpha)?,
-        Control::Updated => scene.set("bodies.patch.formulation", "UpdatedLagrangian()")?,
+        Control::Updated => {
+            scene.set("bodies.patch.formulation", "UpdatedLagrangian(update: Adaptive(change: 1.0))")?
+        }
         Control::Eulerian => scene
             .set("bodies.patch.plugins", "[hourglass_control()]")?
             .set("bodies.patch.formulation", "Eulerian()")?,

@@ -136,9 +136,11 @@ impl Bonds {
         if self.offsets.is_empty() {
             self.offsets.push(0);
         }
+        let numbers = 0..(rows.len() + body.ghost_rows.len()) as u32;
+        let is_seen: Vec<bool> = numbers.map(|number| body.is_seen(number)).collect();
         for k in 0..rows.len() {
-            if body.is_seen(k as u32) {
-                let seen = list.row(k).iter().filter(|&&j| body.is_seen(j)).map(|&j| body.row(j));
+            if is_seen[k] {
+                let seen = list.row(k).iter().filter(|&&j| is_seen[j as usize]).map(|&j| body.row(j));
                 self.neighbors.extend(seen.filter(|&j| body.is_near(rows.start + k, j as usize)));
             }
             self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));

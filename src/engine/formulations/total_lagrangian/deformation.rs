@@ -78,7 +78,7 @@ impl DeformationPass<'_> {
             bonds,
             sites,
             first,
-            deformation: rows.deformation,
+            count: n,
             gradient: &mut block.gradient,
             residual: &mut block.residual,
             stretch: &mut stretch,

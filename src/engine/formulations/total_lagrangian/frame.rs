@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::rows::Site;
 use crate::parallel::Lanes4;
 use crate::solids::CorrectedStress;
+use crate::symmetry::Ghosts;
 
 /// An affine motion near that of the body, u = u_0 + H X: what its middle particle did in the last step.
 ///
@@ -62,4 +63,27 @@ impl Frame {
 /// Index of the frame of a row.
 pub(in crate::formulations) fn frame_of(frames: &[Frame], row: usize) -> usize {
     frames.partition_point(|frame| frame.end <= row)
+}
+
+/// Fills the stresses of the ghosts, which have their sites. `pull` is the force per volume squared and weight that a row has beside its stress.
+pub(in crate::formulations) fn fill_ghosts(
+    ghosts: &Ghosts,
+    frames: &[Frame],
+    sites: &[Site],
+    stresses: &mut [CorrectedStress],
+    pull: impl Fn(usize) -> DVec3 + Sync,
+) {
+    ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
+        // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
+        let frame = &frames[frame_of(frames, ghost.source)];
+        let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
+        let mut plain = *own;
+        for (column, moved) in plain.columns.iter_mut().zip(moved) {
+            *column = Lanes4::new(column.xyz() - own.stiffness() * moved, column.0[3]);
+        }
+        let mut stress = plain.image(ghost.map);
+        frame.complete(&mut stress, &sites[ghost.row]);
+        stress.add_traction(-pull(ghost.row));
+        stress
+    });
 }

@@ -15,7 +15,8 @@ pub(in crate::formulations) struct Gather<'a> {
     pub sites: &'a [Site],
     /// First row of the block in the phase.
     pub first: usize,
-    pub deformation: &'a mut [DMat3],
+    /// Number of rows of the block.
+    pub count: usize,
     pub gradient: &'a mut [DMat3; BLOCK],
     pub residual: &'a mut [f64; BLOCK],
     /// `sum_j V_j w_ij u_ij`.
@@ -26,27 +27,11 @@ pub(in crate::formulations) struct Gather<'a> {
 impl PlaneOrSolid for Gather<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, sites, first, deformation, gradient, residual, stretch, volume } = self;
-        for (k, f_i) in deformation.iter_mut().enumerate() {
+        let Self { bonds, sites, first, count, gradient, residual, stretch, volume } = self;
+        for k in 0..count {
             let i = first + k;
             let site = sites[i];
-            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let (mut even, mut odd) = (Spread::<D>::ZERO, Spread::<D>::ZERO);
-            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
-            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
-            // By number: zipped iterators would be called, off the instruction path.
-            for n in 0..pairs.len() {
-                let (j, weight) = (pairs[n], weights[n]);
-                even.add(a, site.displacement, &sites[j[0] as usize], weight[0]);
-                odd.add(a, site.displacement, &sites[j[1] as usize], weight[1]);
-            }
-            if let ([j], [weight]) = (last, last_weight) {
-                even.add(a, site.displacement, &sites[*j as usize], *weight);
-            }
-            let Spread { mut spread, stretched, square } = even.plus(a, &odd);
-            for axis in 0..D {
-                spread[axis] = a.scale_add(-site.reference.0[axis], stretched, spread[axis]);
-            }
+            let Spread { spread, stretched, square } = Spread::<D>::over(a, bonds, sites, i);
             // A free particle has a zero inverse, and so F = I.
             let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
@@ -55,7 +40,6 @@ impl PlaneOrSolid for Gather<'_> {
             stretch[k] = stretched.xyz();
             volume[k] = site.reference.0[3];
             gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
-            *f_i = DMat3::IDENTITY + gradient[k];
         }
     }
 }
@@ -75,7 +59,7 @@ pub(in crate::formulations) fn fit_gradients(
             bonds,
             sites,
             first: first + start,
-            deformation: &mut *gradient,
+            count: gradient.len(),
             gradient: &mut fitted,
             residual: &mut residual,
             stretch: &mut stretch,

@@ -10,8 +10,11 @@
 //!
 //! with A and u in the [`Frame`] of the body, so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
+use super::bond_sum::BondSum;
 use super::bonds::Bonds;
 use super::cracks::Cracks;
 use super::frame::{Frame, frame_of};
@@ -49,10 +52,18 @@ impl<'a> InternalForce<'a> {
         Self { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
     }
 
+    /// Adds the force on some rows, N.
+    pub fn add(&self, rows: Range<usize>, force: &mut [Force]) {
+        let start = rows.start;
+        for_each_block(&mut force[rows], &mut Vec::new(), &|first, force: &mut [Force]| {
+            run_hot_in(self.plane, ForceRows { pass: self, first: start + first, force, adds: true });
+        });
+    }
+
     /// Writes the force on every particle: gravity plus internal force, N.
     pub fn run(&self, force: &mut [Force]) {
         for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
-            run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force });
+            run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force, adds: false });
             let Self { bonds, ghosts, cracks, sites, .. } = *self;
             for &row in cracks.rows_of_block(first, force.len()) {
                 let row = row as usize;
@@ -66,6 +77,8 @@ struct ForceRows<'a> {
     pass: &'a InternalForce<'a>,
     first: usize,
     force: &'a mut [Force],
+    /// Whether to add to what is there.
+    adds: bool,
 }
 
 impl PlaneOrSolid for ForceRows<'_> {
@@ -76,20 +89,7 @@ impl PlaneOrSolid for ForceRows<'_> {
         for (k, force) in self.force.iter_mut().enumerate() {
             let i = self.first + k;
             let site = sites[i];
-            let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
-            let (mut even, mut odd) = (ForceSum::<D>::ZERO, ForceSum::<D>::ZERO);
-            let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
-            let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
-            // By number: zipped iterators would be called, off the instruction path.
-            for n in 0..pairs.len() {
-                let (j, weight) = (pairs[n], weights[n]);
-                even.add(a, &stresses[j[0] as usize], weight[0]);
-                odd.add(a, &stresses[j[1] as usize], weight[1]);
-            }
-            if let ([j], [weight]) = (last, last_weight) {
-                even.add(a, &stresses[*j as usize], *weight);
-            }
-            let sum = even.plus(a, &odd);
+            let sum = BondSum::<D>::over(a, bonds, stresses, i);
             if frames[frame].end <= i {
                 frame = frame_of(frames, i);
             }
@@ -101,37 +101,9 @@ impl PlaneOrSolid for ForceRows<'_> {
             let volume = site.reference.0[3];
             // A removed particle has no volume here: nothing acts on it, not even gravity.
             let weight = if site.is_present() { gravity * mass[i] } else { DVec3::ZERO };
-            *force = Force((pull.xyz() + self_force[i]) * volume + weight);
+            let total = (pull.xyz() + self_force[i]) * volume + weight;
+            *force = Force(if self.adds { force.0 + total } else { total });
         }
-    }
-}
-
-/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for every other
-/// bond, so that additions need not wait for each other.
-struct ForceSum<const D: usize> {
-    columns: [Lanes4; D],
-    traction: Lanes4,
-}
-
-impl<const D: usize> ForceSum<D> {
-    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], traction: Lanes4::ZERO };
-
-    #[inline(always)]
-    fn add<A: FourLanes>(&mut self, a: A, other: &CorrectedStress, weight: f32) {
-        let weight = f64::from(weight) * other.traction.0[3];
-        for axis in 0..D {
-            self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
-        }
-        self.traction = a.scale_add(weight, other.traction, self.traction);
-    }
-
-    #[inline(always)]
-    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
-        for axis in 0..D {
-            self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
-        }
-        self.traction = a.plus(self.traction, other.traction);
-        self
     }
 }
 

@@ -4,6 +4,7 @@
 //! over pairs. The first computes F and, block by block while the rows are in cache, the stress and the corrected stress;
 //! the second computes the force.
 
+mod bond_sum;
 mod bonds;
 mod cracks;
 mod deformation;
@@ -31,7 +32,7 @@ pub(super) use bonds::BodyBonds;
 pub use bonds::{BondError, Bonds};
 pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;
-pub(super) use frame::Frame;
+pub(super) use frame::{Frame, fill_ghosts, frame_of};
 pub(super) use gather::{CorrectStress, Gather, fit_gradients};
 pub(super) use held::Held;
 pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::cracks::Cracks;
-use super::frame::{Frame, frame_of};
+use super::frame::{Frame, fill_ghosts};
 use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
@@ -45,19 +45,7 @@ impl PackedRows {
     /// Fills the stresses of the ghosts, which have their sites.
     pub fn fill_ghost_stresses(&mut self) {
         let Self { ghosts, frames, sites, stresses, hessian, .. } = self;
-        ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
-            // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
-            let frame = &frames[frame_of(frames, ghost.source)];
-            let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
-            let mut plain = *own;
-            for (column, moved) in plain.columns.iter_mut().zip(moved) {
-                *column = Lanes4::new(column.xyz() - own.stiffness() * moved, column.0[3]);
-            }
-            let mut stress = plain.image(ghost.map);
-            frame.complete(&mut stress, &sites[ghost.row]);
-            stress.add_traction(-hessian.pull_of(ghost.row));
-            stress
-        });
+        fill_ghosts(ghosts, frames, sites, stresses, |row| hessian.pull_of(row));
     }
 }
 

@@ -68,17 +68,25 @@ pub(in crate::formulations) struct Ellipsoids<'a>(pub &'a [Ellipsoid]);
 
 impl Ellipsoids<'_> {
     /// Distance r_ij of row `j` from row `i` as both measure it, m.
+    #[inline]
     pub fn distance(&self, ghosts: &Ghosts, i: usize, j: usize, r_ij: DVec3) -> f64 {
         let seen = ghosts.mirror(j).map_or(r_ij, |signs| signs * r_ij);
-        let square = |g: &Sym3, r: DVec3| g.double_dot(&Sym3::dyad(r));
         let theirs = square(&self.0[ghosts.source(j)].tensor, seen);
         (0.5 * (square(&self.0[i].tensor, r_ij) + theirs)).sqrt()
     }
 
     /// Factor of the kernel of a pair.
+    #[inline]
     pub fn density(&self, ghosts: &Ghosts, i: usize, j: usize) -> f64 {
         0.5 * (self.0[i].density + self.0[ghosts.source(j)].density)
     }
+}
+
+/// r . G r.
+#[inline(always)]
+fn square(g: &Sym3, r: DVec3) -> f64 {
+    let own = g.xx * r.x * r.x + g.yy * r.y * r.y + g.zz * r.z * r.z;
+    own + 2.0 * (g.xy * r.x * r.y + g.xz * r.x * r.z + g.yz * r.y * r.z)
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ impl Site {
     }
 
     /// Whether it counts in sums over neighbours: a removed particle has no volume here.
+    #[inline(always)]
     pub fn is_present(&self) -> bool {
         self.reference.0[3] > 0.0
     }

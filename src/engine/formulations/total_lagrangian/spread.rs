@@ -1,5 +1,6 @@
 //! Weighted sums over the bonds of a particle, and the fit of its deformation gradient to them.
 
+use super::bonds::Bonds;
 use super::rows::Site;
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4};
@@ -7,7 +8,7 @@ use crate::parallel::{FourLanes, Lanes4};
 /// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
 /// wait for each other.
 pub(in crate::formulations) struct Spread<const D: usize> {
-    /// Columns of `sum_j V_j w_ij u_ij (x) X_j`: X_i is taken off behind the loop. u_ij is made first, so that a body that
+    /// Columns of `sum_j V_j w_ij u_ij (x) X_ij`: X_i is taken off behind the loop. u_ij is made first, so that a body that
     /// has moved as a whole has no gradient, to the bit.
     pub spread: [Lanes4; D],
     /// `sum_j V_j w_ij u_ij`.
@@ -17,10 +18,34 @@ pub(in crate::formulations) struct Spread<const D: usize> {
 }
 
 impl<const D: usize> Spread<D> {
-    pub const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
+    const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
+
+    /// The sums over the bonds of row `i`.
+    #[inline(always)]
+    pub fn over<A: FourLanes>(a: A, bonds: &Bonds, sites: &[Site], i: usize) -> Self {
+        let site = sites[i];
+        let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+        let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
+        let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+        let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+        // By number: zipped iterators would be called, off the instruction path.
+        for n in 0..pairs.len() {
+            let (j, weight) = (pairs[n], weights[n]);
+            even.add(a, site.displacement, &sites[j[0] as usize], weight[0]);
+            odd.add(a, site.displacement, &sites[j[1] as usize], weight[1]);
+        }
+        if let ([j], [weight]) = (last, last_weight) {
+            even.add(a, site.displacement, &sites[*j as usize], *weight);
+        }
+        let mut sums = even.plus(a, &odd);
+        for axis in 0..D {
+            sums.spread[axis] = a.scale_add(-site.reference.0[axis], sums.stretched, sums.spread[axis]);
+        }
+        sums
+    }
 
     #[inline(always)]
-    pub fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
+    fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
         let displacement = a.minus(other.displacement, displacement);
         let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
         for axis in 0..D {
@@ -31,7 +56,7 @@ impl<const D: usize> Spread<D> {
     }
 
     #[inline(always)]
-    pub fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
+    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
         for axis in 0..D {
             self.spread[axis] = a.plus(self.spread[axis], other.spread[axis]);
         }

@@ -82,8 +82,10 @@ impl Deformation {
                 pass.run(law, rows, own, block)
             });
         }
-        let difference = FrameIndifferent { bonds, ghosts, sites, stresses, self_force, hessian };
-        difference.run(&view, &mut self.solids, part.dt)?;
+        let plane = self.plane;
+        let difference =
+            FrameIndifferent { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane };
+        difference.run(&view, &mut self.solids, part.dt, |_| true)?;
         hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
         packed.fill_ghost_stresses();
         packed.cracks.settle();

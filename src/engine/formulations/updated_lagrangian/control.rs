@@ -1,4 +1,4 @@
-//! Hourglass control from the original pair vectors X_ij, with weights of the reference.
+//! Stabilizers of bodies whose reference has been updated: from the original pair vectors X_ij, with weights of the reference.
 //!
 //! ```text
 //! H_i = (sum_j V_j w_ij u_ij (x) X_ij) (sum_j V_j w_ij X_ij (x) X_ij)^-1 ,   u_ij = x_ij - X_ij
@@ -14,110 +14,178 @@
 //! every three steps: 18 J of 36 J).
 //!
 //! Failed particles are in no sum.
-
-use std::ops::Range;
+//!
+//! Before its first update a body has these sums already, those of its stress: there the terms fold into it, as in a total-Lagrangian body.
 
 use glam::{DMat3, DVec3};
 
-use crate::correction::MomentMatrix;
-use crate::formulations::total_lagrangian::{Bonds, Site, fit};
+use super::phase::UpdatedRows;
+use super::reference::bounds;
+use crate::formulations::total_lagrangian::{
+    BodyKernel, Bonds, Ellipsoids, Frame, Gather, HessianBlock, Site, fill_ghosts,
+};
 use crate::linalg::Sym3;
-use crate::parallel::{BLOCK, FourLanes, Lanes4, PlaneOrSolid};
-use crate::solids::CorrectedStress;
-use crate::world::Force;
+use crate::parallel::{BLOCK, run_hot_in};
+use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
+use crate::symmetry::Ghosts;
+use crate::world::World;
 
-/// Fits H to a block of particles.
-pub(super) struct ControlFit<'a> {
-    pub bonds: &'a Bonds,
-    /// Original places with the volumes of what holds, and displacements since the start.
-    pub sites: &'a [Site],
-    pub rows: Range<usize>,
-    pub gradient: &'a mut [DMat3; BLOCK],
-    pub residual: &'a mut [f64; BLOCK],
-    pub volume: &'a mut [f64; BLOCK],
-    /// Whether there are enough neighbours for a fit.
-    pub fitted: &'a mut [bool; BLOCK],
+/// The packed rows of the stabilizers; without a body of its own, empty.
+#[derive(Default)]
+pub(super) struct Control {
+    /// Of every body: whether stabilizers act on it that are folded terms, or differences of Laplacians.
+    pub is_stabilized: Vec<bool>,
+    /// Of every body: whether its stabilizers have sums of their own.
+    pub is_apart: Vec<bool>,
+    /// The bonds of the reference with other weights, and moments of the original pair vectors.
+    pub bonds: Bonds,
+    /// Where original positions are measured from, m.
+    pub origin: DVec3,
+    /// Volume V of what holds, m3; zero of all else.
+    pub volume: Vec<f64>,
+    /// Original position with the volume V where the particle holds, and displacement since the start.
+    pub sites: Vec<Site>,
+    /// B and k.
+    pub stresses: Vec<CorrectedStress>,
+    /// The part of the force on each particle that comes from its own B and k, over its volume.
+    pub self_force: Vec<DVec3>,
+    pub frames: Vec<Frame>,
 }
 
-impl PlaneOrSolid for ControlFit<'_> {
-    #[inline(always)]
-    fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, sites, rows, gradient, residual, volume, fitted } = self;
-        for (k, i) in rows.enumerate() {
-            let own = sites[i];
-            let (mut moment, mut spread) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
-            let mut square = Lanes4::ZERO;
-            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                let other = &sites[bonds.neighbors[bond] as usize];
-                let weight = f64::from(bonds.weights[bond]) * other.reference.0[3];
-                let arm = a.minus(other.reference, own.reference);
-                let change = a.minus(other.displacement, own.displacement);
-                let (weighted_arm, weighted) = (a.scale(weight, arm), a.scale(weight, change));
-                for axis in 0..D {
-                    moment[axis] = a.scale_add(arm.0[axis], weighted_arm, moment[axis]);
-                    spread[axis] = a.scale_add(arm.0[axis], weighted, spread[axis]);
-                }
-                square = a.times_add(change, weighted, square);
-            }
-            let inverse = MomentMatrix::of(symmetric(&moment), D).inverse().filter(|_| own.is_present());
-            fitted[k] = inverse.is_some();
-            let h = fit::<A, D>(a, &spread, &inverse.unwrap_or_default());
-            let explained: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
-            let unexplained = square.0[0] + square.0[1] + square.0[2] - explained;
-            residual[k] = if fitted[k] { unexplained } else { 0.0 };
-            gradient[k] = DMat3::from_cols(h[0].xyz(), h[1].xyz(), h[2].xyz());
-            volume[k] = own.reference.0[3];
+impl Control {
+    /// Those of bodies of which some are stabilized.
+    pub fn of(is_stabilized: Vec<bool>) -> Self {
+        Self { is_stabilized, ..Self::default() }
+    }
+
+    /// Whether any body has sums of its own.
+    pub fn has_sums(&self) -> bool {
+        self.is_apart.contains(&true)
+    }
+
+    /// Hands stresses on to the ghosts, with the pull of every row.
+    pub fn fill_ghost_stresses(&mut self, ghosts: &Ghosts, pull: impl Fn(usize) -> DVec3 + Sync) {
+        if self.has_sums() {
+            fill_ghosts(ghosts, &self.frames, &self.sites, &mut self.stresses, pull);
         }
     }
 }
 
-/// The symmetric matrix with those columns.
-#[inline(always)]
-fn symmetric<const D: usize>(columns: &[Lanes4; D]) -> Sym3 {
-    let [x, y] = [columns[0].0, columns[1].0];
-    let plane = Sym3 { xx: x[0], yy: y[1], xy: x[1], ..Sym3::ZERO };
-    match columns.get(2) {
-        Some(z) => Sym3 { zz: z.0[2], xz: z.0[0], yz: z.0[1], ..plane },
-        None => plane,
+impl UpdatedRows {
+    /// Decides which bodies need sums of their own, and makes their bonds. What has `failed` does not hold; the rows are ascending.
+    pub fn weigh_control(&mut self, world: &World, original: &[DVec3], support: &[f64], failed: &[u32]) {
+        let Self { bonds, ghosts, gradient, kernels, control, volume, ellipsoids, follows, .. } = self;
+        control.is_apart.clear();
+        for (k, BodyKernel { body, .. }) in kernels.iter().enumerate() {
+            let rows = world.body(*body).rows.clone();
+            let has_failed = failed.iter().any(|&row| rows.contains(&(row as usize)));
+            // Those that carry no stress for want of neighbours may still be held together.
+            let is_released = |row: &usize| volume[*row] > 0.0 && bonds.row(*row).next().is_some();
+            let free = bonds.free.iter().map(|&row| row as usize);
+            let has_released = free.filter(|row| rows.contains(row)).any(|row| is_released(&row));
+            control.is_apart.push(control.is_stabilized[k] && (follows[k] || has_failed || has_released));
+        }
+        if !control.has_sums() {
+            return;
+        }
+        let (low, high) = bounds(original);
+        control.origin = 0.5 * (low + high);
+        control.volume.clone_from(volume);
+        failed.iter().for_each(|&row| control.volume[row as usize] = 0.0);
+        control.bonds.take_topology(bonds);
+        let ellipsoids = Ellipsoids(ellipsoids);
+        let apart = kernels.iter().zip(&control.is_apart).filter(|(_, is_apart)| **is_apart);
+        for (BodyKernel { body, kernel, .. }, _) in apart {
+            let rows = world.body(*body).rows.clone();
+            let ratio = kernel.smoothing_length(1.0);
+            control.bonds.set_weights(rows.clone(), |i, j| {
+                let source = ghosts.source(j);
+                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
+                let x_ij = ghosts.pair(original, i, j);
+                let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
+                let h = 0.5 * (support[i] + support[source]) * ratio;
+                let distance = ellipsoids.distance(ghosts, i, j, mean);
+                (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
+            });
+            control.bonds.correct(rows, kernel.dimension(), original, &control.volume, ghosts);
+        }
+        let (real, all) = (volume.len(), volume.len() + ghosts.len());
+        control.sites.resize(all, Site::default());
+        control.stresses.resize(all, CorrectedStress::default());
+        control.self_force.resize(real, DVec3::ZERO);
     }
 }
 
-/// Adds the force of the control to a block of rows.
-pub(super) struct ControlForce<'a> {
+/// The sums of the stabilizers of one body.
+pub(super) struct ControlPass<'a> {
     pub bonds: &'a Bonds,
-    /// Pull of the differences of Laplacians; empty without them.
-    pub pull: &'a [DVec3],
     pub sites: &'a [Site],
-    pub control: &'a [CorrectedStress],
-    pub first: usize,
-    pub force: &'a mut [Force],
+    pub frame: Frame,
+    /// Plane strain.
+    pub plane: bool,
 }
 
-impl PlaneOrSolid for ControlForce<'_> {
-    #[inline(always)]
-    fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, pull, sites, control, first, force } = self;
-        for (k, force) in force.iter_mut().enumerate() {
-            let i = first + k;
-            let (site, own) = (sites[i], &control[i]);
-            let mut sum = Lanes4::ZERO;
-            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                let j = bonds.neighbors[bond] as usize;
-                let (other, theirs) = (&sites[j], &control[j]);
-                let weight = f64::from(bonds.weights[bond]) * other.reference.0[3];
-                let arm = a.minus(other.reference, site.reference);
-                let change = a.minus(other.displacement, site.displacement);
-                let mut traction = a.scale(own.stiffness() + theirs.stiffness(), change);
-                for axis in 0..D {
-                    let column = a.plus(own.columns[axis], theirs.columns[axis]);
-                    traction = a.scale_add(arm.0[axis], column, traction);
-                }
-                if !pull.is_empty() {
-                    traction = a.plus(traction, Lanes4::new(pull[i] - pull[j], 0.0));
-                }
-                sum = a.scale_add(weight, traction, sum);
+/// What the pass writes of a block.
+pub(super) struct ControlRows<'a> {
+    pub stresses: &'a mut [CorrectedStress],
+    pub self_force: &'a mut [DVec3],
+    pub hessian: HessianBlock<'a>,
+}
+
+impl ControlPass<'_> {
+    /// Adds the folded terms of a block, and hands the fit on to the differences of Laplacians.
+    pub fn block(
+        &self,
+        constitutive: &Constitutive<'_>,
+        rows: &mut SolidRows<'_>,
+        block: &mut SolidBlock,
+        own: ControlRows<'_>,
+        sum: &mut SolidSum,
+    ) {
+        let Self { bonds, sites, frame, plane } = self;
+        let ControlRows { stresses, self_force, mut hessian } = own;
+        let (n, first) = (rows.deformation.len(), block.first);
+        let mut stretch = [DVec3::ZERO; BLOCK];
+        let gather = Gather {
+            bonds,
+            sites,
+            first,
+            count: n,
+            gradient: &mut block.gradient,
+            residual: &mut block.residual,
+            stretch: &mut stretch,
+            volume: &mut block.volume,
+        };
+        run_hot_in(*plane, gather);
+        hessian.take_gradient(&block.gradient);
+        // Without a fit there is nothing to resist.
+        let has_fit = |k: usize| bonds.inverse_moment[first + k] != Sym3::ZERO;
+        for k in (0..n).filter(|&k| !has_fit(k)) {
+            block.residual[k] = 0.0;
+        }
+        stresses.fill(CorrectedStress::default());
+        constitutive.fold(&mut constitutive.folded(rows, block, stresses), sum);
+        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
+            if !has_fit(k) {
+                *stress = CorrectedStress::default();
             }
-            force.0 += sum.xyz() * site.reference.0[3];
+            frame.complete(stress, &sites[first + k]);
+            let reach = bonds.reach[first + k];
+            *self_force = stress.times(reach, stretch[k] - frame.gradient * reach);
         }
     }
+}
+
+/// Whether these are the places, gradients and volumes of the start; those that have been removed do not count.
+pub(super) fn is_original(
+    mut rows: std::ops::Range<usize>,
+    (reference, original): (&[DVec3], &[DVec3]),
+    gradient: &[DMat3],
+    (volume, start): (&[f64], &[f64]),
+) -> bool {
+    rows.all(|row| {
+        reference[row] == original[row]
+            && gradient[row] == DMat3::IDENTITY
+            && (volume[row] == start[row] || volume[row] == 0.0)
+    })
 }

@@ -2,10 +2,9 @@
 
 use glam::DVec3;
 
-use super::control::ControlForce;
+use super::control::Control;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::InternalForce as StressForce;
-use crate::parallel::{for_each_block, run_hot_in};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -31,37 +30,23 @@ impl Run for InternalForce {
 
 /// Writes the force of the last first pass, N.
 pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bool, force: &mut [Force]) {
-    let UpdatedRows {
-        bonds,
-        ghosts,
-        cracks,
-        sites,
-        originals,
-        stresses,
-        control,
-        control_bonds,
-        hessian,
-        self_force,
-        frames,
-        ..
-    } = rows;
+    let UpdatedRows { bonds, ghosts, cracks, sites, stresses, control, hessian, self_force, frames, .. } =
+        rows;
     let mass = bytemuck::cast_slice(mass);
-    StressForce { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
-        .run(force);
+    let of_stress =
+        StressForce { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane };
+    of_stress.run(force);
     hessian.add_vidal_force(bonds, sites, force);
-    if rows.has_control {
-        for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
-            run_hot_in(
-                plane,
-                ControlForce {
-                    bonds: control_bonds,
-                    pull: &hessian.pull,
-                    sites: originals,
-                    control,
-                    first,
-                    force,
-                },
-            );
-        });
+    if !control.has_sums() {
+        return;
+    }
+    let Control { is_apart, bonds, sites, stresses, self_force, frames, .. } = control;
+    let of_control =
+        StressForce { bonds, sites, stresses, self_force, frames, gravity: DVec3::ZERO, ..of_stress };
+    let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
+    for ((start, frame), is_apart) in starts.zip(frames).zip(is_apart) {
+        if *is_apart {
+            of_control.add(start..frame.end, force);
+        }
     }
 }

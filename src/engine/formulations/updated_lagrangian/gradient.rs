@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::control::ControlFit;
+use super::control::{ControlPass, ControlRows};
 use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, HessianBlock, Site};
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, run_hot, run_hot_in, split_by_rows};
@@ -11,33 +11,28 @@ use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidS
 /// What the pass writes of packed rows, cut by rows of one body.
 pub(super) struct GradientRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
-    pub control: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
+    /// B and k of the stabilizers, and what they make of a particle's own; empty where they fold into the stress.
+    pub control: &'a mut [CorrectedStress],
+    pub control_force: &'a mut [DVec3],
     pub hessian: HessianBlock<'a>,
 }
 
-split_by_rows!(GradientRows { stresses, control, self_force, hessian });
+split_by_rows!(GradientRows { stresses, self_force, control, control_force, hessian });
 
 /// The pass over one body.
 pub(super) struct GradientPass<'a> {
     pub bonds: &'a Bonds,
-    /// The bonds as the stabilizers see them.
-    pub control_bonds: &'a Bonds,
     pub sites: &'a [Site],
-    pub originals: &'a [Site],
-    /// F_r.
-    pub gradient: &'a [DMat3],
+    /// F_r, where the reference is not the original one.
+    pub gradient: Option<&'a [DMat3]>,
+    /// Sums of the stabilizers, where they do not fold into the stress.
+    pub control: Option<ControlPass<'a>>,
     /// V_0, m3.
     pub reference_volume: &'a [f64],
     pub frame: &'a Frame,
     /// Plane strain.
     pub plane: bool,
-}
-
-/// What the folded terms of a block write.
-struct ControlRows<'a> {
-    control: &'a mut [CorrectedStress],
-    hessian: HessianBlock<'a>,
 }
 
 impl GradientPass<'_> {
@@ -56,22 +51,16 @@ impl GradientPass<'_> {
             bonds: self.bonds,
             sites: self.sites,
             first,
-            deformation: rows.deformation,
+            count: n,
             gradient: &mut block.gradient,
             residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut volume,
         };
         run_hot_in(self.plane, gather);
-        let GradientRows { stresses, control, self_force, mut hessian } = own;
+        let GradientRows { stresses, self_force, control, control_force, mut hessian } = own;
         hessian.after_fit(self.bonds, self.sites, first, &mut block.gradient[..n]);
-        let f_r = &self.gradient[first..first + n];
-        for (k, f_r) in f_r.iter().enumerate() {
-            // F = f F_r; H = F - I keeps the digits of small strains where the reference is still the original one.
-            block.gradient[k] = block.gradient[k] * *f_r + (*f_r - DMat3::IDENTITY);
-            rows.deformation[k] = DMat3::IDENTITY + block.gradient[k];
-            block.volume[k] = if volume[k] > 0.0 { self.reference_volume[first + k] } else { 0.0 };
-        }
+        let f_r = self.follow(&volume, &mut rows, block);
         let inverse_moment = &self.bonds.inverse_moment[first..first + n];
         let shares = self.bonds.carried.get(first..first + n);
         let carried = |k: usize| match shares {
@@ -79,56 +68,52 @@ impl GradientPass<'_> {
             Some(shares) => shares[k],
             None => 1.0,
         };
-        let mut sum = SolidSum::default();
-        let reference_volume = block.volume;
+        let (mut sum, reference_volume) = (SolidSum::default(), block.volume);
         constitutive.stress(&mut rows, block, carried, &mut sum, |stress| {
             let mut seen = [DMat3::ZERO; BLOCK];
-            for (k, stress) in stress.iter().enumerate().filter(|(k, _)| volume[*k] > 0.0) {
-                // The stress as seen from the reference.
-                seen[k] = *stress * f_r[k].transpose() * (reference_volume[k] / volume[k]);
-            }
-            hessian.take_stress(&seen);
-            run_hot(CorrectStress { stress: &seen[..n], inverse_moment, stresses: &mut *stresses });
+            let stress = f_r.map_or(stress, |f_r| {
+                for (k, stress) in stress.iter().enumerate().filter(|(k, _)| volume[*k] > 0.0) {
+                    // The stress as seen from the reference.
+                    seen[k] = *stress * f_r[k].transpose() * (reference_volume[k] / volume[k]);
+                }
+                &seen[..n]
+            });
+            hessian.take_stress(stress);
+            run_hot(CorrectStress { stress, inverse_moment, stresses: &mut *stresses });
         });
         hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
+        if self.control.is_none() {
+            constitutive.fold(&mut constitutive.folded(&mut rows, block, stresses), &mut sum);
+        }
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             self.frame.complete(stress, &self.sites[first + k]);
-            *self_force = stress.times(self.bonds.reach[first + k], stretch[k]);
+            let reach = self.bonds.reach[first + k];
+            *self_force = stress.times(reach, stretch[k] - self.frame.gradient * reach);
         }
         sum.close(&rows, block);
-        if !constitutive.terms.is_empty() || hessian.needs_gradient() {
-            self.add_control(constitutive, &mut rows, block, ControlRows { control, hessian }, &mut sum);
+        if let Some(pass) = &self.control {
+            let own = ControlRows { stresses: control, self_force: control_force, hessian };
+            pass.block(constitutive, &mut rows, block, own, &mut sum);
         }
         sum
     }
 
-    /// Adds the folded terms, with the fit to the original pair vectors, and hands that on to the differences of Laplacians.
-    fn add_control(
+    /// Goes on from the gradient since the last update to that since the start; returns F_r of the block.
+    fn follow(
         &self,
-        constitutive: &Constitutive<'_>,
+        volume: &[f64; BLOCK],
         rows: &mut SolidRows<'_>,
         block: &mut SolidBlock,
-        own: ControlRows<'_>,
-        sum: &mut SolidSum,
-    ) {
-        let ControlRows { control, mut hessian } = own;
-        let (n, first) = (rows.deformation.len(), block.first);
-        let mut fitted = [false; BLOCK];
-        let fit = ControlFit {
-            bonds: self.control_bonds,
-            sites: self.originals,
-            rows: first..first + n,
-            gradient: &mut block.gradient,
-            residual: &mut block.residual,
-            volume: &mut block.volume,
-            fitted: &mut fitted,
-        };
-        run_hot_in(self.plane, fit);
-        hessian.take_gradient(&block.gradient);
-        control.fill(CorrectedStress::default());
-        constitutive.fold(&mut constitutive.folded(rows, block, control), sum);
-        for (stress, _) in control.iter_mut().zip(fitted).filter(|(_, fitted)| !fitted) {
-            *stress = CorrectedStress::default();
+    ) -> Option<&[DMat3]> {
+        let f_r = self.gradient.map(|f_r| &f_r[block.first..block.first + rows.deformation.len()]);
+        for (k, deformation) in rows.deformation.iter_mut().enumerate() {
+            if let Some(f_r) = f_r {
+                // F = f F_r; H = F - I keeps the digits of small strains.
+                block.gradient[k] = block.gradient[k] * f_r[k] + (f_r[k] - DMat3::IDENTITY);
+            }
+            *deformation = DMat3::IDENTITY + block.gradient[k];
+            block.volume[k] = if volume[k] > 0.0 { self.reference_volume[block.first + k] } else { 0.0 };
         }
+        f_r
     }
 }

@@ -15,9 +15,11 @@
 
 mod columns;
 mod control;
+mod due;
 mod force;
 mod gradient;
 mod lost_neighbors;
+mod pack;
 mod parameters;
 mod phase;
 mod reference;

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
+use super::due::Rule;
 use super::force::InternalForce;
 use super::phase::UpdatedRows;
 use super::set_up::SetUp;
@@ -14,11 +15,11 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{SolidBodies, require_support};
+use crate::solids::{SolidBodies, SolidBody, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
-    BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
-    ReferenceVolume, Removed, SupportRadius, Velocity,
+    BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PiolaStress, Position,
+    ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
 /// Updated-Lagrangian solid: neighbours, weights and corrections are made anew while the body deforms.
@@ -37,6 +38,8 @@ pub struct UpdatedLagrangian {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Update {
+    /// `Adaptive(change: 1.0)` in bodies whose material flows plastically or can fail, and never in elastic ones, whose neighbours stay neighbours.
+    Automatic,
     /// After every so many steps.
     Every(u64),
     /// When a pair has changed its length.
@@ -50,18 +53,14 @@ pub enum Update {
 
 /// Change of the length of a pair, over the smoothing length, after which the reference is updated where the scene does not say so: that of a pair at the edge of the support at a strain of a half.
 /// Updates at smaller changes add energy and take time; they are more accurate only where metal is squeezed flat (the table in docs/updated-lagrangian.md).
-const USUAL_CHANGE: f64 = 1.0;
+pub(super) const USUAL_CHANGE: f64 = 1.0;
 
 /// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the paper.
 const USUAL_SUPPORT: f64 = 2.4;
 
 impl Default for UpdatedLagrangian {
     fn default() -> Self {
-        Self {
-            kernel: KernelName::CubicSpline,
-            support: USUAL_SUPPORT,
-            update: Update::Adaptive { change: USUAL_CHANGE },
-        }
+        Self { kernel: KernelName::CubicSpline, support: USUAL_SUPPORT, update: Update::Automatic }
     }
 }
 
@@ -116,8 +115,15 @@ impl Formulation for UpdatedLagrangian {
             repeats,
         });
         let (first, held) = (first.collect(), Held::of(&ids, sim));
-        let system = UpdatedSolids::new(phase, plane, solids, &bodies, |id| sim.body(id).spacing);
-        let first_lists = SetUp { phase, bodies: first, held, has_control: system.has_control() };
+        let can_fail = sim.columns(phase).get(Damage::NAME).is_some();
+        let rule = |((id, own), solid): (&(BodyId, Self), &SolidBody)| {
+            let spacing = sim.body(*id).spacing;
+            let is_elastic = solid.law.initial_yield_stress().is_none() && !can_fail;
+            Rule { update: own.update, spacing, h: 0.5 * own.support * spacing, is_elastic }
+        };
+        let rules = bodies.iter().zip(solids.iter()).map(rule).collect();
+        let system = UpdatedSolids::new(phase, plane, solids, rules);
+        let first_lists = SetUp { phase, bodies: first, held, is_stabilized: system.is_stabilized() };
         sim.add_setup(move |setup| first_lists.run(setup));
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])

@@ -2,13 +2,14 @@
 
 use glam::{DMat3, DVec3};
 
+use super::control::Control;
 use crate::formulations::total_lagrangian::{
-    BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site,
+    BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site, fill_ghosts, frame_of,
 };
 use crate::linalg::dyad;
 use crate::neighbors::NeighborSearch;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
-use crate::symmetry::{Ghost, Ghosts, Repeat};
+use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{Mobility, Velocity};
 
 /// What the systems of the formulation share.
@@ -24,9 +25,7 @@ pub(super) struct UpdatedRows {
     pub origin: DVec3,
     /// Position in the reference with the volume V there, and displacement since.
     pub sites: Vec<Site>,
-    /// Original position with the volume V where the particle holds, and displacement since the start: what hourglass control compares.
-    pub originals: Vec<Site>,
-    /// Original position with the volume V, and displacement since the start: what pair terms see.
+    /// Original position with the volume V, and displacement since the start: what pair terms see where a reference has been updated.
     pub pair_sites: Vec<Site>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
@@ -36,15 +35,11 @@ pub(super) struct UpdatedRows {
     pub volume: Vec<f64>,
     /// Corrected stress A.
     pub stresses: Vec<CorrectedStress>,
-    /// What hourglass control adds for the original pair vectors.
-    pub control: Vec<CorrectedStress>,
-    /// The bonds as the stabilizers see them: moments of the original pair vectors.
-    pub control_bonds: Bonds,
-    /// Written and not read: the pass of the stabilizers sums over both ends of a bond.
-    pub control_self_force: Vec<DVec3>,
     /// The part of the force on each particle that comes from its own corrected stress, over its volume.
     pub self_force: Vec<DVec3>,
     pub frames: Vec<Frame>,
+    /// The stabilizers of bodies whose reference has been updated.
+    pub control: Control,
     /// None: particles that have failed leave the sums of the control.
     pub cracks: Cracks,
     pub hessian: HessianRows,
@@ -53,8 +48,6 @@ pub(super) struct UpdatedRows {
     pub stable_step: Vec<f64>,
     /// Of every body: whether the reference is another one than at the start.
     pub follows: Vec<bool>,
-    /// Whether the phase has folded terms.
-    pub has_control: bool,
     /// Of every body: how many particles carry no stress for want of neighbours, from the start on.
     pub released_at_start: Vec<usize>,
     /// Kept for the next update.
@@ -62,34 +55,20 @@ pub(super) struct UpdatedRows {
 }
 
 impl UpdatedRows {
-    /// Fills the sites of the ghosts.
-    pub fn fill_ghost_sites(&mut self) {
-        let Self { ghosts, sites, originals, pair_sites, origin, has_control, .. } = self;
-        let image = |origin: DVec3| {
-            move |ghost: Ghost<'_>, site: &Site| {
-                let reference = ghost.map.place(site.reference.xyz() + origin) - origin;
-                Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
-            }
-        };
-        ghosts.fill(sites, image(*origin));
-        ghosts.fill(pair_sites, image(DVec3::ZERO));
-        if *has_control {
-            ghosts.fill(originals, image(DVec3::ZERO));
-        }
+    /// Whether a body has another reference than at the start.
+    pub fn has_followed(&self) -> bool {
+        self.follows.contains(&true) || self.control.has_sums()
     }
 
     /// Fills the stresses of the ghosts, which have their sites.
     pub fn fill_ghost_stresses(&mut self) {
-        let Self { ghosts, frames, sites, stresses, control, has_control, .. } = self;
-        let Some(frame) = frames.first() else { return };
-        ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
-            let mut stress = own.image(ghost.map);
-            frame.complete(&mut stress, &sites[ghost.row]);
-            stress
+        let Self { ghosts, frames, sites, stresses, control, hessian, .. } = self;
+        let pull = |row: usize| hessian.pull_of(row);
+        fill_ghosts(ghosts, frames, sites, stresses, |row| {
+            let is_apart = control.is_apart[frame_of(frames, ghosts.source(row))];
+            if is_apart { DVec3::ZERO } else { pull(row) }
         });
-        if *has_control {
-            ghosts.fill(control, |ghost, own: &CorrectedStress| own.image(ghost.map));
-        }
+        control.fill_ghost_stresses(ghosts, pull);
     }
 }
 
@@ -99,7 +78,7 @@ impl BondedRows for UpdatedRows {
     }
 
     fn pair_sites(&self) -> &[Site] {
-        &self.pair_sites
+        if self.has_followed() { &self.pair_sites } else { &self.sites }
     }
 
     fn kernels(&self) -> &[BodyKernel] {

@@ -1,8 +1,9 @@
 //! The reference: neighbours, weights and moments at the positions of the last update.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
+use super::control::is_original;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
     BodyBonds, BodyKernel, BondError, Bonds, Ellipsoid, Ellipsoids, Site,
@@ -11,7 +12,7 @@ use crate::schedule::StepError;
 use crate::solids::{CorrectedStress, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{
-    BodyId, Damage, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
+    BodyId, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
 };
 
 /// Why the lists of a body cannot be made.
@@ -57,7 +58,7 @@ impl UpdatedRows {
         let start: &[f64] = bytemuck::cast_slice(&start);
         self.find_stable_steps(world, estimates, support, start);
         self.resize();
-        self.take_gradients(world, phase).map_err(internal)
+        Ok(())
     }
 
     /// Makes the bonds and ghosts of the reference at these positions, m, with these support radii, m.
@@ -95,12 +96,7 @@ impl UpdatedRows {
         let (real, all) = (self.volume.len(), self.volume.len() + self.ghosts.len());
         self.sites.resize(all, Site::default());
         self.stresses.resize(all, CorrectedStress::default());
-        self.pair_sites.resize(all, Site::default());
         self.hessian.resize(real, self.ghosts.len());
-        if self.has_control {
-            self.originals.resize(all, Site::default());
-            self.control.resize(all, CorrectedStress::default());
-        }
     }
 
     /// Finds the stable step of each body in the reference, s, from support radii, m, and the volumes of the start, m3.
@@ -123,60 +119,36 @@ impl UpdatedRows {
         }
     }
 
-    /// Takes the deformation gradients of the reference from their column.
-    pub fn take_gradients(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
+    /// Takes the deformation gradients of the reference from their column, and makes the bonds of the stabilizers, for which what has `failed` does not hold.
+    pub fn take_gradients(
+        &mut self,
+        world: &World,
+        phase: PhaseId,
+        failed: &[u32],
+    ) -> Result<(), MissingColumn> {
         let view = world.phase(phase);
         self.gradient.clear();
         self.gradient.extend(view.read::<UpdatedGradient>()?.iter().map(|gradient| gradient.0));
+        let (reference, original) = (view.read::<UpdatedReference>()?, view.read::<ReferencePosition>()?);
+        let start = view.read::<ReferenceVolume>()?;
+        let (reference, original) = (bytemuck::cast_slice(&reference), bytemuck::cast_slice(&original));
         self.follows.clear();
         for BodyKernel { body, .. } in &self.kernels {
-            let own = &self.gradient[world.body(*body).rows.clone()];
-            self.follows.push(own.iter().any(|f_r| *f_r != DMat3::IDENTITY));
+            let (rows, volumes) =
+                (world.body(*body).rows.clone(), (&self.volume[..], bytemuck::cast_slice(&start)));
+            self.follows.push(!is_original(rows, (reference, original), &self.gradient, volumes));
         }
-        if self.has_control {
-            let (original, support) = (view.read::<ReferencePosition>()?, view.read::<SupportRadius>()?);
-            let damage = view.read::<Damage>().ok();
-            let has_failed = |row: usize| damage.as_ref().is_some_and(|damage| damage[row].0 >= 1.0);
-            let (original, support) = (bytemuck::cast_slice(&original), bytemuck::cast_slice(&support));
-            self.weigh_control(world, original, support, has_failed);
+        let support = view.read::<SupportRadius>()?;
+        self.weigh_control(world, original, bytemuck::cast_slice(&support), failed);
+        if self.has_followed() {
+            self.pair_sites.resize(self.sites.len(), Site::default());
         }
         Ok(())
-    }
-
-    /// Makes the bonds of the stabilizers: those of the reference with other weights, and moments of the original pair vectors.
-    fn weigh_control(
-        &mut self,
-        world: &World,
-        original: &[DVec3],
-        support: &[f64],
-        has_failed: impl Fn(usize) -> bool,
-    ) {
-        let Self { bonds, ghosts, gradient, kernels, control_bonds, volume, ellipsoids, .. } = self;
-        let ellipsoids = Ellipsoids(ellipsoids);
-        control_bonds.take_topology(bonds);
-        for BodyKernel { body, kernel, .. } in kernels.iter() {
-            let ratio = kernel.smoothing_length(1.0);
-            control_bonds.set_weights(world.body(*body).rows.clone(), |i, j| {
-                let source = ghosts.source(j);
-                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let x_ij = ghosts.pair(original, i, j);
-                let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
-                let h = 0.5 * (support[i] + support[source]) * ratio;
-                let distance = ellipsoids.distance(ghosts, i, j, mean);
-                (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
-            });
-        }
-        let held: Vec<f64> =
-            volume.iter().enumerate().map(|(row, v)| if has_failed(row) { 0.0 } else { *v }).collect();
-        for BodyKernel { body, kernel, .. } in kernels.iter() {
-            let rows = world.body(*body).rows.clone();
-            control_bonds.correct(rows, kernel.dimension(), original, &held, ghosts);
-        }
     }
 }
 
 /// The corners of the box around some points.
-fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+pub(super) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points.iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
 }

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
+use super::control::Control;
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
 use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows};
@@ -21,8 +22,8 @@ pub(super) struct SetUp {
     pub phase: PhaseId,
     pub bodies: Vec<BodySetUp>,
     pub held: Held,
-    /// Whether plugins have handed in folded terms.
-    pub has_control: bool,
+    /// Of every body: whether stabilizers act on it.
+    pub is_stabilized: Vec<bool>,
 }
 
 impl SetUp {
@@ -36,6 +37,7 @@ impl SetUp {
             let help = "use a larger `support`, or more particles across the body";
             SetupError::parameter(format!("bodies[{}].formulation", body.0), error.to_string(), help)
         })?;
+        rows.take_gradients(setup.world, phase, &[]).map_err(|error| SetupError::internal(&error))?;
         rows.warn_of_released_at_start(setup);
         setup.resources.insert_solid(phase, rows);
         setup.resources.insert_of(phase, Leaving::default());
@@ -62,7 +64,7 @@ impl SetUp {
 
     /// The packed rows, without lists.
     fn rows(self, world: &World) -> UpdatedRows {
-        let Self { phase, bodies, mut held, has_control } = self;
+        let Self { phase, bodies, mut held, is_stabilized } = self;
         let (count, dimension) = (world.phase(phase).len(), world.dimension().count());
         let carried = std::mem::take(&mut held.carried);
         let terms = bodies.iter().map(|body| (world.body(body.id).rows.clone(), body.hessian));
@@ -72,23 +74,19 @@ impl SetUp {
             ghosts: Ghosts::default(),
             origin: DVec3::ZERO,
             sites: Vec::new(),
-            originals: Vec::new(),
             pair_sites: Vec::new(),
             gradient: Vec::new(),
             ellipsoids: Vec::new(),
             volume: Vec::new(),
             stresses: Vec::new(),
-            control: Vec::new(),
-            control_bonds: Bonds::default(),
-            control_self_force: vec![DVec3::ZERO; count],
             self_force: vec![DVec3::ZERO; count],
             frames: Vec::with_capacity(bodies.len()),
+            control: Control::of(is_stabilized),
             cracks: Cracks::default(),
             hessian: HessianRows::new(terms),
             kernels: bodies.iter().map(|body| body.kernel(dimension)).collect(),
             stable_step: Vec::with_capacity(bodies.len()),
             follows: Vec::with_capacity(bodies.len()),
-            has_control,
             released_at_start: Vec::new(),
             search: NeighborSearch::default(),
             repeats: bodies.into_iter().map(|body| body.repeats).collect(),

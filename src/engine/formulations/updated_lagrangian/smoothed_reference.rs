@@ -42,6 +42,8 @@ pub(super) fn increments(packed: &UpdatedRows, plane: bool) -> Vec<DMat3> {
 /// What the reference places of a body are smoothed by.
 pub(super) struct Smoothing<'a> {
     pub packed: &'a UpdatedRows,
+    /// Original positions, m.
+    pub original: &'a [DVec3],
     pub deformation: &'a [DeformationGradient],
     pub damage: Option<&'a [Damage]>,
     /// Smoothing length, m.
@@ -50,10 +52,11 @@ pub(super) struct Smoothing<'a> {
 
 /// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
 pub(super) fn smooth(by: &Smoothing<'_>, rows: Range<usize>, places: &mut [UpdatedReference]) {
-    let Smoothing { packed, deformation, damage, h } = *by;
-    let UpdatedRows { bonds, ghosts, pair_sites, volume, .. } = packed;
-    let original: Vec<DVec3> = pair_sites[..volume.len()].iter().map(|site| site.reference.xyz()).collect();
-    let holds = |row: usize| volume[row] > 0.0 && damage.is_none_or(|damage| damage[row].0 < 1.0);
+    let Smoothing { packed, original, deformation, damage, h } = *by;
+    let UpdatedRows { bonds, ghosts, volume, .. } = packed;
+    let holds = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
+    let held: Vec<f64> =
+        volume.iter().enumerate().map(|(row, v)| if holds(row) { *v } else { 0.0 }).collect();
     let start: Vec<DVec3> = places.iter().map(|place| place.0).collect();
     let mut now = start.clone();
     for _ in 0..TIMES {
@@ -61,12 +64,18 @@ pub(super) fn smooth(by: &Smoothing<'_>, rows: Range<usize>, places: &mut [Updat
         for_each_block(own, &mut Vec::new(), &|first, own: &mut [UpdatedReference]| {
             for (k, place) in own.iter_mut().enumerate() {
                 let i = rows.start + first + k;
+                if held[i] == 0.0 {
+                    continue;
+                }
                 let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-                for (j, weight) in bonds.row(i).filter(|(j, _)| holds(i) && holds(ghosts.source(*j))) {
-                    let (source, signs) = (ghosts.source(j), ghosts.mirror(j).unwrap_or(DVec3::ONE));
-                    let x_ij = ghosts.pair(&original, i, j);
-                    let expected = deformation[i].0 * x_ij + signs * (deformation[source].0 * (signs * x_ij));
-                    let weight = f64::from(weight) * volume[source];
+                for (j, weight) in bonds.row(i) {
+                    let (source, x_ij) = (ghosts.source(j), ghosts.pair(original, i, j));
+                    let theirs = match ghosts.mirror(j) {
+                        Some(signs) => signs * (deformation[source].0 * (signs * x_ij)),
+                        None => deformation[source].0 * x_ij,
+                    };
+                    let expected = deformation[i].0 * x_ij + theirs;
+                    let weight = f64::from(weight) * held[source];
                     sum += (ghosts.pair(&now, i, j) - 0.5 * expected) * weight;
                     total += weight;
                 }

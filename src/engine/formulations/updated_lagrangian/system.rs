@@ -3,30 +3,26 @@
 use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
+use super::control::{Control, ControlPass};
+use super::due::Rule;
 use super::force;
 use super::gradient::{GradientPass, GradientRows};
 use super::lost_neighbors::widen;
-use super::parameters::{Update, UpdatedLagrangian};
 use super::phase::UpdatedRows;
 use super::smoothed_reference::{Smoothing, increments, smooth};
-use crate::formulations::total_lagrangian::{
-    BondedSites, Ellipsoid, Ellipsoids, Frame, FrameIndifferent, Site,
-};
-use crate::parallel::{Largest, for_each_block, sum_over_blocks};
+use crate::formulations::total_lagrangian::{BondedSites, Ellipsoid, Frame, FrameIndifferent, Site};
+use crate::notation::quantity;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, HessianForm, SolidBodies, SolidBody, SolidColumns, SolidPart, StepEstimate, count_rows,
-    fill_rows,
+    BodyPass, HessianForm, SolidBodies, SolidColumns, SolidPart, StepEstimate, count_rows, fill_rows,
 };
 use crate::world::{
-    BodyId, Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position,
-    ReferencePosition, ReferenceVolume, Removed, SupportRadius, World,
+    Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferencePosition,
+    ReferenceVolume, Removed, SupportRadius, World,
 };
 
 /// Account of what an update of the reference changes of the stored energies.
 const ACCOUNT: &str = "reference_update";
-/// Steps between two looks at the lengths of pairs: they change slowly against the stable step.
-const INTERVAL: u64 = 4;
 
 /// The system.
 pub(super) struct UpdatedSolids {
@@ -34,36 +30,32 @@ pub(super) struct UpdatedSolids {
     /// Plane strain.
     plane: bool,
     solids: SolidBodies,
-    /// Of every body: when its reference is updated, and the smoothing length, m.
-    updates: Vec<(Update, f64)>,
+    /// Of every body: when its reference is updated.
+    rules: Vec<Rule>,
+    /// Of every body: whether it keeps the reference that it has.
+    keeps: Vec<bool>,
     /// Of every body: whether its reference is updated in this step.
     due: Vec<bool>,
     /// Removed rows that the reference knows of, ascending.
     removed: Vec<u32>,
-    /// Number of failed particles that it knows of.
-    failed: u64,
+    /// Rows of failed particles that it knows of, ascending.
+    failed: Vec<u32>,
     /// Whether the lists are those of another reference than that of the columns: after a restart.
     is_stale: bool,
 }
 
 impl UpdatedSolids {
-    pub fn new(
-        phase: PhaseId,
-        plane: bool,
-        solids: SolidBodies,
-        bodies: &[(BodyId, UpdatedLagrangian)],
-        spacing: impl Fn(BodyId) -> f64,
-    ) -> Self {
-        let update = |(id, own): &(BodyId, UpdatedLagrangian)| (own.update, 0.5 * own.support * spacing(*id));
-        let updates = bodies.iter().map(update).collect();
+    /// The system of these bodies, one rule for each.
+    pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies, rules: Vec<Rule>) -> Self {
         Self {
             phase,
             plane,
             solids,
-            updates,
+            keeps: vec![false; rules.len()],
+            rules,
             due: Vec::new(),
             removed: Vec::new(),
-            failed: 0,
+            failed: Vec::new(),
             is_stale: false,
         }
     }
@@ -73,9 +65,9 @@ impl UpdatedSolids {
         self.solids.iter().map(|body| body.estimate).collect()
     }
 
-    /// Whether plugins have handed in folded terms.
-    pub fn has_control(&self) -> bool {
-        self.solids.has_terms() || self.solids.iter().any(SolidBody::has_hessian_residual)
+    /// Of every body: whether stabilizers act on it that are folded terms, or differences of Laplacians.
+    pub fn is_stabilized(&self) -> Vec<bool> {
+        self.solids.iter().map(|body| body.has_terms() || body.has_hessian_residual()).collect()
     }
 
     /// Runs the pass over all bodies.
@@ -86,57 +78,73 @@ impl UpdatedSolids {
         part: SolidPart<'_>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        pack(world, self.phase, packed)?;
-        let reference_volume = view.read::<ReferenceVolume>()?;
+        packed.pack(world, self.phase)?;
         let mut columns = SolidColumns::of(&view)?;
         let support = view.read::<SupportRadius>()?;
-        let UpdatedRows {
-            bonds,
-            ghosts,
-            hessian,
-            kernels,
-            sites,
-            originals,
-            gradient,
-            stresses,
-            control,
-            control_bonds,
-            self_force,
-            frames,
-            ..
-        } = &mut *packed;
-        let (support, plane) = (bytemuck::cast_slice(&support), self.plane);
-        hessian.begin(BondedSites { bonds, ghosts, sites }, kernels, support, plane);
-        frames.clear();
+        let UpdatedRows { bonds, ghosts, hessian, kernels, sites, .. } = &mut *packed;
+        let support = bytemuck::cast_slice(&support);
+        hessian.begin(BondedSites { bonds, ghosts, sites }, kernels, support, self.plane);
+        packed.frames.clear();
+        packed.control.frames.clear();
         self.solids.begin();
         for k in 0..self.solids.len() {
             let rows = world.body(self.solids.id(k)).rows.clone();
-            let frame = Frame::at_rest(rows.end);
-            frames.push(frame);
-            let reference_volume = bytemuck::cast_slice(&reference_volume);
-            let (bonds, control_bonds, frame) = (&*bonds, &*control_bonds, &frame);
-            let pass = GradientPass {
-                bonds,
-                control_bonds,
-                sites,
-                originals,
-                gradient,
-                reference_volume,
-                frame,
-                plane,
-            };
-            let own = GradientRows {
-                stresses: &mut stresses[rows.clone()],
-                control: if control.is_empty() { &mut [] } else { &mut control[rows.clone()] },
-                self_force: &mut self_force[rows.clone()],
-                hessian: hessian.block(k, &rows),
-            };
             let of_body = BodyPass { body: k, view: &view, rows, part };
-            self.solids
-                .run(of_body, &mut columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
+            self.pass_over_body(of_body, packed, &mut columns)?;
         }
         self.add_differences(&view, packed, part.dt)?;
         packed.fill_ghost_stresses();
+        Ok(())
+    }
+
+    /// Runs the pass over a body.
+    fn pass_over_body(
+        &mut self,
+        of_body: BodyPass<'_>,
+        packed: &mut UpdatedRows,
+        columns: &mut SolidColumns<'_>,
+    ) -> Result<(), MissingColumn> {
+        let (k, rows, plane) = (of_body.body, of_body.rows.clone(), self.plane);
+        let reference_volume = of_body.view.read::<ReferenceVolume>()?;
+        let UpdatedRows {
+            bonds,
+            sites,
+            gradient,
+            stresses,
+            self_force,
+            frames,
+            follows,
+            hessian,
+            control,
+            ..
+        } = &mut *packed;
+        let (follows, is_apart) = (follows[k], control.is_apart[k]);
+        let middle = rows.start + rows.len() / 2;
+        let moved = |sites: &[Site]| Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
+        let frame = if follows { Frame::at_rest(rows.end) } else { moved(sites) };
+        let of_control = if is_apart { moved(&control.sites) } else { Frame::at_rest(rows.end) };
+        frames.push(frame);
+        control.frames.push(of_control);
+        let own_control = if is_apart { rows.clone() } else { 0..0 };
+        let control_pass =
+            ControlPass { bonds: &control.bonds, sites: &control.sites, frame: of_control, plane };
+        let pass = GradientPass {
+            bonds,
+            sites,
+            gradient: follows.then_some(&gradient[..]),
+            control: is_apart.then_some(control_pass),
+            reference_volume: bytemuck::cast_slice(&reference_volume),
+            frame: &frame,
+            plane,
+        };
+        let own = GradientRows {
+            stresses: &mut stresses[rows.clone()],
+            self_force: &mut self_force[rows.clone()],
+            control: &mut control.stresses[own_control.clone()],
+            control_force: &mut control.self_force[own_control],
+            hessian: hessian.block(k, &rows),
+        };
+        self.solids.run(of_body, columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
         Ok(())
     }
 
@@ -147,32 +155,55 @@ impl UpdatedSolids {
         packed: &mut UpdatedRows,
         dt: f64,
     ) -> Result<(), StepError> {
-        let UpdatedRows { bonds, ghosts, sites, stresses, self_force, hessian, .. } = packed;
-        let difference = FrameIndifferent {
-            bonds: &packed.control_bonds,
+        let plane = self.plane;
+        let UpdatedRows { bonds, ghosts, sites, frames, stresses, self_force, hessian, control, .. } = packed;
+        let folded = FrameIndifferent { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane };
+        folded.run(view, &mut self.solids, dt, |k| !control.is_apart[k])?;
+        let Control {
+            is_apart,
+            bonds: own_bonds,
+            sites: own_sites,
+            stresses: own_stresses,
+            self_force: own_force,
+            frames: own_frames,
+            ..
+        } = &mut *control;
+        let apart = FrameIndifferent {
+            bonds: own_bonds,
             ghosts,
-            sites: &packed.originals,
-            stresses: &mut packed.control,
-            self_force: &mut packed.control_self_force,
+            frames: own_frames,
+            sites: own_sites,
+            stresses: own_stresses,
+            self_force: own_force,
             hessian,
+            plane,
         };
-        difference.run(view, &mut self.solids, dt)?;
+        apart.run(view, &mut self.solids, dt, |k| is_apart[k])?;
         hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
         Ok(())
     }
 
-    /// Whether the reference of body `k` is to be updated after the pass of this step.
-    fn is_due(&self, k: usize, step: &Step<'_>, packed: &UpdatedRows) -> bool {
-        let (update, h) = self.updates[k];
-        let number = step.turn.number();
-        match update {
-            Update::Never => false,
-            Update::Every(steps) => number > 0 && number.is_multiple_of(steps),
-            Update::Adaptive { change } => {
-                let rows = step.world.body(self.solids.id(k)).rows.clone();
-                number.is_multiple_of(INTERVAL) && has_changed(rows, packed, change * h)
-            }
+    /// Whether the reference of body `k` is to be updated after the pass of this step. A body whose reference could only follow by separating neighbours that its
+    /// material holds together keeps the one that it has.
+    fn is_due(&mut self, k: usize, step: &mut Step<'_>, packed: &UpdatedRows) -> Result<bool, MissingColumn> {
+        let body = step.world.body(self.solids.id(k));
+        let (rows, number) = (body.rows.clone(), step.turn.number());
+        if self.keeps[k] || !self.rules[k].is_due(rows.clone(), number, packed) {
+            return Ok(false);
         }
+        let view = step.world.phase(self.phase);
+        let (original, deformation) =
+            (view.read::<ReferencePosition>()?, view.read::<DeformationGradient>()?);
+        let original = bytemuck::cast_slice(&original);
+        self.keeps[k] = self.rules[k].would_separate(rows, original, &deformation, packed);
+        if self.keeps[k] {
+            step.warnings.push(format!(
+                "body `{}` keeps its reference from {} on: an update would separate neighbours, which its elastic material holds together; `update: Automatic`, the default, makes none in such a body",
+                body.name,
+                quantity(step.clock.time, "s")
+            ));
+        }
+        Ok(!self.keeps[k])
     }
 
     /// Makes the present configuration the reference: of the bodies that are due, and of all where particles have been removed or have failed.
@@ -205,7 +236,7 @@ impl UpdatedSolids {
         is_due: &[bool],
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        let position = view.read::<Position>()?;
+        let (position, original) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
         let deformation = view.read::<DeformationGradient>()?;
         let damage = view.read::<Damage>().ok();
         let due = |k: &usize| is_due[*k];
@@ -225,8 +256,9 @@ impl UpdatedSolids {
                     UpdatedVolume(start[row].0 * deformation[row].0.determinant())
                 });
                 if self.is_smoothed(k) {
-                    let (damage, h) = (damage.as_deref(), self.updates[k].1);
-                    smooth(&Smoothing { packed, deformation, damage, h }, rows, &mut reference);
+                    let (damage, h) = (damage.as_deref(), self.rules[k].h);
+                    let original = bytemuck::cast_slice(&original);
+                    smooth(&Smoothing { packed, original, deformation, damage, h }, rows, &mut reference);
                 }
             }
         }
@@ -238,7 +270,7 @@ impl UpdatedSolids {
                 break;
             }
         }
-        pack(world, self.phase, packed)?;
+        packed.pack_reference(world, self.phase)?;
         let changes = increments(packed, self.plane);
         {
             let mut gradient = view.write::<UpdatedGradient>()?;
@@ -252,7 +284,7 @@ impl UpdatedSolids {
                 });
             }
         }
-        packed.take_gradients(world, self.phase)?;
+        packed.take_gradients(world, self.phase, &self.failed)?;
         Ok(())
     }
 
@@ -280,13 +312,16 @@ impl UpdatedSolids {
         let removed = view.read::<Removed>()?;
         let count = count_rows(&removed, |row| *row != Removed::NO);
         let damage = view.read::<Damage>().ok();
-        let failed = damage.map_or(0, |damage| count_rows(&damage, has_failed));
-        let has_lost = count != self.removed.len() || failed as u64 != self.failed;
+        let damage = damage.as_deref().unwrap_or_default();
+        let failed = count_rows(damage, has_failed);
+        let has_lost = count != self.removed.len() || failed != self.failed.len();
         if has_lost {
-            self.removed.clear();
-            self.removed
-                .extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
-            self.failed = failed as u64;
+            let take = |rows: &mut Vec<u32>, is_lost: &dyn Fn(usize) -> bool, all: usize| {
+                rows.clear();
+                rows.extend((0..all as u32).filter(|&row| is_lost(row as usize)));
+            };
+            take(&mut self.removed, &|row| removed[row] != Removed::NO, removed.len());
+            take(&mut self.failed, &|row| has_failed(&damage[row]), damage.len());
         }
         Ok(has_lost)
     }
@@ -299,6 +334,7 @@ impl Run for UpdatedSolids {
         if std::mem::take(&mut self.is_stale) {
             let renewed = packed.renew(step.world, self.phase, &self.estimates(), &self.removed);
             renewed.map_err(|error| error.in_step(step.world))?;
+            packed.take_gradients(step.world, self.phase, &self.failed)?;
         }
         self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
@@ -307,7 +343,9 @@ impl Run for UpdatedSolids {
         let has_lost = self.take_up_lost(step.world)?;
         let mut due = std::mem::take(&mut self.due);
         due.clear();
-        due.extend((0..self.solids.len()).map(|k| has_lost || self.is_due(k, step, &packed)));
+        for k in 0..self.solids.len() {
+            due.push(has_lost || self.is_due(k, step, &packed)?);
+        }
         if due.contains(&true) {
             self.update(step, &mut packed, &due)?;
         }
@@ -319,15 +357,16 @@ impl Run for UpdatedSolids {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed, self.failed)).unwrap_or_default()
+        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed, &self.failed, &self.keeps))
+            .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<u32>, u64);
-        let Ok((factors, removed, failed)) = postcard::from_bytes::<Saved>(state) else {
+        type Saved = (Vec<f64>, Vec<u32>, Vec<u32>, Vec<bool>);
+        let Ok((factors, removed, failed, keeps)) = postcard::from_bytes::<Saved>(state) else {
             return false;
         };
-        (self.removed, self.failed) = (removed, failed);
+        (self.removed, self.failed, self.keeps) = (removed, failed, keeps);
         self.is_stale = true;
         self.solids.restore_stretch_factors(&factors)
     }
@@ -335,66 +374,4 @@ impl Run for UpdatedSolids {
 
 fn has_failed(damage: &Damage) -> bool {
     damage.0 >= 1.0
-}
-
-/// Fills the sites from the columns.
-fn pack(world: &World, phase: PhaseId, packed: &mut UpdatedRows) -> Result<(), MissingColumn> {
-    let view = world.phase(phase);
-    let position = view.read::<Position>()?;
-    let original = view.read::<ReferencePosition>()?;
-    let reference = view.read::<UpdatedReference>()?;
-    let damage = view.read::<Damage>().ok();
-    let UpdatedRows { sites, pair_sites, originals, volume, origin, has_control, .. } = &mut *packed;
-    let (count, origin) = (view.len(), *origin);
-    let (position, original, reference) = (&position[..], &original[..], &reference[..]);
-    let damage = damage.as_deref();
-    let rows = (&mut sites[..count], &mut pair_sites[..count]);
-    type Rows<'a> = (&'a mut [Site], &'a mut [Site]);
-    for_each_block(rows, &mut Vec::new(), &|first, (sites, pair_sites): Rows<'_>| {
-        for (k, (site, pair_site)) in sites.iter_mut().zip(pair_sites).enumerate() {
-            let row = first + k;
-            let (x, r, start) = (position[row].0, reference[row].0, original[row].0);
-            *site = Site::new(r - origin, x - r, volume[row]);
-            *pair_site = Site::new(start, x - start, volume[row]);
-        }
-    });
-    if *has_control {
-        let holds = |row: usize| damage.is_none_or(|damage| !has_failed(&damage[row]));
-        for_each_block(&mut originals[..count], &mut Vec::new(), &|first, originals: &mut [Site]| {
-            for (k, site) in originals.iter_mut().enumerate() {
-                let row = first + k;
-                let start = original[row].0;
-                *site = Site::new(start, position[row].0 - start, if holds(row) { volume[row] } else { 0.0 });
-            }
-        });
-    }
-    packed.fill_ghost_sites();
-    Ok(())
-}
-
-/// Whether a pair has changed its length by more than `most` since the last update, m.
-fn has_changed(rows: std::ops::Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
-    let UpdatedRows { sites, bonds, ghosts, .. } = packed;
-    let ellipsoids = Ellipsoids(&packed.ellipsoids);
-    let first_row = rows.start;
-    // A length changes by no more than the pair vector does: few pairs need a look at their ellipsoids.
-    let shortest =
-        packed.ellipsoids[rows.clone()].iter().map(|own| own.shortest).fold(f64::INFINITY, f64::min);
-    let least = (most * shortest).powi(2);
-    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
-        let changes = own.iter().enumerate().flat_map(|(k, site)| {
-            let i = first_row + first + k;
-            bonds.row(i).filter_map(move |(j, _)| {
-                let change = sites[j].displacement.xyz() - site.displacement.xyz();
-                if change.length_squared() < least {
-                    return None;
-                }
-                let length = |r_ij| ellipsoids.distance(ghosts, i, j, r_ij);
-                let reference = sites[j].reference.xyz() - site.reference.xyz();
-                Some((length(reference + change) - length(reference)).abs())
-            })
-        });
-        Largest::of(changes)
-    });
-    largest.0 > most
 }

@@ -14,14 +14,25 @@
 //! ```
 //!
 //! Both are given to the pass of the internal force. A particle with a failed neighbour resists nothing.
+//!
+//! As in that pass, sums run over the neighbours alone, with Q and u in the [`Frame`] of the body: with H = Q - I and b_j = u_j - H_j X_j / 2,
+//!
+//! ```text
+//! d_i / h_i = sum_j V_j w_ij b_j + (sum_j V_j w_ij H_j / 2) X_i - sum_j V_j w_ij u_i - H_i sum_j V_j w_ij X_ij / 2
+//! ```
+
+use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
+use super::super::bond_sum::BondSum;
 use super::super::bonds::Bonds;
+use super::super::frame::{Frame, frame_of};
 use super::super::rows::Site;
-use super::rows::HessianRows;
-use crate::linalg::{Sym3, dyad};
-use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot, sum_over_blocks};
+use super::super::spread::{Spread, fit};
+use super::rows::{BondedSites, HessianBody, HessianRows};
+use crate::linalg::Sym3;
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in, sum_over_blocks};
 use crate::solids::{
     CorrectedStress, FoldedEnergy, HessianForm, HessianResidual, HessianStiffness, SolidBodies,
 };
@@ -33,172 +44,239 @@ pub(in crate::formulations) struct FrameIndifferent<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
     pub sites: &'a [Site],
+    /// Of every body.
+    pub frames: &'a [Frame],
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
     pub hessian: &'a mut HessianRows,
+    /// Plane strain.
+    pub plane: bool,
 }
 
 /// Rows of the first pass.
 type ResidualRows<'a> =
-    (&'a mut [HessianResidual], &'a mut [HessianStiffness], &'a mut [DVec3], &'a [f64], &'a [SupportRadius]);
+    (&'a mut [HessianResidual], &'a mut [HessianStiffness], &'a mut [Site], &'a [f64], &'a [SupportRadius]);
 
 impl FrameIndifferent<'_> {
-    /// Computes the residuals, their energies and their forces, after the stress of all bodies. A pass that repeats a step has `dt` zero.
-    pub fn run(self, view: &PhaseView<'_>, solids: &mut SolidBodies, dt: f64) -> Result<(), MissingColumn> {
-        let form = HessianForm::FrameIndifferent;
-        if !self.hessian.has(form) {
+    /// Computes the residuals, their energies and their forces, after the stress of all bodies, for those bodies whose number is taken. A pass that repeats
+    /// a step has `dt` zero.
+    pub fn run(
+        self,
+        view: &PhaseView<'_>,
+        solids: &mut SolidBodies,
+        dt: f64,
+        is_taken: impl Fn(usize) -> bool,
+    ) -> Result<(), MissingColumn> {
+        let is_own =
+            |own: &&HessianBody| own.term.form == HessianForm::FrameIndifferent && is_taken(own.body);
+        if !self.hessian.bodies.iter().any(|own| is_own(&own)) {
             return Ok(());
         }
-        let Self { bonds, ghosts, sites, stresses, self_force, hessian } = self;
+        let Self { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane } = self;
         let mut residual = view.write::<HessianResidual>()?;
         let mut held = view.write::<HessianStiffness>()?;
         let support = view.read::<SupportRadius>()?;
         let damage = view.read::<Damage>().ok();
-        hessian.fill_ghost_gradients(ghosts);
-        let HessianRows { bodies, gradient, stiffness, pull, .. } = hessian;
-        for body in bodies.iter().filter(|body| body.term.form == form) {
+        let HessianRows { bodies, gradient, slopes, stiffness, pulls, loose, .. } = hessian;
+        fill_loose(bonds, ghosts, sites, damage.as_deref(), loose);
+        let bonded = BondedSites { bonds, ghosts, sites };
+        fill_slopes(bodies.iter().filter(is_own), gradient, bonded, frames, slopes);
+        for body in bodies.iter().filter(is_own) {
             let rows = body.rows.clone();
             let pass = Residuals {
                 bonds,
-                ghosts,
                 sites,
-                gradient,
-                damage: damage.as_deref(),
-                first: rows.start,
+                slopes,
+                frame: frames[frame_of(frames, rows.start)],
+                loose,
                 moves: dt > 0.0,
             };
             let own: ResidualRows<'_> = (
                 &mut residual[rows.clone()],
                 &mut held[rows.clone()],
-                &mut pull[rows.clone()],
+                &mut pulls[rows.clone()],
                 &stiffness[rows.clone()],
-                &support[rows],
+                &support[rows.clone()],
             );
             let energy = sum_over_blocks(own, &|first, own: ResidualRows<'_>| {
-                run_hot(ResidualBlock { pass: &pass, first, own })
+                let mut energy = FoldedEnergy::default();
+                let first = rows.start + first;
+                run_hot_in(plane, ResidualBlock { pass: &pass, first, own, energy: &mut energy });
+                energy
             });
             solids.add_hessian(body.body, energy);
         }
-        ghosts.fill(pull, |ghost, pull| ghost.map.vector(*pull));
-        for body in bodies.iter().filter(|body| body.term.form == form) {
-            let rows = body.rows.clone();
-            let pass = Forces { bonds, sites, pull, first: rows.start };
-            type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
-            let own: Rows<'_> = (&mut stresses[rows.clone()], &mut self_force[rows]);
-            for_each_block(own, &mut Vec::new(), &|first, own: Rows<'_>| {
-                let (stresses, self_force) = own;
-                run_hot(ForceBlock { pass: &pass, first, stresses, self_force });
-            });
+        ghosts.fill(pulls, |ghost, own| {
+            let pull = ghost.map.vector(own.displacement.xyz());
+            Site { reference: sites[ghost.row].reference, displacement: Lanes4::new(pull, 0.0) }
+        });
+        for HessianBody { rows, .. } in bodies.iter().filter(is_own) {
+            add_forces(bonds, pulls, rows.clone(), plane, (&mut *stresses, &mut *self_force));
         }
         Ok(())
     }
 }
 
+/// Marks the rows, ghosts too, that have failed or have no gradient of their own: their motion says nothing. What has been removed is in no sum.
+fn fill_loose(
+    bonds: &Bonds,
+    ghosts: &Ghosts,
+    sites: &[Site],
+    damage: Option<&[Damage]>,
+    loose: &mut Vec<bool>,
+) {
+    loose.clear();
+    if damage.is_none() && bonds.free.is_empty() {
+        return;
+    }
+    loose.resize(sites.len(), false);
+    for &row in &bonds.free {
+        loose[row as usize] = sites[row as usize].is_present();
+    }
+    if let Some(damage) = damage {
+        for ((loose, damage), site) in loose.iter_mut().zip(damage).zip(sites) {
+            *loose |= damage.0 >= 1.0 && site.is_present();
+        }
+    }
+    ghosts.fill(loose, |_, source| *source);
+}
+
+/// What neighbours see of a gradient: -H/2, with 1 in the last lane of the first column, and b with the volume, in the frame.
+#[inline(always)]
+fn slope(h: &DMat3, site: &Site, frame: &Frame) -> CorrectedStress {
+    let half = (*h - frame.gradient) * -0.5;
+    let (x, y, z) = (half.x_axis, half.y_axis, half.z_axis);
+    let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
+    let mut slope = CorrectedStress { columns, traction: Lanes4::ZERO };
+    let moved = slope.times(site.reference.xyz(), DVec3::ZERO) + frame.rest(site);
+    slope.columns[0].0[3] = 1.0;
+    slope.traction = Lanes4::new(moved, site.reference.0[3]);
+    slope
+}
+
+fn fill_slopes<'b>(
+    bodies: impl Iterator<Item = &'b HessianBody>,
+    gradient: &[DMat3],
+    bonded: BondedSites<'_>,
+    frames: &[Frame],
+    slopes: &mut [CorrectedStress],
+) {
+    let BondedSites { ghosts, sites, .. } = bonded;
+    for HessianBody { rows: Range { start, end }, .. } in bodies {
+        let frame = &frames[frame_of(frames, *start)];
+        for_each_block(&mut slopes[*start..*end], &mut Vec::new(), &|first, own: &mut [CorrectedStress]| {
+            for (own, row) in own.iter_mut().zip(start + first..) {
+                *own = slope(&gradient[row], &sites[row], frame);
+            }
+        });
+    }
+    ghosts.fill(slopes, |ghost, _| {
+        let h = ghost.map.tensor(gradient[ghost.source]);
+        slope(&h, &sites[ghost.row], &frames[frame_of(frames, ghost.source)])
+    });
+}
+
 /// First pass: residual and pull.
 struct Residuals<'a> {
     bonds: &'a Bonds,
-    ghosts: &'a Ghosts,
     sites: &'a [Site],
-    gradient: &'a [DMat3],
-    damage: Option<&'a [Damage]>,
-    /// First row of the body.
-    first: usize,
+    slopes: &'a [CorrectedStress],
+    frame: Frame,
+    /// Of every row, whether its motion says nothing; empty where that of all does.
+    loose: &'a [bool],
     /// Whether the step is one, and no repetition.
     moves: bool,
 }
 
 struct ResidualBlock<'a, 'r> {
     pass: &'a Residuals<'a>,
+    /// First row of the block in the phase.
     first: usize,
     own: ResidualRows<'r>,
+    energy: &'r mut FoldedEnergy,
 }
 
-impl HotLoop for ResidualBlock<'_, '_> {
-    type Output = FoldedEnergy;
-
+impl PlaneOrSolid for ResidualBlock<'_, '_> {
     #[inline(always)]
-    fn run<A: FourLanes>(self, _: A) -> FoldedEnergy {
-        let Residuals { bonds, ghosts, sites, gradient, damage, first, moves } = *self.pass;
-        let (residual, held, pull, stiffness, support) = self.own;
-        let mut energy = FoldedEnergy::default();
-        let may_be_loose = damage.is_some() || !bonds.free.is_empty();
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        let Residuals { bonds, sites, slopes, frame, loose, moves } = *self.pass;
+        let (residual, held, pulls, stiffness, support) = self.own;
         for k in 0..residual.len() {
-            let i = first + self.first + k;
-            let (site, h_i) = (&sites[i], gradient[i]);
-            let mut sum = DVec3::ZERO;
-            // The motion of a neighbour that has failed, or has no gradient of its own, says nothing.
-            let mut is_beside_loose = may_be_loose && bonds.inverse_moment[i] == Sym3::ZERO;
-            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                let j = bonds.neighbors[bond] as usize;
-                let other = &sites[j];
-                let weight = f64::from(bonds.weights[bond]) * other.reference.0[3];
-                let arm = other.reference.xyz() - site.reference.xyz();
-                let change = other.displacement.xyz() - site.displacement.xyz();
-                sum += (change - (h_i + gradient[j]) * (0.5 * arm)) * weight;
-                if may_be_loose && weight > 0.0 {
-                    let j = ghosts.source(j);
-                    let has_failed = damage.is_some_and(|damage| damage[j].0 >= 1.0);
-                    is_beside_loose |= has_failed || bonds.inverse_moment[j] == Sym3::ZERO;
-                }
+            let i = self.first + k;
+            let site = &sites[i];
+            let of_others = BondSum::<D>::over(a, bonds, slopes, i);
+            let rest = Lanes4::new(frame.rest(site), 0.0);
+            let mut sum = a.scale_add(-of_others.columns[0].0[3], rest, of_others.traction);
+            for axis in 0..D {
+                sum = a.scale_add(-site.reference.0[axis], of_others.columns[axis], sum);
             }
+            let sum = sum.xyz() + slopes[i].times(bonds.reach[i], DVec3::ZERO);
             let before = (residual[k].0, held[k].0);
             let h = 0.5 * support[k].0;
             let now = sum * h;
+            let mut is_beside_loose = false;
+            if !loose.is_empty() {
+                is_beside_loose = bonds.inverse_moment[i] == Sym3::ZERO;
+                for &j in &bonds.neighbors[bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize] {
+                    is_beside_loose |= loose[j as usize];
+                }
+            }
             let kappa = if is_beside_loose { 0.0 } else { stiffness[k] };
-            energy.stored += 0.5 * kappa * now.length_squared();
+            self.energy.stored += 0.5 * kappa * now.length_squared();
             if moves {
                 // The trapezoidal rule of the leapfrog spends this beyond the change of energy.
-                energy.released += 0.5 * (before.1 - kappa) * before.0.dot(now);
+                self.energy.released += 0.5 * (before.1 - kappa) * before.0.dot(now);
             }
             (residual[k].0, held[k].0) = (now, kappa);
             let volume = site.reference.0[3];
-            pull[k] = if volume > 0.0 { now * (h * kappa / volume) } else { DVec3::ZERO };
+            let pull = if volume > 0.0 { now * (h * kappa / volume) } else { DVec3::ZERO };
+            pulls[k] = Site { reference: site.reference, displacement: Lanes4::new(pull, 0.0) };
         }
-        energy
     }
 }
 
 /// Second pass: the stress that makes the force.
-struct Forces<'a> {
+fn add_forces(
+    bonds: &Bonds,
+    pulls: &[Site],
+    rows: Range<usize>,
+    plane: bool,
+    (stresses, self_force): (&mut [CorrectedStress], &mut [DVec3]),
+) {
+    type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
+    let own: Rows<'_> = (&mut stresses[rows.clone()], &mut self_force[rows.clone()]);
+    for_each_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
+        let first = rows.start + first;
+        run_hot_in(plane, ForceBlock { bonds, pulls, first, stresses, self_force });
+    });
+}
+
+struct ForceBlock<'a> {
     bonds: &'a Bonds,
-    sites: &'a [Site],
-    pull: &'a [DVec3],
-    /// First row of the body.
+    /// The pull of every row, at its place.
+    pulls: &'a [Site],
+    /// First row of the block in the phase.
     first: usize,
+    stresses: &'a mut [CorrectedStress],
+    self_force: &'a mut [DVec3],
 }
 
-struct ForceBlock<'a, 'r> {
-    pass: &'a Forces<'a>,
-    first: usize,
-    stresses: &'r mut [CorrectedStress],
-    self_force: &'r mut [DVec3],
-}
-
-impl HotLoop for ForceBlock<'_, '_> {
-    type Output = ();
-
+impl PlaneOrSolid for ForceBlock<'_> {
     #[inline(always)]
-    fn run<A: FourLanes>(self, _: A) {
-        let Forces { bonds, sites, pull, first } = *self.pass;
-        for (k, (stress, self_force)) in self.stresses.iter_mut().zip(self.self_force).enumerate() {
-            let i = first + self.first + k;
-            let (x, volume) = (sites[i].reference.xyz(), sites[i].reference.0[3]);
-            if volume <= 0.0 {
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        let Self { bonds, pulls, first, stresses, self_force } = self;
+        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
+            let i = first + k;
+            if !pulls[i].is_present() {
                 continue;
             }
-            let mut sum = DMat3::ZERO;
-            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
-                let j = bonds.neighbors[bond] as usize;
-                let other = &sites[j].reference;
-                let arm = (other.xyz() - x) * (f64::from(bonds.weights[bond]) * other.0[3]);
-                sum += dyad(pull[j], arm);
-            }
-            let reach = bonds.reach[i];
-            let own = (sum - dyad(pull[i], reach)) * 0.5;
-            let own = own * bonds.inverse_moment[i].to_matrix();
+            let (x, pull) = (pulls[i].reference.xyz(), pulls[i].displacement.xyz());
+            let Spread { spread, .. } = Spread::<D>::over(a, bonds, pulls, i);
+            let own = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
+            let own = DMat3::from_cols(own[0].xyz(), own[1].xyz(), own[2].xyz()) * 0.5;
             stress.add(&own, x);
-            stress.add_traction(-pull[i]);
-            *self_force += own * reach + pull[i] * bonds.weight_sum[i];
+            stress.add_traction(-pull);
+            *self_force += own * bonds.reach[i] + pull * bonds.weight_sum[i];
         }
     }
 }

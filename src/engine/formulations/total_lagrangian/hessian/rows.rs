@@ -8,7 +8,7 @@ use super::super::bonds::Bonds;
 use super::super::rows::Site;
 use super::vidal_2007::{Difference, VidalRows};
 use crate::parallel::{run_hot, split_by_rows};
-use crate::solids::{FoldedRows, HessianDifference, HessianForm};
+use crate::solids::{CorrectedStress, FoldedRows, HessianDifference, HessianForm};
 use crate::symmetry::Ghosts;
 
 /// A body with the stabilization.
@@ -28,8 +28,12 @@ pub(in crate::formulations) struct HessianRows {
     pub gradient: Vec<DMat3>,
     /// Stiffness of the frame-indifferent form, J.
     pub stiffness: Vec<f64>,
-    /// Force per volume squared and weight, which acts along the bonds of all rows.
-    pub pull: Vec<DVec3>,
+    /// What neighbours see of the gradients, of all rows.
+    pub slopes: Vec<CorrectedStress>,
+    /// Places of all rows, with the force per volume squared and weight that acts along their bonds.
+    pub pulls: Vec<Site>,
+    /// Of all rows, whether their motion says nothing; empty where that of all does.
+    pub loose: Vec<bool>,
     /// What the form of the paper needs of the reference beside.
     pub vidal: VidalRows,
     /// Theta_i of the form of the paper, of all rows, Pa.
@@ -65,7 +69,11 @@ impl HessianRows {
         self.is_stale = true;
         self.gradient.resize(rows + ghosts, DMat3::ZERO);
         self.stiffness.resize(rows, 0.0);
-        self.pull.resize(rows + ghosts, DVec3::ZERO);
+        if self.has(HessianForm::FrameIndifferent) {
+            self.slopes.resize(rows + ghosts, CorrectedStress::default());
+            self.pulls.resize(rows + ghosts, Site::default());
+            self.loose.reserve(rows + ghosts);
+        }
         if self.has(HessianForm::Vidal2007) {
             self.stress.resize(rows + ghosts, DMat3::ZERO);
         }
@@ -100,7 +108,7 @@ impl HessianRows {
     /// The pull of a row, zero where there is none.
     #[inline]
     pub fn pull_of(&self, row: usize) -> DVec3 {
-        self.pull.get(row).copied().unwrap_or_default()
+        self.pulls.get(row).map_or(DVec3::ZERO, |site| site.displacement.xyz())
     }
 }
 
@@ -133,11 +141,6 @@ impl HessianBlock<'_> {
             let (rows, eta) = (vidal, self.eta);
             run_hot(Difference { rows, bonds, sites, gradient: self.fitted, eta, first, block: gradient });
         }
-    }
-
-    /// Whether the frame-indifferent form has to know the gradients.
-    pub fn needs_gradient(&self) -> bool {
-        !self.gradient.is_empty()
     }
 
     /// Takes the gradients that the frame-indifferent form compares.

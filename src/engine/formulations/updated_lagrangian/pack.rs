@@ -1,0 +1,67 @@
+//! The packed rows, filled from the columns in every step.
+
+use glam::DVec3;
+
+use super::columns::UpdatedReference;
+use super::phase::UpdatedRows;
+use crate::formulations::total_lagrangian::Site;
+use crate::parallel::for_each_block;
+use crate::symmetry::Ghost;
+use crate::world::{MissingColumn, PhaseId, Position, ReferencePosition, World};
+
+impl UpdatedRows {
+    /// Fills the sites of the reference.
+    pub fn pack_reference(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
+        let view = world.phase(phase);
+        let position = view.read::<Position>()?;
+        let reference = view.read::<UpdatedReference>()?;
+        let Self { sites, volume, origin, ghosts, .. } = self;
+        let (count, origin) = (view.len(), *origin);
+        let (position, reference, volume) = (&position[..], &reference[..], &volume[..]);
+        for_each_block(&mut sites[..count], &mut Vec::new(), &|first, sites: &mut [Site]| {
+            for (k, site) in sites.iter_mut().enumerate() {
+                let row = first + k;
+                let (x, r) = (position[row].0, reference[row].0);
+                *site = Site::new(r - origin, x - r, volume[row]);
+            }
+        });
+        ghosts.fill(sites, image(origin));
+        Ok(())
+    }
+
+    /// Fills all sites.
+    pub fn pack(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
+        self.pack_reference(world, phase)?;
+        if !self.has_followed() {
+            return Ok(());
+        }
+        let view = world.phase(phase);
+        let position = view.read::<Position>()?;
+        let original = view.read::<ReferencePosition>()?;
+        let Self { pair_sites, control, volume, ghosts, .. } = self;
+        let (position, original) = (&position[..], &original[..]);
+        let fill = |sites: &mut [Site], origin, volume: &[f64]| {
+            for_each_block(&mut sites[..volume.len()], &mut Vec::new(), &|first, sites: &mut [Site]| {
+                for (k, site) in sites.iter_mut().enumerate() {
+                    let row = first + k;
+                    let (x, start) = (position[row].0, original[row].0);
+                    *site = Site::new(start - origin, x - start, volume[row]);
+                }
+            });
+            ghosts.fill(sites, image(origin));
+        };
+        fill(pair_sites, DVec3::ZERO, volume);
+        if control.has_sums() {
+            fill(&mut control.sites, control.origin, &control.volume);
+        }
+        Ok(())
+    }
+}
+
+/// The image of the site of a source, measured from `origin`, m.
+fn image(origin: DVec3) -> impl Fn(Ghost<'_>, &Site) -> Site + Sync {
+    move |ghost, site| {
+        let reference = ghost.map.place(site.reference.xyz() + origin) - origin;
+        Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
+    }
+}
