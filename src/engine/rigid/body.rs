@@ -56,6 +56,8 @@ pub struct RigidBody {
     pub state: RigidState,
     /// What contacts have added in this step, about the centre.
     contact: Wrench,
+    /// What one metre more of all contacts of the step would do, about the centre.
+    pub(crate) contact_stiffness: Wrench,
 }
 
 impl RigidBody {
@@ -80,6 +82,7 @@ impl RigidBody {
             constraint,
             state,
             contact,
+            contact_stiffness: Wrench::default(),
         }
     }
 
@@ -119,6 +122,13 @@ impl RigidBody {
     pub fn response_at(&self, place: DVec3, forces: &Wrench) -> DVec3 {
         let spin = self.constraint.angular_response(&self.inertia, self.state.rotation, forces.torque);
         self.constraint.free_axes() * forces.force / self.mass + spin.cross(place - self.state.center)
+    }
+
+    /// Acceleration of the point at `place` by the forces of the last step, m/s2.
+    #[inline]
+    pub fn acceleration_at(&self, place: DVec3) -> DVec3 {
+        let RigidState { force, torque, .. } = self.state;
+        self.response_at(place, &Wrench { force, torque })
     }
 
     /// Whether nothing that touches it can move it.

@@ -34,6 +34,14 @@ impl NodeView<'_> {
         }
     }
 
+    /// Whether a node is a point of a face of a rigid body.
+    pub fn is_of_face(&self, i: usize) -> bool {
+        match self {
+            Self::Particles(_) => false,
+            Self::Rigid(body) => body.nodes.list()[i].is_of_face(),
+        }
+    }
+
     /// Whether a node takes part: a removed particle does not.
     pub fn is_there(&self, i: usize) -> bool {
         match self {
@@ -166,6 +174,14 @@ impl NodeMotion<'_> {
         match self {
             Self::Particle(around) => around.velocity(arm),
             Self::Rigid(body) => body.velocity_at(place),
+        }
+    }
+
+    /// Acceleration there by the forces of the last step, m/s2; those of a particle are in balance.
+    pub fn acceleration(&self, place: DVec3) -> DVec3 {
+        match self {
+            Self::Particle(_) => DVec3::ZERO,
+            Self::Rigid(body) => body.acceleration_at(place),
         }
     }
 

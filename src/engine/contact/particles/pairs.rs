@@ -90,6 +90,7 @@ impl Pairs<'_> {
             area: 1.0,
             arms: near.arms,
             velocity: self.velocity(of, near.arms),
+            acceleration: DVec3::ZERO,
         };
         let inverse_mass = |n: DVec3| (mobility[0] + mobility[1]).dot(n * n);
         let response = interaction.respond(&state, inverse_mass, *dt, before);
@@ -123,6 +124,7 @@ impl Pairs<'_> {
                 area: 1.0,
                 arms: history.arms,
                 velocity: velocity(),
+                acceleration: DVec3::ZERO,
             };
             energies.removed += share * self.interaction.held(&state, self.dt, history);
         }

@@ -2,8 +2,9 @@
 //!
 //! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at the end of the
 //! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time step, and the
-//! restitution does not depend on the step to first order. A particle of a body is also held by its bonds, which balance the contact force f of the
-//! last step: only the change of f moves the particle. Otherwise a dashpot would pull at pressed bodies at rest, and its heat would be negative.
+//! restitution does not depend on the step to first order. Other forces act there too: bonds hold a particle of a body and balance the contact force f of the
+//! last step, weight and other contacts move a rigid body, whose acceleration a of the last step has f in it. So only the change of f counts, beside a: `u = (u' + dt/2 (a - w (f - f_last)))/(1 + dt/2 w c)`.
+//! Otherwise a dashpot would pull at pressed bodies at rest, its heat would be negative, and stacks would be kicked whenever the step changes.
 
 use glam::DVec3;
 
@@ -36,6 +37,8 @@ pub(in crate::contact) struct ContactState {
     pub arms: [DVec3; 2],
     /// Velocity of the first side relative to the second at that point at mid-step, m/s.
     pub velocity: DVec3,
+    /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of rigid bodies; those on particles are in balance.
+    pub acceleration: DVec3,
 }
 
 /// What a contact does.
@@ -110,14 +113,15 @@ impl Interaction {
         dt: f64,
         before: &History,
     ) -> Response {
-        let ContactState { touch, normal, velocity, scale, arms, .. } = state;
+        let ContactState { touch, normal, velocity, acceleration, scale, arms, .. } = state;
         // Without a dashpot nobody asks for masses.
         let inverse_mass = |n: DVec3| if self.damping_ratio == 0.0 { 0.0 } else { inverse_mass(n) };
         let across = inverse_mass(*normal);
         let approach = -velocity.dot(*normal);
         let begun = self.share_of_first_step(touch, scale * approach, dt, before);
-        let taken_up = if is_held(touch) { before.pressure } else { 0.0 };
-        let pull = begun * self.dashpot(spring.stiffness, across, approach, spring.force - taken_up, dt);
+        let (late, change) =
+            (approach - 0.5 * dt * acceleration.dot(*normal), spring.force - before.pressure);
+        let pull = begun * self.dashpot(spring.stiffness, across, late, change, dt);
         let pressure = (spring.force + pull).max(0.0);
         let stiffness = self.tangential * spring.stiffness;
         let limits = Limits { stiffness, force: self.friction * pressure };
@@ -166,7 +170,7 @@ impl Interaction {
         if self.friction == 0.0 {
             return (DVec3::ZERO, DVec3::ZERO);
         }
-        let ContactState { normal, velocity, .. } = state;
+        let ContactState { normal, velocity, acceleration, .. } = state;
         let slip = velocity - velocity.dot(*normal) * normal;
         let mut spring = before.spring - before.spring.dot(*normal) * normal;
         // A spring that gets softer keeps its stretch, one that gets stiffer its force: neither makes energy.
@@ -179,9 +183,10 @@ impl Interaction {
             return (if held > 0.0 { spring * (limit / held) } else { DVec3::ZERO }, DVec3::ZERO);
         }
         let along = slip.normalize_or(spring.normalize_or_zero());
-        let taken_up = if is_held(&state.touch) { before.spring } else { DVec3::ZERO };
-        let pull = (taken_up - spring).dot(along);
-        let drag = -self.dashpot(stiffness, inverse_mass(along), slip.dot(along), pull, dt) * along;
+        let drag_before = before.dashpot - before.dashpot.dot(*normal) * normal;
+        let taken_up = if is_held(&state.touch) { before.spring } else { before.spring + drag_before };
+        let (late, pull) = ((slip + 0.5 * dt * acceleration).dot(along), (taken_up - spring).dot(along));
+        let drag = -self.dashpot(stiffness, inverse_mass(along), late, pull, dt) * along;
         let room = limit - held;
         (spring, if drag.length() > room { drag * (room / drag.length()) } else { drag })
     }

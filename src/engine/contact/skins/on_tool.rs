@@ -238,6 +238,7 @@ impl SkinOnTool {
                 area: 1.0,
                 arms: [DVec3::ZERO; 2],
                 velocity,
+                acceleration: DVec3::ZERO,
             };
             let mobility = vertex.mobility / pressed.area;
             let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(vertex.place, n);

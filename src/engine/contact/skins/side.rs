@@ -106,6 +106,7 @@ impl Side<'_> {
             area: weight * area / usual,
             arms: [x - self.place(&foot), DVec3::ZERO],
             velocity,
+            acceleration: DVec3::ZERO,
         };
         let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
         let response = interaction.respond(&state, inverse_mass, dt, before);

@@ -1,9 +1,10 @@
 //! The system of all contacts of a scene.
 
 use super::touching::{Saved, Touching};
-use crate::contact::bodies::{CONTACT, MotionBounds};
+use crate::contact::bodies::{CONTACT, MotionBounds, Turn};
 use crate::contact::response::{ContactEnergy, energy};
 use crate::plugin::SimBuilder;
+use crate::rigid::{RigidBodies, Wrench};
 use crate::schedule::{Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::world::{
     Body, BodyId, BodySet, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition, Removed,
@@ -66,10 +67,23 @@ impl Contacts {
             let known = self.bodies.iter().find(|(id, _)| *id == body);
             known.map_or(MotionBounds::NONE, |entry| entry.1)
         };
-        self.energies.clear();
+        if let Some(mut bodies) = step.resources.try_get_mut::<RigidBodies>() {
+            bodies.iter_mut().for_each(|body| body.contact_stiffness = Wrench::default());
+        }
         for pair in &mut self.touching {
+            pair.find(step, pair.bodies().map(motion_of))?;
+        }
+        self.energies.clear();
+        for k in 0..self.touching.len() {
+            let other = match self.touching[k].turn() {
+                Turn::Alone => None,
+                Turn::First => Some(k + 1),
+                Turn::Second => Some(k - 1),
+            };
+            let beside = other.and_then(|other| self.touching[other].beside_the_other());
+            let pair = &mut self.touching[k];
             let [first, second] = pair.bodies();
-            let energies = pair.run(step, [motion_of(first), motion_of(second)])?;
+            let energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
             self.energies.push(((first, second), energies));
         }
         energy::book(step, &self.energies);

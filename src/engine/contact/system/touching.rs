@@ -1,11 +1,11 @@
 //! Two bodies that touch.
 
 use crate::contact::active::ContactNodes;
-use crate::contact::bodies::{MotionBounds, Particles};
+use crate::contact::bodies::{MotionBounds, Particles, Turn};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::contact::skins::{SkinOnTool, SkinPair};
-use crate::contact::tools::SurfaceContact;
+use crate::contact::tools::{SurfaceContact, Together};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Last, Patch};
 use crate::world::BodyId;
@@ -29,14 +29,34 @@ impl Touching {
         }
     }
 
+    /// Finds out what touches, where others are to know that.
+    pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
+        match self {
+            Self::Surface(contact) => contact.find(step, motion),
+            Self::Particles(_) | Self::SkinOnTool(_) | Self::Skins(_) => Ok(()),
+        }
+    }
+
+    /// Which of the two contacts of a pair of rigid bodies it is; the second follows the first.
+    pub fn turn(&self) -> Turn {
+        if let Self::Surface(contact) = self { contact.sides.turn } else { Turn::Alone }
+    }
+
+    /// What its springs do to two rigid bodies, as the other contact of the pair sees it.
+    pub fn beside_the_other(&self) -> Option<Together> {
+        if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
+    }
+
+    /// Works out the forces; `beside` are the contacts of the points of the second of two rigid bodies on the surface of the first.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
+        beside: Option<Together>,
     ) -> Result<ContactEnergy, StepError> {
         match self {
             Self::Particles(contact) => contact.run(step, motion),
-            Self::Surface(contact) => contact.run(step, motion),
+            Self::Surface(contact) => contact.run(step, motion, beside),
             Self::SkinOnTool(contact) => contact.run(step, motion),
             Self::Skins(contact) => contact.run(step, motion),
         }

@@ -3,6 +3,7 @@
 mod deformed;
 mod heat;
 mod images;
+mod impacts;
 mod laws;
 mod loaded;
 mod long;

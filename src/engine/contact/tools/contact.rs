@@ -4,10 +4,12 @@
 use super::nearby::Nearby;
 use super::on_surface::{NearNodes, NodeTouch, OnSurface};
 use super::reaction::{NodePush, push};
+use super::together::Together;
 use crate::contact::active::{ActiveContacts, ContactNodes, End, Pull};
 use crate::contact::bodies::{MotionBounds, Particles, Sides};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
+use crate::parallel::BlockSum;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 
@@ -24,6 +26,10 @@ pub(in crate::contact) struct SurfaceContact {
     pub contacts: ActiveContacts<NodeTouch, NodePush, NearNodes>,
     /// The particles that touch.
     pub contact_nodes: ContactNodes,
+    /// What the nodes near the surface say of the time step.
+    near: NearNodes,
+    /// What its springs do to the rigid bodies, where dashpots ask for it.
+    pub together: Option<Together>,
 }
 
 impl SurfaceContact {
@@ -36,42 +42,64 @@ impl SurfaceContact {
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
         contacts.reserve(room);
         contact_nodes.reserve(room);
-        Self { interaction, gravity, nearby, sides, contacts, contact_nodes }
+        let near = NearNodes::default();
+        Self { interaction, gravity, nearby, sides, contacts, contact_nodes, near, together: None }
     }
 
-    /// Works out the forces of all nodes that touch, and pushes the rigid bodies.
+    /// Finds the nodes that touch, and adds what their springs do to the rigid bodies.
+    pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
+        let mut bodies = step.resources.get_mut::<RigidBodies>();
+        let (speed, dt) = (motion[0].speed + motion[1].speed, step.clock.dt);
+        let Self { interaction, sides, nearby, contacts, contact_nodes, .. } = self;
+        let of_particles = sides.nodes.particles().is_some();
+        (self.near, self.together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+            let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
+            if is_new && of_particles {
+                contact_nodes.renew(nearby.candidates(), &[End::First]);
+            }
+            if !of_particles {
+                contacts.reserve(nodes.len());
+            }
+            let on = OnSurface { interaction, sides, nodes, tool, dt, together: &[] };
+            let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
+                on.touching(node, near_nodes)
+            });
+            (near, on.act_together(contacts.met()))
+        })?;
+        if let Some(Together { on_node, on_tool }) = &self.together {
+            let both = [(self.sides.first, on_node), (self.sides.second, on_tool)];
+            for (id, springs) in both {
+                let body = bodies.iter_mut().find(|body| body.id == id);
+                body.into_iter().for_each(|body| body.contact_stiffness.add(springs));
+            }
+        }
+        Ok(())
+    }
+
+    /// Works out the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of the points of the other body on the surface of this one.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
+        beside: Option<Together>,
     ) -> Result<ContactEnergy, StepError> {
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
         let speed = motion[0].speed + motion[1].speed;
         let dt = step.clock.dt;
-        let Self { interaction, sides, nearby, contacts, gravity, contact_nodes } = self;
+        let Self { interaction, sides, contacts, gravity, contact_nodes, near, together, .. } = self;
         let of_particles = sides.nodes.particles();
-        let (energies, near, expected, count) =
+        let (energies, expected, count) =
             sides.with(step.world, step.resources, &bodies, |nodes, tool| {
-                let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
-                if is_new && of_particles.is_some() {
-                    contact_nodes.renew(nearby.candidates(), &[End::First]);
-                }
-                if of_particles.is_none() {
-                    contacts.reserve(nodes.len());
-                }
-                let mut on = OnSurface { interaction, sides, nodes, tool, dt, together: None };
-                let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
-                    on.touching(node, near_nodes)
-                });
-                on.together = on.act_together(contacts.met());
+                let together = together.map(|own| own.with_others(beside, nodes, tool));
+                let together = together.as_ref().map_or(&[][..], |both| &both[..]);
+                let on = OnSurface { interaction, sides, nodes, tool, dt, together };
                 let energies = contacts.respond(
                     nodes.len(),
                     |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
                     |(node, _), history, energies| on.end(node, history, energies),
                 );
-                let expected = on.expected(&near, speed, *gravity);
-                (energies, near, expected, nodes.len())
+                (energies, on.expected(near, speed, *gravity), nodes.len())
             })?;
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {

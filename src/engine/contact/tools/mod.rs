@@ -6,8 +6,11 @@ mod reaction;
 
 mod together;
 
+mod face_share;
+
 mod on_surface;
 
 mod contact;
 
 pub(super) use contact::SurfaceContact;
+pub(super) use together::Together;

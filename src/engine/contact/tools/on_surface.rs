@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::face_share::FaceShare;
 use super::nearby::NEAR;
 use super::reaction::NodePush;
 use super::together::{Spot, Together};
@@ -22,6 +23,7 @@ pub(in crate::contact) struct NodeTouch {
     /// Nearest point of the surface, m.
     point: DVec3,
     near: Nearness,
+    share: FaceShare,
 }
 
 /// What the nodes near the surface say of the time step.
@@ -51,8 +53,8 @@ pub(super) struct OnSurface<'a> {
     pub tool: &'a RigidBody,
     /// Length of the step, s.
     pub dt: f64,
-    /// What the contacts of the step do to the rigid bodies together, if dashpots ask for that.
-    pub together: Option<Together>,
+    /// What the contacts of the step do to the rigid bodies together, those between the two and all of them, if dashpots ask for that.
+    pub together: &'a [Together],
 }
 
 impl OnSurface<'_> {
@@ -79,7 +81,14 @@ impl OnSurface<'_> {
         near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless });
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
-        touches.then(|| NodeTouch { x: center, shift: own_place - center, point: nearest.point, near })
+        touches.then(|| {
+            let share = if nodes.is_of_face(i) {
+                FaceShare::new(&nearest, nodes.size(i), tool)
+            } else {
+                FaceShare::WHOLE
+            };
+            NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
+        })
     }
 
     /// The force of a node that touches, with its history.
@@ -96,21 +105,22 @@ impl OnSurface<'_> {
         let motion = nodes.motion(i, !interaction.is_elastic() || before.is_none());
         let mut losses = Losses::default();
         self.add_work_before(node, &motion, before, &mut losses);
-        let NodeTouch { x, shift, point, near } = *touch;
+        let NodeTouch { x, shift, point, near, share } = *touch;
         let (arm, normal) = (near.arms[0], near.normal);
         let place = nodes.place(i, x, arm, || tool.place(point));
         let state = ContactState {
             touch: self.touch(i, near.overlap),
             normal,
             scale: near.scale,
-            area: 1.0,
+            area: share.share,
             arms: near.arms,
             velocity: motion.velocity(arm, place + shift) - tool.velocity_at(place),
+            acceleration: motion.acceleration(place + shift) - tool.acceleration_at(place),
         };
         let own = motion.inverse_mass(arm, place + shift);
         let alone = |n: DVec3| own(n) + tool.inverse_mass_at(place, n);
-        let among = self.together.as_ref().map_or(1.0, |together| {
-            together.share(&self.spot(i, touch), nodes, tool, alone(normal), own(normal))
+        let among = self.together.iter().fold(1.0, |most: f64, together| {
+            most.max(together.share(&self.spot(i, touch), nodes, tool, alone(normal), own(normal)))
         });
         let inverse_mass = |n: DVec3| among * alone(n);
         let response = interaction.respond(&state, inverse_mass, *dt, before);
@@ -125,7 +135,13 @@ impl OnSurface<'_> {
         };
         let stiffness = [own(normal), tool.inverse_mass_at(place, normal)];
         let stiffness = stiffness.map(|inverse_mass| response.spring.stiffness * inverse_mass);
-        let (force, heat) = (response.force, losses.friction);
+        // u grad w, with the energy w u of the spring.
+        let along = if share.gradient == DVec3::ZERO {
+            DVec3::ZERO
+        } else {
+            response.spring.energy / share.share * share.gradient
+        };
+        let (force, heat) = (response.force - along, losses.friction);
         (response.history, NodePush { arm, place, shift, force, center: x, turning, heat, stiffness })
     }
 
@@ -142,10 +158,10 @@ impl OnSurface<'_> {
 
     fn spot(&self, i: usize, touch: &NodeTouch) -> Spot {
         let Self { interaction, nodes, tool, .. } = self;
-        let NodeTouch { x, shift, point, near } = *touch;
+        let NodeTouch { x, shift, point, near, share } = *touch;
         let place = nodes.place(i, x, near.arms[0], || tool.place(point));
-        let stiffness = interaction.law.at(&self.touch(i, near.overlap)).along(near.scale).stiffness;
-        Spot { place, shift, normal: near.normal, stiffness }
+        let spring = interaction.law.at(&self.touch(i, near.overlap)).along(near.scale);
+        Spot { place, shift, normal: near.normal, stiffness: share.share * spring.stiffness }
     }
 
     /// Takes in the energy of a contact that has ended.
@@ -165,6 +181,7 @@ impl OnSurface<'_> {
                 area: 1.0,
                 arms: history.arms,
                 velocity: motion.velocity(DVec3::ZERO, x) - tool.velocity_at(x),
+                acceleration: DVec3::ZERO,
             };
             energies.removed += interaction.held(&state, *dt, history);
         }

@@ -1,4 +1,4 @@
-//! Dashpots that move one rigid body together.
+//! Dashpots that move rigid bodies together.
 //!
 //! A dashpot is as strong as its spring and the mass that it moves require. The points of a flat face move one mass together: if each took it for its own, a block on n of them would be damped sqrt(n) times as much as
 //! a linear oscillator of that restitution, and thrown away where that is more than a step can bear. So a contact counts as if it moved `1/w_i` over its share,
@@ -8,6 +8,9 @@
 //! ```
 //!
 //! which is one for a contact alone, and n for n equal ones. The dashpots of a face then are together that of its springs, and act on the velocity that all of them leave.
+//!
+//! The forces are those between the two bodies, of the points of both on the surface of the other, or all that are on them, whichever moves the contact more: a body may lie on several others side by side,
+//! and one between two others is pushed from both sides.
 
 use glam::DVec3;
 
@@ -26,11 +29,11 @@ pub(super) struct Spot {
     pub stiffness: f64,
 }
 
-/// What the springs of all contacts of two bodies do to them by one metre, about the centres of the rigid ones.
+/// What the springs of contacts do to two bodies by one metre, about the centres of the rigid ones.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct Together {
-    on_node: Wrench,
-    on_tool: Wrench,
+    pub on_node: Wrench,
+    pub on_tool: Wrench,
 }
 
 impl BlockSum for Together {
@@ -42,18 +45,40 @@ impl BlockSum for Together {
 
 impl Together {
     /// What one contact does.
-    pub fn of(spot: &Spot, nodes: &NodeView<'_>, tool: &RigidBody) -> Self {
+    pub(super) fn of(spot: &Spot, nodes: &NodeView<'_>, tool: &RigidBody) -> Self {
         let force = spot.stiffness * spot.normal;
         let mut together = Self::default();
-        together.on_tool.push(spot.place - tool.state.center, force);
+        together.on_tool.push(spot.place - tool.state.center, -force);
         if let NodeView::Rigid(body) = nodes {
             together.on_node.push(spot.place + spot.shift - body.state.center, force);
         }
         together
     }
 
+    /// Those between the two bodies, of the points of both, and all that are on them.
+    pub fn with_others(mut self, beside: Option<Self>, nodes: &NodeView<'_>, tool: &RigidBody) -> [Self; 2] {
+        beside.iter().for_each(|beside| self.add(beside));
+        let on_node = match nodes {
+            NodeView::Rigid(body) => body.contact_stiffness,
+            NodeView::Particles(_) => Wrench::default(),
+        };
+        [self, Self { on_node, on_tool: tool.contact_stiffness }]
+    }
+
+    /// The same, of the other body on the surface of this one.
+    pub fn turned_around(self) -> Self {
+        Self { on_node: self.on_tool, on_tool: self.on_node }
+    }
+
     /// The share of a contact whose inverse mass is `alone`, 1/kg, of which `own` is that of a particle.
-    pub fn share(&self, spot: &Spot, nodes: &NodeView<'_>, tool: &RigidBody, alone: f64, own: f64) -> f64 {
+    pub(super) fn share(
+        &self,
+        spot: &Spot,
+        nodes: &NodeView<'_>,
+        tool: &RigidBody,
+        alone: f64,
+        own: f64,
+    ) -> f64 {
         let of_node = match nodes {
             NodeView::Rigid(body) => {
                 spot.normal.dot(body.response_at(spot.place + spot.shift, &self.on_node))
@@ -61,7 +86,7 @@ impl Together {
             NodeView::Particles(_) => spot.stiffness * own,
         };
         let of_tool = spot.normal.dot(tool.response_at(spot.place, &self.on_tool));
-        let share = (of_node + of_tool) / (spot.stiffness * alone);
+        let share = (of_node - of_tool) / (spot.stiffness * alone);
         // Where springs begin without stiffness, or beside a contact that others turn away, it is alone.
         if share.is_finite() { share.max(1.0) } else { 1.0 }
     }
