@@ -8,7 +8,9 @@ pub use meshless_engine::materials::{
 };
 pub use meshless_engine::pair::{Pair, PairTerm, Rates, Relative};
 pub use meshless_engine::parallel::{Arithmetic, FourLanes, Matrix, Number, Vector};
-pub use meshless_engine::plugin::{BodyKind, Formulation, Offer, Plugin, Registry, SetupError, SimBuilder};
+pub use meshless_engine::plugin::{
+    BodyKind, Formulation, Offer, Plugin, Prescription, Registry, SetupError, SimBuilder,
+};
 pub use meshless_engine::record::read_series;
 pub use meshless_engine::scene::{
     Dimension, Expression, Item, Scene, SceneError, Select, Source, Vec3, load, parse,

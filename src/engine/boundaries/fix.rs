@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::rigid_part::split_rigid;
-use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
+use crate::plugin::{Plugin, Prescription, SetupError, SimBuilder, Support};
 use crate::rigid::{Drive, DrivenBody};
 use crate::scene::{Axis, Edge, Select};
 use crate::schedule::{Clock, StepError};
@@ -53,9 +53,10 @@ impl Plugin for Fix {
         // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to run.
         let (selection, rigid) = split_rigid(&selection, sim)?;
         for body in rigid {
-            sim.extend(DrivenBody { body, by: Self::NAME, axes: held, drive: Box::new(Rest) });
+            let motion = Prescription::rest(Self::NAME);
+            sim.extend(DrivenBody { body, motion, axes: held, drive: Box::new(Rest) });
         }
-        sim.prescribe(&selection, held, Self::NAME)?;
+        sim.prescribe(&selection, held, Prescription::rest(Self::NAME))?;
         sim.add_setup(move |setup| {
             for (body, rows) in &selection.parts {
                 let (view, _) = setup.world.body_view(*body);

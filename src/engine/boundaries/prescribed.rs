@@ -11,7 +11,7 @@ use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::split_rigid;
 use crate::parallel::{Picked, sum_over_blocks};
-use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, MotionOfPlace, Prescription, Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody};
 use crate::schedule::{AccountKind, Clock, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Column, Mass, Position, Removed, Velocity};
@@ -47,20 +47,21 @@ pub(super) fn prescribe(
     let least_difference = 1e-6 * sim.scene().time.end;
     for body in rigid {
         let motion = Motion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
-        sim.extend(DrivenBody { body, by: name, axes: field.axes(), drive: Box::new(motion) });
+        let stated = prescription(&motion);
+        sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });
     }
     if selection.is_empty() {
         return Ok(());
     }
-    sim.prescribe(&selection, field.axes(), name)?;
     let motion = Motion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
+    sim.prescribe(&selection, motion.field.axes(), prescription(&motion))?;
     let motion = Arc::new(motion);
     start_walls(&motion, sim);
     let phases = phases_of(&selection, sim);
     let label = name.to_lowercase();
     let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
     let at_end = SetVelocity { motion, end_of_step: true, values: Vec::new() };
-    // After the kick, which writes velocities. No two conditions hold one axis of one particle, so their order does not matter: `Adds` says so.
+    // After the kick, which writes velocities. Two conditions hold one axis of one particle only where their values agree, so their order does not matter: `Adds` says so.
     sim.add_system(
         System::new(Stage::PreStep, label.clone(), at_middle)
             .on_phases(phases.clone())
@@ -79,6 +80,16 @@ pub(super) fn prescribe(
             .by_body(),
     );
     Ok(())
+}
+
+/// What a motion prescribes, for others on the same particles.
+fn prescription(motion: &Motion) -> Prescription {
+    let field = motion.field.clone();
+    let value: MotionOfPlace = Arc::new(move |point, t| field.at(point, t));
+    match motion.kind {
+        Kind::Velocity => Prescription::velocity(motion.name, value),
+        Kind::Displacement => Prescription::displacement(motion.name, value),
+    }
 }
 
 /// Gives walls their velocity before the first force is made: friction with a wall that seems to be at rest would kick a fluid that moves with it.

@@ -63,6 +63,37 @@ fn a_body_in_free_fall_follows_the_parabola() {
     assert!(sim.ledger().relative_error().abs() < 1e-12);
 }
 
+/// Two faces share a corner: what holds both is an error only where the values differ.
+#[test]
+fn conditions_that_agree_may_share_particles() {
+    let pair = |one: &str, other: &str| block(&format!("{one}, {other}"), "time: (end: 0.001)");
+    let (bottom, left) = ("Select(face: MinY)", "Select(face: MinX)");
+    let fixed = |on: &str| format!("Fix(on: {on}, axes: [X])");
+    let moved = |name: &str, on: &str, value: &str| format!("{name}(on: {on}, value: (\"{value}\", None))");
+    for text in [
+        pair(&fixed(bottom), &fixed(left)),
+        pair(&format!("Fix(on: {bottom})"), &moved("Velocity", left, "0*t")),
+        pair(&fixed(bottom), &moved("Displacement", left, "0.1*t*y*0")),
+        pair(
+            &moved("Velocity", bottom, "0.1*sin(50*t)*(x + y)"),
+            &moved("Velocity", left, "0.1*(y + x)*sin(50*t)"),
+        ),
+    ] {
+        let mut sim = simulation(&text);
+        finish(&mut sim);
+        assert!(sim.ledger().relative_error().abs() < 1e-3, "{text}");
+    }
+    for text in [
+        pair(&fixed(bottom), &moved("Velocity", left, "0.1*t")),
+        pair(&moved("Velocity", bottom, "0.1*t"), &moved("Displacement", left, "0.05*t^2")),
+        pair(&moved("Displacement", bottom, "0.1*t"), &moved("Displacement", left, "0.2*t")),
+    ] {
+        let (scene, source) = parse(Source::new("test.ron", &text)).expect("a scene");
+        let Err(error) = build(&scene, &source, &Registry::standard()) else { panic!("{text}") };
+        assert!(error.to_string().contains("and differ"), "{error}");
+    }
+}
+
 #[test]
 fn a_body_force_on_all_of_a_body_accelerates_it_uniformly() {
     let text =

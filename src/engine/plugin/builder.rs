@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::error::SetupError;
 use super::handed::HandedIn;
 use super::plan::BodyPlan;
+use super::prescription::Prescription;
 use super::selection::{self, Selection};
 use super::setup::{Setup, SetupStep};
 use crate::materials::{Law, SolidLaw};
@@ -34,7 +35,9 @@ pub struct SimBuilder<'s> {
     pub(crate) sub_cycled: Vec<PhaseId>,
     pub(crate) warnings: Vec<String>,
     pub(crate) references: Vec<String>,
-    pub(crate) prescribed: BTreeMap<(PhaseId, u32), [Option<&'static str>; 3]>,
+    /// Of particles with a prescribed motion the numbers of those who prescribe it, by axis.
+    pub(crate) prescribed: BTreeMap<(PhaseId, u32), [Option<usize>; 3]>,
+    pub(crate) prescriptions: Vec<Prescription>,
     /// Bodies that selections hold.
     pub(crate) held: RefCell<Vec<BodyId>>,
     pub(crate) handed: HandedIn,
@@ -62,6 +65,7 @@ impl<'s> SimBuilder<'s> {
             warnings: Vec::new(),
             references: Vec::new(),
             prescribed: BTreeMap::new(),
+            prescriptions: Vec::new(),
             held: RefCell::default(),
             handed: HandedIn::default(),
             shared: SharedValues::default(),
@@ -220,37 +224,43 @@ impl<'s> SimBuilder<'s> {
         })
     }
 
-    /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that the
-    /// condition named `by` can prescribe it. Two conditions on one axis of one particle are an error.
+    /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that a
+    /// condition can prescribe it: the name of that, or what it prescribes. Two conditions on one axis of one particle are an error unless both
+    /// say that they prescribe the same.
     pub fn prescribe(
         &mut self,
         selection: &Selection,
         axes: [bool; 3],
-        by: &'static str,
+        by: impl Into<Prescription>,
     ) -> Result<(), SetupError> {
+        let (by, end, own) = (by.into(), self.scene.time.end, self.prescriptions.len());
         for (id, rows) in &selection.parts {
-            let phase = self.body(*id).phase;
+            let body = &self.bodies[id.0];
             for &row in rows {
-                let taken = self.prescribed.entry((phase, row)).or_default();
+                let taken = self.prescribed.entry((body.phase, row)).or_default();
+                let number = row as usize - body.rows.start;
+                let point = body.sites[number].position;
                 for axis in (0..3).filter(|&axis| axes[axis]) {
-                    if let Some(other) = taken[axis].replace(by) {
-                        let body = self.body(*id);
-                        let number = row as usize - body.rows.start;
+                    let before = taken[axis].replace(own).map(|other| &self.prescriptions[other]);
+                    if let Some(other) = before.filter(|other| !by.agrees(other, axis, point, end)) {
                         let name = ["x", "y", "z"][axis];
                         return Err(SetupError::parameter(
                             "on",
                             format!(
-                                "two conditions prescribe the {name} motion of one particle: `{other}` and `{by}` \
-                                 both hold particle {number} of body `{}` at {}",
+                                "two conditions prescribe the {name} motion of one particle: `{}` and `{}` \
+                                 both hold particle {number} of body `{}` at {}, and differ",
+                                other.by(),
+                                by.by(),
                                 body.name,
-                                place(body.sites[number].position)
+                                place(point)
                             ),
-                            "let the selections not overlap, or leave the axis to one of them",
+                            "let the selections not overlap, leave the axis to one of them, or give both the same value",
                         ));
                     }
                 }
             }
         }
+        self.prescriptions.push(by);
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::rotation::Inertia;
+use crate::plugin::Prescription;
 use crate::schedule::{Clock, StepError};
 use crate::world::BodyId;
 
@@ -24,8 +25,8 @@ pub trait Drive: Send + Sync {
 pub struct DrivenBody {
     /// Body.
     pub body: BodyId,
-    /// Name of the condition.
-    pub by: &'static str,
+    /// What the condition prescribes.
+    pub motion: Prescription,
     /// Axes that it prescribes.
     pub axes: [bool; 3],
     /// The velocity.

@@ -107,13 +107,18 @@ impl Rigid {
         sim: &SimBuilder<'_>,
     ) -> Result<Constraint, SetupError> {
         let at = |field: &str| format!("bodies[{}].formulation{field}", id.0);
+        let (body, end) = (sim.body(id), sim.scene().time.end);
+        let middle =
+            if body.bounds.is_bounded() { 0.5 * (body.bounds.min + body.bounds.max) } else { DVec3::ZERO };
         for axis in 0..3 {
-            let mut by = drives.iter().filter(|drive| drive.axes[axis]).map(|drive| drive.by);
-            if let (Some(one), Some(other)) = (by.next(), by.next()) {
-                let body = &sim.body(id).name;
-                let name = ["x", "y", "z"][axis];
-                let message =
-                    format!("`{one}` and `{other}` both prescribe the {name} motion of rigid body `{body}`");
+            let mut motions = drives.iter().filter(|drive| drive.axes[axis]).map(|drive| &drive.motion);
+            let Some(first) = motions.next() else { continue };
+            if let Some(other) = motions.find(|other| !first.agrees(other, axis, middle, end)) {
+                let (name, one, other) = (["x", "y", "z"][axis], first.by(), other.by());
+                let message = format!(
+                    "`{one}` and `{other}` both prescribe the {name} motion of rigid body `{}`, and differ",
+                    body.name
+                );
                 return Err(SetupError::parameter(at(""), message, "leave the axis to one of them"));
             }
         }
