@@ -66,6 +66,7 @@ macro_rules! for_each_case {
             K3U solids::updated_lagrangian::GRADIENT;
             K4U solids::updated_lagrangian::PAIR_TERM;
             K6U solids::updated_lagrangian::THROWN;
+            M5U exact::laws::OF_BODIES;
             S2U solids::updated_lagrangian::CANTILEVER;
             S8U solids::updated_lagrangian::PLATE;
             S9U solids::updated_lagrangian::FLAG;

@@ -1,14 +1,19 @@
 //! M1 and M5: hyperelastic laws against closed forms, differences of their energy, and rotations.
 
 use anyhow::{Context, Result, bail};
+use meshless_engine::formulations::updated_lagrangian::UpdatedGradient;
 use meshless_engine::glam::{DMat3, DQuat, DVec3};
+use meshless_engine::invariants::Specimen;
 use meshless_engine::materials::{
     DecoupledNeoHookean, Law, Material, MaterialModel, NeoHookean, StVenantKirchhoff, StateRows, StressRows,
 };
 use meshless_engine::plugin::Registry;
+use meshless_engine::simulation::Simulation;
+use meshless_engine::world::{BodyId, PiolaStress};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
+use crate::template::Template;
 
 pub(crate) const STRETCH: Case = Case {
     id: "M1",
@@ -23,6 +28,14 @@ pub(crate) const CONSISTENCY: Case = Case {
     resolutions: &[5],
     ci_resolution: 5,
     run: consistency,
+};
+
+pub(crate) const OF_BODIES: Case = Case {
+    id: "M5U",
+    title: "with updated-Lagrangian bodies: stress after updates is that of the law, and turns with the body",
+    resolutions: &[5],
+    ci_resolution: 5,
+    run: of_bodies,
 };
 
 const YOUNG: f64 = 1000.0;
@@ -124,4 +137,57 @@ fn consistency(_: &Registry, count: usize) -> Result<Vec<Check>> {
         checks.push(Check::new(text, rotation, 0.0, Tolerance::Absolute(1e-6), "1", "exact"));
     }
     Ok(checks)
+}
+
+/// Stress of bodies that are held in an affine map while their reference is updated three times.
+fn of_bodies(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let sheared = DMat3::from_cols(DVec3::new(1.4, 0.1, 0.0), DVec3::new(0.3, 0.7, 0.0), DVec3::Z);
+    let mut checks = Vec::new();
+    for (name, material) in &laws()? {
+        for (what, turn) in [
+            ("stress of a body", DMat3::IDENTITY),
+            ("stress of the turned body", DMat3::from_rotation_z(0.8)),
+        ] {
+            let (stress, _) = stress_and_energy(material, sheared)?;
+            let (wanted, map) = (turn * stress, turn * sheared);
+            let simulation = held(registry, across, name, map)?;
+            let (view, rows) = simulation.world().body_view(BodyId(0));
+            let (found, reference) = (view.read::<PiolaStress>()?, view.read::<UpdatedGradient>()?);
+            let error = |row: usize| {
+                (found[row].0 - wanted).to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max)
+            };
+            let worst = rows.clone().map(error).fold(0.0, f64::max) / YOUNG;
+            checks.push(Check::below(format!("{name}, {what}"), worst, 1e-9, "the law"));
+            let off = |row: usize| {
+                (reference[row].0 - map).to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max)
+            };
+            let farthest = rows.map(off).fold(0.0, f64::max);
+            checks.push(Check::below(
+                format!("{name}, {what}: the reference follows it"),
+                farthest,
+                1e-9,
+                "exact",
+            ));
+        }
+    }
+    Ok(checks)
+}
+
+/// A body in an affine map, after three steps of nearly no length with an update each.
+fn held(registry: &Registry, across: usize, law: &str, map: DMat3) -> Result<Simulation> {
+    let template = Template::new(
+        "tests/validation/invariants/scene.ron",
+        include_str!("../../../tests/validation/invariants/scene.ron"),
+    );
+    let template = template
+        .set("bodies.block.spacing", 0.5 / across as f64)?
+        .set("bodies.block.formulation", "UpdatedLagrangian(update: Every(1))")?
+        .set("materials.soft", format!("{law}(density: 1.0, young: {YOUNG:?}, poisson: {POISSON:?})"))?
+        .set("time", "(end: 1.0, step: Fixed(1e-12))")?;
+    let make = || -> Result<Simulation> { Ok(template.clone().build(registry)?) };
+    let mut simulation = Specimen::new(&make).moved(|_, x| map * x, |_| DVec3::ZERO)?;
+    for _ in 0..3 {
+        simulation.step()?;
+    }
+    Ok(simulation)
 }

@@ -11,8 +11,12 @@ use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::Sym3;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+use crate::parallel::{BLOCK, block_count};
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
+
+/// Blocks of rows whose bonds are made before they are put together: enough for all threads, and little memory.
+const BLOCKS_AT_ONCE: usize = 256;
 
 /// Why the bonds of a body cannot be made.
 #[derive(Debug, Error)]
@@ -74,6 +78,15 @@ pub(in crate::formulations) struct BodyBonds<'a> {
     pub hidden: &'a [u32],
 }
 
+/// The bonds of some rows.
+#[derive(Default)]
+struct RowBonds {
+    /// Where those of each row end.
+    ends: Vec<usize>,
+    neighbors: Vec<u32>,
+    weights: Vec<f32>,
+}
+
 impl BodyBonds<'_> {
     /// Neighbours of the rows of the body, in the body and its ghosts, numbered from zero.
     fn neighbors(&self, search: &mut NeighborSearch) -> Result<NeighborList, NeighborError> {
@@ -105,12 +118,35 @@ impl BodyBonds<'_> {
         self.hidden.binary_search(&own).is_err()
     }
 
-    /// Whether row `j` is within the ellipsoid of row `i`, of those that lie in the sphere around it.
-    fn is_near(&self, i: usize, j: usize) -> bool {
-        self.ellipsoids.is_none_or(|own| {
-            let distance = own.distance(self.ghosts, i, j, self.ghosts.pair(self.position, i, j));
-            distance < 0.5 * (self.support[i] + self.support[self.ghosts.source(j)])
-        })
+    /// Weight of the bond from row `i` to row `j`, of those that lie in the sphere around it; none where it is outside of the ellipsoid.
+    fn weight(&self, i: usize, j: usize) -> Option<f32> {
+        let r_ij = self.ghosts.pair(self.position, i, j);
+        let support = 0.5 * (self.support[i] + self.support[self.ghosts.source(j)]);
+        let (distance, density) = self.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
+            (own.distance(self.ghosts, i, j, r_ij), own.density(self.ghosts, i, j))
+        });
+        if self.ellipsoids.is_some() && distance >= support {
+            return None;
+        }
+        let h = support * self.kernel.smoothing_length(1.0);
+        Some((density * self.kernel.pair_weight(distance, h)) as f32)
+    }
+
+    /// Neighbours and weights of some rows, by their numbers in the body.
+    fn bonds_of(&self, rows: Range<usize>, list: &NeighborList, is_seen: &[bool]) -> RowBonds {
+        let mut bonds = RowBonds::default();
+        for k in rows {
+            if is_seen[k] {
+                for j in list.row(k).iter().filter(|&&j| is_seen[j as usize]).map(|&j| self.row(j)) {
+                    if let Some(weight) = self.weight(self.rows.start + k, j as usize) {
+                        bonds.neighbors.push(j);
+                        bonds.weights.push(weight);
+                    }
+                }
+            }
+            bonds.ends.push(bonds.neighbors.len());
+        }
+        bonds
     }
 
     /// The row of the phase that a number of [`BodyBonds::neighbors`] means.
@@ -138,14 +174,14 @@ impl Bonds {
         }
         let numbers = 0..(rows.len() + body.ghost_rows.len()) as u32;
         let is_seen: Vec<bool> = numbers.map(|number| body.is_seen(number)).collect();
-        for k in 0..rows.len() {
-            if is_seen[k] {
-                let seen = list.row(k).iter().filter(|&&j| is_seen[j as usize]).map(|&j| body.row(j));
-                self.neighbors.extend(seen.filter(|&j| body.is_near(rows.start + k, j as usize)));
-            }
-            self.offsets.push(u32::try_from(self.neighbors.len()).unwrap_or(u32::MAX));
+        let blocks = block_count(rows.len());
+        for group in (0..blocks).step_by(BLOCKS_AT_ONCE) {
+            let made = (group..blocks.min(group + BLOCKS_AT_ONCE)).into_par_iter().map(|block| {
+                let first = block * BLOCK;
+                body.bonds_of(first..rows.len().min(first + BLOCK), &list, &is_seen)
+            });
+            made.collect::<Vec<_>>().iter().for_each(|bonds| self.extend(bonds));
         }
-        self.weigh(body);
         self.correct(rows.clone(), body.kernel.dimension(), body.position, body.volume, body.ghosts);
         let free = self.free.iter().filter(|&&row| rows.contains(&(row as usize))).count();
         if free == rows.len() {
@@ -154,17 +190,11 @@ impl Bonds {
         Ok(())
     }
 
-    fn weigh(&mut self, body: &BodyBonds<'_>) {
-        let kernel = body.kernel;
-        let ratio = kernel.smoothing_length(1.0);
-        self.set_weights(body.rows.clone(), |i, j| {
-            let r_ij = body.ghosts.pair(body.position, i, j);
-            let (distance, density) = body.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
-                (own.distance(body.ghosts, i, j, r_ij), own.density(body.ghosts, i, j))
-            });
-            let support = body.support[i] + body.support[body.ghosts.source(j)];
-            (density * kernel.pair_weight(distance, 0.5 * support * ratio)) as f32
-        });
+    fn extend(&mut self, next: &RowBonds) {
+        let start = self.neighbors.len();
+        self.offsets.extend(next.ends.iter().map(|end| u32::try_from(start + end).unwrap_or(u32::MAX)));
+        self.neighbors.extend_from_slice(&next.neighbors);
+        self.weights.extend_from_slice(&next.weights);
     }
 
     /// Sets the weights of the bonds of some rows, on all threads.

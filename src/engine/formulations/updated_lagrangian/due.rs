@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::parameters::{USUAL_CHANGE, Update};
 use super::phase::UpdatedRows;
@@ -53,22 +53,40 @@ impl Rule {
             return false;
         }
         let UpdatedRows { sites, bonds, ghosts, .. } = packed;
+        let (limit, first_row) = (LOST * 2.0 * self.h, rows.start);
+        let place = |row: usize| sites[row].reference.xyz() + sites[row].displacement.xyz();
+        let farthest = |distance: &(dyn Fn(usize, usize, DVec3) -> f64 + Sync)| {
+            let farthest: Largest = sum_over_blocks(&sites[rows.clone()], &|first, own: &[Site]| {
+                let distances = (0..own.len()).flat_map(|k| {
+                    let i = first_row + first + k;
+                    let beside = bonds.row(i).filter(move |(j, _)| {
+                        let x_ij = ghosts.pair(original, i, *j);
+                        sites[*j].is_present() && x_ij.length_squared() < (BESIDE * self.spacing).powi(2)
+                    });
+                    beside.map(move |(j, _)| distance(i, j, place(j) - place(i)))
+                });
+                Largest::of(distances)
+            });
+            farthest.0
+        };
+        // An ellipsoid is nowhere thinner than the root of the smallest stretch, which is more than one over the norm of F^-1.
+        let thin: Vec<f64> = deformation.iter().map(|f| norm(&f.0.inverse()).max(1.0)).collect();
+        let bound = |i: usize, j: usize, r_ij: DVec3| {
+            (0.5 * (thin[i] + thin[ghosts.source(j)]) * r_ij.length_squared()).sqrt()
+        };
+        if farthest(&bound) < limit {
+            return false;
+        }
         let following: Vec<Ellipsoid> =
             deformation.iter().map(|f| Ellipsoid::new(Ellipsoid::following(&f.0))).collect();
-        let (ellipsoids, first_row) = (Ellipsoids(&following), rows.start);
-        let place = |row: usize| sites[row].reference.xyz() + sites[row].displacement.xyz();
-        let farthest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
-            let distances = (0..own.len()).flat_map(|k| {
-                let i = first_row + first + k;
-                let beside = bonds.row(i).filter(move |(j, _)| {
-                    sites[*j].is_present() && ghosts.pair(original, i, *j).length() < BESIDE * self.spacing
-                });
-                beside.map(move |(j, _)| ellipsoids.distance(ghosts, i, j, place(j) - place(i)))
-            });
-            Largest::of(distances)
-        });
-        farthest.0 > LOST * 2.0 * self.h
+        let ellipsoids = Ellipsoids(&following);
+        farthest(&|i, j, r_ij| ellipsoids.distance(ghosts, i, j, r_ij)) > limit
     }
+}
+
+/// The root of the sum of the squares of the components.
+fn norm(a: &DMat3) -> f64 {
+    (a.x_axis.length_squared() + a.y_axis.length_squared() + a.z_axis.length_squared()).sqrt()
 }
 
 /// Whether a pair has changed its length by more than `most` since the last update, m.
