@@ -19,7 +19,7 @@ use criterion::Watch;
 use law::FailingLaw;
 use meshless_engine::column;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::BodyId;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -96,7 +96,7 @@ impl Plugin for Failure {
             ParameterError::require_positive("growth.factor", factor)?;
         }
         let solid = |id: &BodyId| sim.body(*id).solid_law().is_ok();
-        let bodies: Vec<BodyId> = sim.scope().iter().filter(solid).collect();
+        let bodies: Vec<BodyId> = sim.scope_of(BodyKind::Solid)?.iter().filter(solid).collect();
         for &id in &bodies {
             let body = sim.body(id);
             let speed = body.material.sound_speed().unwrap_or_default();

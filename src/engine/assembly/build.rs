@@ -9,7 +9,7 @@ use super::placement;
 use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
-use super::{clamps, lattice_edges, supports};
+use super::{clamps, drawn_sides, lattice_edges, supports};
 use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::Probe;
 use crate::record::{Output, OutputPlan, Recorder};
@@ -63,6 +63,7 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     clamps::warn(scene, registry, &mut sim);
     lattice_edges::warn(scene, registry, &mut sim);
+    drawn_sides::warn(scene, registry, &mut sim);
     supports::place(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;

@@ -2,6 +2,7 @@
 
 mod build;
 mod clamps;
+mod drawn_sides;
 #[cfg(test)]
 mod handed_tests;
 mod lattice_edges;

@@ -159,3 +159,29 @@ fn supports_that_end_in_the_lattice_are_told() {
         assert!(told.is_none_or(|told| told.contains(expected.unwrap_or_default())), "{told:?}");
     }
 }
+
+#[test]
+fn metal_that_a_side_draws_along_its_normal_alone_is_warned_of() {
+    let metal = "J2(density: 7850, young: 2e11, poisson: 0.3, hardening: Perfect(yield_stress: 4e8))";
+    let rubber = "NeoHookean(density: 1000, young: 1e6, poisson: 0.3)";
+    let drawn =
+        "Fix(on: Select(face: MinX), axes: [X]), Velocity(on: Select(face: MaxX), value: (1.0, None))";
+    for (material, conditions, expected) in [
+        (metal, drawn, 1),
+        (metal, "Symmetry(plane: X, at: 0), Velocity(on: Select(face: MaxX), value: (1.0, None))", 1),
+        (metal, "Symmetry(plane: X, at: 0)", 0),
+        (metal, "Fix(on: Select(face: MinX)), Velocity(on: Select(face: MaxX), value: (1.0, 0))", 0),
+        (metal, "Fix(on: Select(face: MinX), axes: [Y])", 0),
+        (rubber, drawn, 0),
+    ] {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"m": {material}}}, conditions: [{conditions}], time: (end: 1e-5),
+                bodies: [(name: "bar", material: "m", shape: Box(min: (0, 0), max: (0.1, 0.04)), spacing: 0.01,
+                    formulation: TotalLagrangian)])"#
+        );
+        let (scene, source) = parse(Source::new("drawn.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        let told = sim.warnings().iter().filter(|warning| warning.contains("drawn along its normal alone"));
+        assert_eq!(told.count(), expected, "{material} {conditions}: {:?}", sim.warnings());
+    }
+}

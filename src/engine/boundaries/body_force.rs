@@ -31,6 +31,7 @@ impl Plugin for BodyForce {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
+        load::require_movable(&selection, sim)?;
         let field = Field::new(self.value, sim)?;
         let law = ForcePerMass { field };
         load::apply("body_force", law, &selection, sim, |system| system);

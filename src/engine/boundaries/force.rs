@@ -28,6 +28,7 @@ impl Plugin for Force {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
+        load::require_movable(&selection, sim)?;
         let field = Field::new(self.value, sim)?;
         let share = 1.0 / selection.len() as f64;
         let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();

@@ -10,9 +10,9 @@ use super::field::Field;
 use super::flow_load;
 use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
-use crate::plugin::{Selection, SimBuilder};
+use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use crate::world::{Force, Removed, Velocity};
+use crate::world::{BodyId, Force, Removed, Velocity};
 
 /// What gives the force on every particle of a part.
 pub(super) trait LoadLaw: Send + Sync + 'static {
@@ -65,6 +65,20 @@ pub(super) fn apply(
     let system = System::new(Stage::External, label, load).on_phases(phases).by_body();
     let system = system.reads::<Velocity>().reads::<Removed>().adds::<Force>();
     sim.add_system(declare(system));
+}
+
+/// # Errors
+/// A load acts on walls alone, which are moved by conditions and nothing else.
+pub(super) fn require_movable(selection: &Selection, sim: &SimBuilder<'_>) -> Result<(), SetupError> {
+    let is_wall = |id: BodyId| sim.body(id).kind == BodyKind::Boundary;
+    match selection.parts.first() {
+        Some((id, _)) if selection.parts.iter().all(|(id, _)| is_wall(*id)) => {
+            let message = format!("no load moves body `{}`, a wall", sim.body(*id).name);
+            let help = "walls are moved by their `velocity`, by `Velocity` or by `Displacement`; loads act on fluids, solids and rigid bodies";
+            Err(SetupError::parameter("on", message, help))
+        }
+        _ => Ok(()),
+    }
 }
 
 struct Load {

@@ -3,6 +3,8 @@
 //! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies together at the end of a step, weighted by mass,
 //! `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -38,6 +40,7 @@ impl Plugin for MeanVelocity {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = self.selection(sim)?;
         let wanted = self.wanted(sim)?;
+        self.only_once(&selection, sim)?;
         let controlled = [0, 1, 2].map(|axis| f64::from(u8::from(self.value.0[axis].is_some())));
         let force = sim.share(ForcePerMass::default());
         let bodies: Vec<BodyId> = selection.parts.iter().map(|(id, _)| *id).collect();
@@ -89,6 +92,23 @@ impl MeanVelocity {
         Ok(all)
     }
 
+    /// Two mean velocities of one body along one axis would drive it against each other.
+    fn only_once(&self, selection: &Selection, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let mut driven: Driven = sim.take_extensions().pop().unwrap_or_default();
+        for (id, _) in &selection.parts {
+            for axis in (0..3).filter(|&axis| self.value.0[axis].is_some()) {
+                if !driven.0.insert((*id, axis)) {
+                    let (body, along) = (&sim.body(*id).name, ["x", "y", "z"][axis]);
+                    let message = format!("body `{body}` has two mean velocities along {along}");
+                    let help = "leave the axis or the body to one of them";
+                    return Err(SetupError::parameter("bodies", message, help));
+                }
+            }
+        }
+        sim.extend(driven);
+        Ok(())
+    }
+
     fn wanted(&self, sim: &SimBuilder<'_>) -> Result<DVec3, SetupError> {
         let value = &self.value.0;
         let help = "give a velocity along at least one axis of the scene, such as `(1.0, None)`";
@@ -107,6 +127,10 @@ impl MeanVelocity {
         Ok(DVec3::from_array(value.map(Option::unwrap_or_default)))
     }
 }
+
+/// Bodies and axes that have a mean velocity already.
+#[derive(Default)]
+struct Driven(BTreeSet<(BodyId, usize)>);
 
 /// The part that a checkpoint keeps.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
