@@ -140,3 +140,22 @@ fn a_block_at_rest_is_carried_by_its_springs_alone() {
         assert!((ratio - 1.0).abs() < 1e-4 && v.length() < 1e-6, "{step} {restitution}: {ratio} {v}");
     }
 }
+
+/// The masses of two tables that carry it are shared, and the points half a spacing inside of its ends push it straight up.
+#[test]
+fn a_block_that_lands_on_two_tables_rebounds_straight_up() {
+    let mut sim = simulation(
+        r#"(dimension: Two, materials: {"stone": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)},
+            bodies: [
+                (name: "table 1", material: "stone", shape: Box(min: (-0.05, -0.05), max: (0.04, 0)), spacing: 0.01, formulation: Rigid()),
+                (name: "table 2", material: "stone", shape: Box(min: (0.06, -0.05), max: (0.15, 0)), spacing: 0.01, formulation: Rigid()),
+                (name: "block", material: "stone", shape: Box(min: (0, 0.001), max: (0.1, 0.051)), spacing: 0.01, formulation: Rigid(), velocity: (0, -1)),
+            ],
+            conditions: [Fix(on: Select(body: "table 1")), Fix(on: Select(body: "table 2"))],
+            contacts: [Contact(between: ("block", "table*"), restitution: 0.5)],
+            time: (end: 0.01))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let (_, v) = centre(&sim, 2);
+    assert!((v.y - 0.5).abs() < 0.02 && v.x.abs() < 1e-6, "{v}");
+}

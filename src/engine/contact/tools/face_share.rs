@@ -5,7 +5,7 @@
 //! at a distance D from it,
 //!
 //! ```text
-//! w = -s(p - D n) / D,      D = half of the length that the point stands for
+//! w = -s(p - D n) / D,      D = 0.4 of the length that the point stands for
 //! ```
 //!
 //! with the nearest point p of the surface, its normal n, and the signed distance s. Along the face the force is `-u grad w`, a share d/(2 D) of the normal force at most.
@@ -15,8 +15,9 @@ use glam::DVec3;
 use crate::rigid::RigidBody;
 use crate::shapes::SurfacePoint;
 
-/// Distance from the end of a face within which points count less, over the length that a point stands for.
-const RAMP: f64 = 0.5;
+/// Distance from the end of a face within which points count less, over the length that a point stands for. Where faces and lattices are aligned the outermost points are half of that length inside: they count in full,
+/// and nothing pushes them along the face.
+const RAMP: f64 = 0.4;
 
 /// The share w of a point, and its gradient, 1/m.
 #[derive(Clone, Copy, Debug, Default)]
