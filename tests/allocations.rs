@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use common::touching::landing;
-use common::{all_plugins, eulerian, flow, mixed, of_many_tasks, simulation, with_formulation};
+use common::{all_plugins, double, eulerian, flow, of_many_tasks, simulation, with_formulation};
 use meshless::scene::Source;
 
 /// The allocator of the system, with a count of what is asked of it.
@@ -140,10 +140,11 @@ fn a_contact_that_begins_and_spreads_allocates_nothing() {
 
 #[test]
 fn a_step_of_flows_allocates_nothing_but_room_for_longer_lists() {
-    for source in [flow(2), flow(3), mixed(&flow(3))] {
+    for source in [flow(2), flow(3), double(&flow(3))] {
         let counts = counts(&source, 1, 100);
-        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and its search.
+        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and its search; the number of blocks changes with the lists, and with it
+        // what each of some twenty arrays holds for a block.
         let none = counts.iter().filter(|&&count| count == 0).count();
-        assert!(none >= 95 && counts.iter().all(|&count| count < 12), "{}: {counts:?}", source.name);
+        assert!(none >= 95 && counts.iter().all(|&count| count < 20), "{}: {counts:?}", source.name);
     }
 }

@@ -7,7 +7,7 @@ use common::thin::thin;
 use common::touching::{large_rigid_bodies, tool_of_triangles, touching};
 use common::wearing::wearing;
 use common::{
-    all_plugins, crash, eulerian, failing, failing_metals, flow, metals, mixed, of_many_tasks, removal,
+    all_plugins, crash, double, eulerian, failing, failing_metals, flow, metals, of_many_tasks, removal,
     simulation, with_formulation,
 };
 use meshless::record::StateHash;
@@ -33,7 +33,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
         (2, coupled()),
         (2, thin()),
         (3, flow(3)),
-        (3, mixed(&flow(3))),
+        (3, double(&flow(3))),
         (3, metals()),
         (2, failing()),
         (2, failing_metals()),

@@ -6,7 +6,7 @@ use common::coupled::coupled;
 use common::thin::thin;
 use common::touching::{tool_of_triangles, touching};
 use common::wearing::wearing;
-use common::{all_plugins, crash, failing, failing_metals, flow, metals, mixed, removal, simulation};
+use common::{all_plugins, crash, double, failing, failing_metals, flow, metals, removal, simulation};
 
 #[test]
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
@@ -23,8 +23,8 @@ fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
         (coupled(), 700, 21),
         (thin(), 300, 22),
         (flow(3), 200, 16),
-        (mixed(&flow(3)), 200, 16),
-        (mixed(&flow(3)), 200, 17),
+        (double(&flow(3)), 200, 16),
+        (double(&flow(3)), 200, 17),
         (metals(), 200, 17),
         (failing(), 300, 18),
         (failing(), 300, 19),

@@ -35,7 +35,7 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
         counted(summary.particle_steps_per_second, "particle-steps/s"),
         count(summary.threads as u64, "thread")
     );
-    if summary.precision == Precision::Mixed {
+    if summary.precision == Some(Precision::Mixed) {
         let _ = writeln!(text, "sums over neighbours of fluids in single precision");
     }
     if let Some(short) = summary.short_steps {

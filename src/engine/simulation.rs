@@ -7,7 +7,7 @@ use thiserror::Error;
 use crate::notation::{number, quantity};
 use crate::record::probe::Probe;
 use crate::record::{Output, StateHash};
-use crate::scene::{self, Precision, Scene, Source};
+use crate::scene::{self, Scene, Source};
 use crate::schedule::{
     Clock, Ledger, Limit, Resources, Schedule, Shared, Stage, Step, StepError, TimeStepLimits, Turn,
 };
@@ -50,7 +50,6 @@ pub struct Simulation {
     title: String,
     sound_speeds: Vec<Option<f64>>,
     parameters: BTreeMap<String, f64>,
-    precision: Precision,
     inputs: Inputs,
     failure: Option<String>,
     pace: summary::Pace,
@@ -158,7 +157,6 @@ impl Simulation {
             title: scene.title.clone(),
             sound_speeds,
             parameters: scene.parameter_values(),
-            precision: scene.precision,
             failure: None,
             pace: summary::Pace::default(),
         }

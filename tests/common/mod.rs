@@ -111,9 +111,9 @@ pub fn flow(dimension: usize) -> Source {
     Source::new("flow.ron", text)
 }
 
-/// A flow whose sums over neighbours are in single precision.
-pub fn mixed(source: &Source) -> Source {
-    Source::new("mixed.ron", source.text.replacen("(dimension", "(precision: Mixed, dimension", 1))
+/// A flow whose sums over neighbours are in double precision.
+pub fn double(source: &Source) -> Source {
+    Source::new("double.ron", source.text.replacen("(dimension", "(precision: Double, dimension", 1))
 }
 
 /// Metals that hit a wall: every law with state, every form of the hourglass control, an equation of state with energy.

@@ -9,10 +9,15 @@ use meshless_engine::world::{BodyId, Column};
 /// Vortices that fit the box.
 pub const VORTICES: &str = r#"("-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)")"#;
 
-/// The box with the given plugins of the fluid, lattice and initial velocity.
-pub fn simulation(register: fn(&mut Registry), plugins: &str, lattice: &str, velocity: &str) -> Simulation {
+/// The box with the given precision, plugins of the fluid, lattice and initial velocity.
+pub fn simulation(
+    register: fn(&mut Registry),
+    precision: &str,
+    plugins: &str,
+    (lattice, velocity): (&str, &str),
+) -> Simulation {
     let text = format!(
-        r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
+        r#"(precision: {precision}, dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
             materials: {{"m": Fluid(density: 1.0, sound_speed: 10.0, viscosity: 0.01)}},
             bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1, 1)), spacing: 0.05, lattice: {lattice},
                       formulation: Fluid(pressure: "-0.2"), plugins: [{plugins}])],

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, RowPass, keep_rows};
+use meshless_engine::correction::{add_moment, moment_of};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, NearPairs, RowPass, RowSums};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{FourLanes, Vector};
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Density};
@@ -17,10 +17,10 @@ meshless_engine::column! {
 
 /// Adds the column and the system that fills it, once density and volume are those of the end of the step.
 pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
-    keep_rows(sim);
     sim.add_column_to::<DensityGradient>(&bodies);
+    let gradient = Gradient { bodies: bodies.clone(), sums: RowSums::default() };
     sim.add_system(
-        System::new(Stage::Boundary, "density_gradient", Gradient { bodies: bodies.clone() })
+        System::new(Stage::Boundary, "density_gradient", gradient)
             .on_bodies(bodies)
             .after_any("wall_pressure")
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
@@ -31,6 +31,7 @@ pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
 
 struct Gradient {
     bodies: BodySet,
+    sums: RowSums,
 }
 
 impl Run for Gradient {
@@ -40,8 +41,9 @@ impl Run for Gradient {
             let (view, rows) = step.world.body_view(id);
             let density = view.read::<Density>()?;
             let mut gradient = view.write::<DensityGradient>()?;
-            let pass = GradientPass { cloud: &cloud, rows: rows.clone(), density: &density };
-            cloud.for_each_row(rows.start, &mut gradient[rows], &pass);
+            let at_rest = cloud.state(id).map_or(0.0, |state| state.density);
+            let pass = GradientPass { cloud: &cloud, rows: rows.clone(), density: &density, at_rest };
+            cloud.for_each_row(rows.start, &mut gradient[rows], &mut self.sums, &pass);
         }
         Ok(())
     }
@@ -52,22 +54,38 @@ struct GradientPass<'a> {
     cloud: &'a FlowCloud,
     rows: Range<usize>,
     density: &'a [Density],
+    /// Density at zero pressure, kg/m3: what all have in common.
+    at_rest: f64,
 }
 
-impl RowPass for GradientPass<'_> {
+impl RowPass<1, 4> for GradientPass<'_> {
     type Output = DensityGradient;
 
+    fn among(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> DensityGradient {
-        let own = self.density[i].0;
-        let mut moment = FourMoments::new(a);
-        let mut sum = Vector::zero(a);
-        for near in self.cloud.fours(a, i, &self.rows) {
-            let weight = near.volume * near.weight;
-            moment.add(weight, near.x_ij);
-            sum = near.x_ij.mul_add(weight * (near.number(|j| self.density[j].0) - own), sum);
-        }
-        let inverse = moment.sum().inverse();
-        DensityGradient(inverse.map_or(DVec3::ZERO, |inverse| inverse * sum.sum()))
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [DVec3::new(self.density[row].0 - self.at_rest, 0.0, 0.0)]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [xx, yy, zz, sum]: &mut [Vector<A>; 4],
+    ) {
+        let weight = near.volume * near.weight;
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        *sum = near.x_ij.mul_add(weight * (other.x - own.x), *sum);
+    }
+
+    #[inline(always)]
+    fn output(&self, _: usize, &[xx, yy, zz, sum]: &[DVec3; 4]) -> DensityGradient {
+        let inverse = moment_of([xx, yy, zz], self.cloud.plane()).inverse();
+        DensityGradient(inverse.map_or(DVec3::ZERO, |inverse| inverse * sum))
     }
 }

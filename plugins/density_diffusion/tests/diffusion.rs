@@ -12,9 +12,10 @@ fn simulation(plugins: &str, pressure: &str) -> Simulation {
     simulation_with_step(plugins, pressure, 1.0)
 }
 
+/// In double precision: the sums are compared to round-off.
 fn simulation_with_step(plugins: &str, pressure: &str, factor: f64) -> Simulation {
     let text = format!(
-        r#"(dimension: Two,
+        r#"(dimension: Two, precision: Double,
             materials: {{"m": Fluid(density: 1000.0, sound_speed: 20.0)}},
             bodies: [(name: "b", material: "m", shape: Box(min: (0, 0), max: (1.0, 0.6)), spacing: 0.05,
                       lattice: Relaxed(seed: 7), formulation: Fluid(pressure: "{pressure}"), plugins: [{plugins}])],

@@ -8,7 +8,7 @@ mod local;
 mod response;
 
 use meshless_engine::formulations::fluid::{
-    DensityShift, FLOW_RECORDS, FlowCloud, Repayment, SHIFTING_ENERGY, displace, keep_rows,
+    DensityShift, FLOW_RECORDS, FlowCloud, Repayment, RowSums, SHIFTING_ENERGY, displace,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
@@ -59,7 +59,6 @@ impl Plugin for ParticleShifting {
         if self.strength == 0.0 || bodies.is_empty() {
             return Ok(());
         }
-        keep_rows(sim);
         sim.add_column_to::<DensityShift>(&bodies);
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));
@@ -113,6 +112,7 @@ struct Fields {
     moves: Vec<DVec3>,
     pending: Vec<f64>,
     responses: Vec<Response>,
+    sums: RowSums,
 }
 
 impl Fields {
@@ -133,10 +133,10 @@ impl Run for Shifting {
         let cloud: &FlowCloud = &cloud;
         let bodies = resources.of(self.bodies);
         self.fields.resize(cloud.fluid);
-        let Fields { locals, near_surface, shifts, moves, pending, responses } = &mut self.fields;
+        let Fields { locals, near_surface, shifts, moves, pending, responses, sums } = &mut self.fields;
         let dt = step.clock.dt;
         let spacing = bodies.iter().map(|(id, _)| step.world.body(*id).spacing).fold(0.0, f64::max);
-        cloud.for_each_row(0, locals, &Locals::new(cloud, spacing));
+        cloud.for_each_row(0, locals, sums, &Locals::new(cloud, spacing));
         mark_surfaces(cloud, locals, near_surface);
         for &(id, strength) in bodies.iter() {
             let (view, rows) = step.world.body_view(id);
@@ -150,7 +150,7 @@ impl Run for Shifting {
         }
         let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
         let pass = Responses { cloud, locals, shifts, pending };
-        cloud.for_each_row(0, responses, &pass);
+        cloud.for_each_row(0, responses, sums, &pass);
         for &(id, _) in bodies.iter() {
             let (_, rows) = step.world.body_view(id);
             let lost = response::change_velocity(step, id, responses)?;

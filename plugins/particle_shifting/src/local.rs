@@ -1,9 +1,11 @@
 //! How the particles of a neighbourhood lie, and how fast they are sheared.
 
-use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FlowCloud, FourNear, RowPass, smallest_eigenvalue};
+use std::ops::Range;
+
+use meshless_engine::correction::{add_moment, moment_of};
+use meshless_engine::formulations::fluid::{FlowCloud, NearPairs, RowPass, smallest_eigenvalue};
 use meshless_engine::glam::{DMat3, DVec3};
-use meshless_engine::parallel::{FourLanes, Number, Vector};
+use meshless_engine::parallel::{Arithmetic, Vector};
 
 /// Strength of the part that keeps close particles apart, with the fourth power of their kernel.
 const CLOSE: f64 = 0.2;
@@ -38,65 +40,55 @@ impl<'a> Locals<'a> {
     }
 }
 
-impl RowPass for Locals<'_> {
+impl RowPass<1, 9> for Locals<'_> {
     type Output = Local;
 
-    #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Local {
-        let cloud = self.cloud;
-        let mut sums = Sums::new(a);
-        for near in cloud.fours(a, i, &(0..cloud.fluid)) {
-            sums.add(self, i, &near);
-        }
-        let mut toward_walls = Vector::zero(a);
-        for near in cloud.fours(a, i, &(cloud.fluid..cloud.everything().end)) {
-            sums.add(self, i, &near);
-            toward_walls = near.x_ij.mul_add(near.volume * near.weight, toward_walls);
-        }
-        let own = cloud.volume(i) * cloud.kernel.value(0.0);
-        Local {
-            lambda: smallest_eigenvalue(sums.moment.sum().matrix(), A::AXES == 2),
-            excess: own + sums.filled.sum() - 1.0,
-            first_moment: sums.first_moment.sum(),
-            toward_walls: if self.confined { DVec3::ZERO } else { toward_walls.sum() },
-            strain_rate: strain_rate(sums.gradient.map(Vector::sum)),
-        }
-    }
-}
-
-/// Sums over neighbours.
-struct Sums<A: FourLanes> {
-    moment: FourMoments<A>,
-    first_moment: Vector<A>,
-    filled: Number<A>,
-    gradient: [Vector<A>; 3],
-}
-
-impl<A: FourLanes> Sums<A> {
-    #[inline(always)]
-    fn new(a: A) -> Self {
-        Self {
-            moment: FourMoments::new(a),
-            first_moment: Vector::zero(a),
-            filled: Number::zero(a),
-            gradient: [Vector::zero(a); 3],
-        }
+    fn among(&self) -> Range<usize> {
+        self.cloud.everything()
     }
 
     #[inline(always)]
-    fn add(&mut self, pass: &Locals<'_>, i: usize, near: &FourNear<A>) {
-        let records = pass.cloud.records();
-        let own = records[i].velocity();
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.cloud.records()[row].velocity()]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [xx, yy, zz, first_moment, toward_walls, along_x, along_y, along_z, filled]: &mut [Vector<A>; 9],
+    ) {
         let weight = near.volume * near.weight;
-        let close = (near.kernel * pass.usual).squared().squared();
-        self.moment.add(weight, near.x_ij);
-        self.first_moment = near.x_ij.mul_add(weight * (1.0 + CLOSE * close), self.first_moment);
-        self.filled += near.volume * near.kernel;
-        let v_ij = near.vector(|j| records[j].velocity() - own);
-        self.gradient[0] = near.x_ij.mul_add(weight * v_ij.x, self.gradient[0]);
-        self.gradient[1] = near.x_ij.mul_add(weight * v_ij.y, self.gradient[1]);
+        let close = (near.kernel * self.usual).squared().squared();
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        *first_moment = near.x_ij.mul_add(weight * (1.0 + CLOSE * close), *first_moment);
+        filled.x += near.volume * near.kernel;
+        let v_ij = *other - *own;
+        *along_x = near.x_ij.mul_add(weight * v_ij.x, *along_x);
+        *along_y = near.x_ij.mul_add(weight * v_ij.y, *along_y);
         if A::AXES == 3 {
-            self.gradient[2] = near.x_ij.mul_add(weight * v_ij.z, self.gradient[2]);
+            *along_z = near.x_ij.mul_add(weight * v_ij.z, *along_z);
+        }
+        if !near.is_fluid {
+            *toward_walls = near.x_ij.mul_add(weight, *toward_walls);
+        }
+    }
+
+    #[inline(always)]
+    fn output(
+        &self,
+        i: usize,
+        &[xx, yy, zz, first_moment, toward_walls, along_x, along_y, along_z, filled]: &[DVec3; 9],
+    ) -> Local {
+        let (cloud, plane) = (self.cloud, self.cloud.plane());
+        Local {
+            lambda: smallest_eigenvalue(moment_of([xx, yy, zz], plane).matrix(), plane),
+            excess: cloud.volume(i) * cloud.kernel.value(0.0) + filled.x - 1.0,
+            first_moment,
+            toward_walls: if self.confined { DVec3::ZERO } else { toward_walls },
+            strain_rate: strain_rate([along_x, along_y, along_z]),
         }
     }
 }

@@ -1,8 +1,10 @@
 //! How velocity and density respond to the displacements.
 
-use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, RowPass};
+use std::ops::Range;
+
+use meshless_engine::formulations::fluid::{DensityShift, FlowCloud, NearPairs, RowPass};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{FourLanes, Number, Vector, sum_over_blocks};
+use meshless_engine::parallel::{Arithmetic, Number, Vector, sum_over_blocks};
 use meshless_engine::schedule::{Step, StepError};
 use meshless_engine::world::{BodyId, Density, Mass, Removed, Velocity};
 
@@ -39,46 +41,53 @@ pub struct Responses<'a> {
     pub pending: &'a [f64],
 }
 
-impl RowPass for Responses<'_> {
+impl RowPass<4, 3> for Responses<'_> {
     type Output = Response;
 
+    fn among(&self) -> Range<usize> {
+        self.cloud.everything()
+    }
+
+    /// Velocity; displacement; pending dilation and excess; one inside, zero elsewhere.
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Response {
-        let Self { cloud, locals, shifts, pending } = *self;
-        let (records, own) = (cloud.records(), shifts[i]);
-        let (v_i, pending_i) = (records[i].velocity(), pending[i]);
-        let mut velocity = Vector::zero(a);
-        let (mut dilation, mut excess, mut shared) = (Number::zero(a), Number::zero(a), Number::zero(a));
-        for near in cloud.fours(a, i, &(0..cloud.fluid)) {
+    fn reads(&self, row: usize) -> [DVec3; 4] {
+        // What bounds the flow stays where it is.
+        let Some(Shift { displacement, inside }) = self.shifts.get(row) else { return [DVec3::ZERO; 4] };
+        let both = DVec3::new(self.pending[row], self.locals[row].excess, 0.0);
+        [self.cloud.records()[row].velocity(), *displacement, both, DVec3::X * f64::from(u8::from(*inside))]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [v_i, dx_i, own, _]: &[Vector<A>; 4],
+        [v_j, dx_j, other, inside]: &[Vector<A>; 4],
+        [velocity, dilation_and_excess, shared]: &mut [Vector<A>; 3],
+    ) {
+        let a = near.weight.arithmetic();
+        let apart = *dx_j - *dx_i;
+        let middle = apart.mul_add(Number::splat(a, 0.5), near.x_ij);
+        let weight = self.cloud.kernel.weights(a, middle.length_squared().sqrt().lanes());
+        dilation_and_excess.x += near.volume * Number::new(a, weight) * apart.dot(middle);
+        if near.is_fluid {
+            let both = *dx_i + *dx_j;
+            let moved = near.volume * near.weight * 0.5 * both.dot(near.x_ij);
+            *velocity = (*v_j - *v_i).mul_add(moved, *velocity);
             let filled = near.volume * near.kernel;
-            let other = near.vector(|j| shifts[j].displacement);
-            let both = other + Vector::splat(a, own.displacement);
-            let v_ij = near.vector(|j| records[j].velocity() - v_i);
-            velocity = v_ij.mul_add(near.volume * near.weight * 0.5 * both.dot(near.x_ij), velocity);
-            shared += filled * (near.number(|j| pending[j]) - pending_i);
-            if own.inside {
-                let apart = other - Vector::splat(a, own.displacement);
-                let middle = apart.mul_add(Number::splat(a, 0.5), near.x_ij);
-                let weight = cloud.kernel.weights(a, middle.length_squared().sqrt().lanes());
-                dilation += near.volume * Number::new(a, weight) * apart.dot(middle);
-                let excess_i = locals[i].excess;
-                excess += filled
-                    * near.number(|j| if shifts[j].inside { locals[j].excess - excess_i } else { 0.0 });
-            }
+            shared.x += filled * (other.x - own.x);
+            dilation_and_excess.y += filled * inside.x * (other.y - own.y);
         }
-        if own.inside {
-            for near in cloud.fours(a, i, &(cloud.fluid..cloud.everything().end)) {
-                let apart = Vector::splat(a, -own.displacement);
-                let middle = apart.mul_add(Number::splat(a, 0.5), near.x_ij);
-                let weight = cloud.kernel.weights(a, middle.length_squared().sqrt().lanes());
-                dilation += near.volume * Number::new(a, weight) * apart.dot(middle);
-            }
-        }
+    }
+
+    #[inline(always)]
+    fn output(&self, i: usize, &[velocity, dilation_and_excess, shared]: &[DVec3; 3]) -> Response {
+        let is_inside = self.shifts[i].inside;
         Response {
-            velocity: velocity.sum(),
-            dilation: dilation.sum(),
-            excess: if own.inside { locals[i].excess + excess.sum() } else { 0.0 },
-            shared: shared.sum(),
+            velocity,
+            dilation: if is_inside { dilation_and_excess.x } else { 0.0 },
+            excess: if is_inside { self.locals[i].excess + dilation_and_excess.y } else { 0.0 },
+            shared: shared.x,
         }
     }
 }

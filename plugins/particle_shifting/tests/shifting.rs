@@ -14,7 +14,7 @@ use meshless_engine::world::{Density, Position, Velocity};
 use periodic_flow::{VORTICES, column};
 
 fn simulation(plugins: &str, lattice: &str, velocity: &str) -> Simulation {
-    periodic_flow::simulation(particle_shifting::register, plugins, lattice, velocity)
+    periodic_flow::simulation(particle_shifting::register, "Mixed", plugins, (lattice, velocity))
 }
 
 /// Least distance of two particles over the spacing, across the sides of the box as well.

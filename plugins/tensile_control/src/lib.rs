@@ -4,10 +4,12 @@
 //! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
 //! no better than particles are evenly spread. Energy that it has given is paid back by friction between neighbours.
 
-use meshless_engine::correction::FourMoments;
-use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, Repayment, RowPass, keep_rows};
+use std::ops::Range;
+
+use meshless_engine::correction::{add_moment, moment_of};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, NearPairs, Repayment, RowPass, RowSums};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{FourLanes, Vector, sum_over_blocks};
+use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Force, Mass, Pressure, Removed, Velocity};
@@ -33,9 +35,9 @@ impl Plugin for TensileControl {
         if bodies.is_empty() {
             return Ok(());
         }
-        keep_rows(sim);
+        let control = Control { bodies: bodies.clone(), changes: Vec::new(), sums: RowSums::default() };
         sim.add_system(
-            System::new(Stage::Rates, Self::NAME, Control { bodies: bodies.clone(), changes: Vec::new() })
+            System::new(Stage::Rates, Self::NAME, control)
                 .on_bodies(bodies.clone())
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads::<Pressure>()
@@ -64,6 +66,7 @@ const INSIDE: f64 = 0.85;
 struct Control {
     bodies: BodySet,
     changes: Vec<DVec3>,
+    sums: RowSums,
 }
 
 impl Run for Control {
@@ -75,11 +78,8 @@ impl Run for Control {
             let (pressure, velocity) = (view.read::<Pressure>()?, view.read::<Velocity>()?);
             let mut force = view.write::<Force>()?;
             self.changes.resize(rows.len(), DVec3::ZERO);
-            cloud.for_each_row(
-                rows.start,
-                &mut self.changes,
-                &Changes { cloud: &cloud, pressure: &pressure },
-            );
+            let pass = Changes { cloud: &cloud, pressure: &pressure };
+            cloud.for_each_row(rows.start, &mut self.changes, &mut self.sums, &pass);
             let slices = (&mut force[rows.clone()], &velocity[rows], &self.changes[..]);
             type Rows<'a> = (&'a mut [Force], &'a [Velocity], &'a [DVec3]);
             let power = sum_over_blocks(slices, &|_, (force, velocity, changes): Rows<'_>| {
@@ -119,22 +119,41 @@ struct Changes<'a> {
     pressure: &'a [Pressure],
 }
 
-impl RowPass for Changes<'_> {
+impl RowPass<0, 4> for Changes<'_> {
     type Output = DVec3;
 
+    fn among(&self) -> Range<usize> {
+        self.cloud.everything()
+    }
+
+    fn reads(&self, _: usize) -> [DVec3; 0] {
+        []
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
-        let p = self.pressure[i].0;
-        if p >= 0.0 {
-            return DVec3::ZERO;
-        }
-        let (mut sum, mut moment) = (Vector::zero(a), FourMoments::new(a));
-        for near in self.cloud.fours(a, i, &self.cloud.everything()) {
-            let weight = near.volume * near.weight;
-            sum = near.x_ij.mul_add(weight, sum);
-            moment.add(weight, near.x_ij);
-        }
-        let inside = moment.sum().matrix().trace() > INSIDE * A::AXES as f64;
-        if inside { sum.sum() * (2.0 * p * self.cloud.volume(i)) } else { DVec3::ZERO }
+    fn skips(&self, i: usize) -> bool {
+        self.pressure[i].0 >= 0.0
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        _: &[Vector<A>; 0],
+        _: &[Vector<A>; 0],
+        [xx, yy, zz, sum]: &mut [Vector<A>; 4],
+    ) {
+        let weight = near.volume * near.weight;
+        *sum = near.x_ij.mul_add(weight, *sum);
+        add_moment([xx, yy, zz], weight, near.x_ij);
+    }
+
+    #[inline(always)]
+    fn output(&self, i: usize, &[xx, yy, zz, sum]: &[DVec3; 4]) -> DVec3 {
+        let plane = self.cloud.plane();
+        let axes = if plane { 2.0 } else { 3.0 };
+        let is_inside = moment_of([xx, yy, zz], plane).matrix().trace() > INSIDE * axes;
+        let factor = 2.0 * self.pressure[i].0 * self.cloud.volume(i);
+        if is_inside && !self.skips(i) { sum * factor } else { DVec3::ZERO }
     }
 }

@@ -4,10 +4,10 @@
 
 use std::ops::Range;
 
-use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, RowPass, displace, keep_rows};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, NearPairs, RowPass, RowSums, displace};
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
-use meshless_engine::parallel::{FourLanes, Vector};
+use meshless_engine::parallel::{Arithmetic, Vector};
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::world::{BodySet, Mass, Position, Removed, Velocity};
@@ -47,9 +47,14 @@ impl Plugin for Xsph {
         if self.epsilon == 0.0 || bodies.is_empty() {
             return Ok(());
         }
-        keep_rows(sim);
         let gravity = sim.gravity();
-        let work = Smoothing { epsilon: self.epsilon, gravity, bodies: bodies.clone(), moves: Vec::new() };
+        let work = Smoothing {
+            epsilon: self.epsilon,
+            gravity,
+            bodies: bodies.clone(),
+            moves: Vec::new(),
+            sums: RowSums::default(),
+        };
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_bodies(bodies)
@@ -69,6 +74,7 @@ struct Smoothing {
     gravity: DVec3,
     bodies: BodySet,
     moves: Vec<DVec3>,
+    sums: RowSums,
 }
 
 impl Run for Smoothing {
@@ -81,8 +87,8 @@ impl Run for Smoothing {
             let (view, rows) = step.world.body_view(id);
             self.moves.resize(rows.len(), DVec3::ZERO);
             let velocity = view.read::<Velocity>()?;
-            let pass = Mean { cloud, rows: rows.clone(), velocity: &velocity, factor };
-            cloud.for_each_row(rows.start, &mut self.moves, &pass);
+            let pass = Mean { rows: rows.clone(), velocity: &velocity, factor };
+            cloud.for_each_row(rows.start, &mut self.moves, &mut self.sums, &pass);
             displace(step, id, &self.moves, self.gravity, Xsph::NAME)?;
         }
         Ok(())
@@ -91,23 +97,36 @@ impl Run for Smoothing {
 
 /// The pass over the particles of one body.
 struct Mean<'a> {
-    cloud: &'a FlowCloud,
     rows: Range<usize>,
     velocity: &'a [Velocity],
     factor: f64,
 }
 
-impl RowPass for Mean<'_> {
+impl RowPass<1, 1> for Mean<'_> {
     type Output = DVec3;
 
+    fn among(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
-        let own = Vector::splat(a, self.velocity[i].0);
-        let mut sum = Vector::zero(a);
-        for near in self.cloud.fours(a, i, &self.rows) {
-            let v = near.vector(|j| self.velocity[j].0);
-            sum = (v - own).mul_add(near.volume * near.kernel, sum);
-        }
-        sum.sum() * self.factor
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.velocity[row].0]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [sum]: &mut [Vector<A>; 1],
+    ) {
+        *sum = (*other - *own).mul_add(near.volume * near.kernel, *sum);
+    }
+
+    #[inline(always)]
+    fn output(&self, _: usize, [sum]: &[DVec3; 1]) -> DVec3 {
+        *sum * self.factor
     }
 }

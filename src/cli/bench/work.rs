@@ -194,12 +194,12 @@ pub const WORKS: &[Work] = &[
         ],
     },
     Work {
-        name: "dam-80-mixed",
-        title: "the same with sums in single precision",
+        name: "dam-80-double",
+        title: "the same with sums in double precision",
         scene: DAM,
         spacing: cube,
         set: &[
-            ("precision", Text("Mixed")),
+            ("precision", Text("Double")),
             ("bodies.water.spacing", Spacing),
             ("bodies.tank.spacing", Spacing),
             ("bodies.tank.shape", Tank(3)),

@@ -30,7 +30,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
     for (id, face) in sides {
         let name = &sim.body(id).name;
         let warning = format!(
-            "the side `{face:?}` of body `{name}` is held or drawn along its normal alone, and the metal beside it yields first: plastic strain within some three spacings is 1.1 to 2.5 times that inside, the more the less the metal hardens. `Symmetry` holds a side at rest without that; else give the body thicker ends, and let failure begin away from them"
+            "the side `{face:?}` of body `{name}` is held or drawn along its normal alone, and the metal beside it yields first: plastic strain within some three spacings is 1.1 to 2.5 times the mean, and that in the middle down to a fifth of it, the more so the less the metal hardens and the fewer particles lie across. `Symmetry` holds a side at rest without that; else give the body thicker ends, and let failure begin away from them"
         );
         sim.warn(warning);
     }

@@ -13,4 +13,4 @@ mod tests;
 
 pub use affine::AffineFit;
 pub use moment::{MomentMatrix, SINGULAR};
-pub use moments::FourMoments;
+pub use moments::{add_moment, moment_of};

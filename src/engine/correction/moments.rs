@@ -1,41 +1,27 @@
-//! The moment matrix of a row of neighbours, four at a time.
+//! The moment matrix of neighbours, summed lane by lane.
+
+use glam::DVec3;
 
 use super::MomentMatrix;
 use crate::linalg::Sym3;
-use crate::parallel::{FourLanes, Number, Vector};
+use crate::parallel::{Arithmetic, Number, Vector};
 
-/// Four partial sums of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij`.
-#[derive(Clone, Copy)]
-pub struct FourMoments<A: FourLanes> {
-    /// Products of a component with all of those from it on: xx, xy, xz; yy, yz; zz.
-    products: [Vector<A>; 3],
+/// Adds neighbours by `V_j w_ij` (m^-2) and `x_ij` (m) to the sums of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij`: products of a component with all of those from it on, which are
+/// xx, xy, xz; yy, yz; zz.
+#[inline(always)]
+pub fn add_moment<A: Arithmetic>([x, y, z]: [&mut Vector<A>; 3], volume_weight: Number<A>, x_ij: Vector<A>) {
+    let weighed = x_ij * volume_weight;
+    *x = weighed.mul_add(x_ij.x, *x);
+    y.y = weighed.y.mul_add(x_ij.y, y.y);
+    if A::AXES == 3 {
+        y.z = weighed.z.mul_add(x_ij.y, y.z);
+        z.z = weighed.z.mul_add(x_ij.z, z.z);
+    }
 }
 
-impl<A: FourLanes> FourMoments<A> {
-    /// The sums of no neighbours.
-    #[inline(always)]
-    pub fn new(a: A) -> Self {
-        Self { products: [Vector::zero(a); 3] }
-    }
-
-    /// Adds four neighbours by `V_j w_ij` (m^-2) and `x_ij` (m).
-    #[inline(always)]
-    pub fn add(&mut self, volume_weight: Number<A>, x_ij: Vector<A>) {
-        let [x, y, z] = &mut self.products;
-        let weighed = x_ij * volume_weight;
-        *x = weighed.mul_add(x_ij.x, *x);
-        y.y = weighed.y.mul_add(x_ij.y, y.y);
-        if A::AXES == 3 {
-            y.z = weighed.z.mul_add(x_ij.y, y.z);
-            z.z = weighed.z.mul_add(x_ij.z, z.z);
-        }
-    }
-
-    /// The moment matrix, of the dimension that the instruction path has.
-    #[inline(always)]
-    pub fn sum(self) -> MomentMatrix {
-        let [x, y, z] = self.products;
-        let (x, y, z) = (x.sum(), y.sum(), z.sum());
-        MomentMatrix::of(Sym3 { xx: x.x, yy: y.y, zz: z.z, xy: x.y, xz: x.z, yz: y.z }, A::AXES)
-    }
+/// The moment matrix of sums that [`add_moment`] has made, in the plane or in space.
+#[inline(always)]
+pub fn moment_of([x, y, z]: [DVec3; 3], plane: bool) -> MomentMatrix {
+    let matrix = Sym3 { xx: x.x, yy: y.y, zz: z.z, xy: x.y, xz: x.z, yz: y.z };
+    MomentMatrix::of(matrix, if plane { 2 } else { 3 })
 }

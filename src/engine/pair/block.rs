@@ -80,6 +80,12 @@ impl BlockPairs {
         &self.pairs[..self.count]
     }
 
+    /// The neighbours, to be changed.
+    #[inline(always)]
+    pub fn pairs_mut(&mut self) -> &mut [EightPairs] {
+        &mut self.pairs[..self.count]
+    }
+
     /// What a term sees of a neighbour.
     #[inline(always)]
     pub(super) fn pair<A: EightLanes>(&self, a: A, pair: &EightPairs) -> Pair<A> {

@@ -32,9 +32,9 @@ pub struct Scene {
     /// Acceleration of gravity on all bodies \[m/s²\].
     #[serde(default)]
     pub gravity: Vec3,
-    /// Arithmetic of the sums over neighbours of fluids.
+    /// Arithmetic of the sums over neighbours of fluids. Without it, `Mixed` for spacings of 1e-6 to 1e6 m, `Double` for others.
     #[serde(default)]
-    pub precision: Precision,
+    pub precision: Option<Precision>,
     /// Materials by the names that bodies refer to.
     pub materials: BTreeMap<String, Item>,
     /// The bodies, in the order in which their particles are created.

@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::Simulation;
+use crate::formulations::fluid::FlowCloud;
 use crate::parallel::instruction_path;
 use crate::record::output::Extreme;
 use crate::scene::Precision;
@@ -60,8 +61,8 @@ pub struct Summary {
     pub threads: usize,
     /// Instruction path of the hot loops.
     pub instruction_path: String,
-    /// Arithmetic of the sums over neighbours of fluids.
-    pub precision: Precision,
+    /// Arithmetic of the sums over neighbours of fluids; none where nothing flows.
+    pub precision: Option<Precision>,
     /// Energies, all bodies together, J.
     pub energies: BTreeMap<String, f64>,
     /// Energies of each body, J.
@@ -137,7 +138,7 @@ impl Simulation {
             particle_steps_per_second: if wall_seconds > 0.0 { work / wall_seconds } else { 0.0 },
             threads: rayon::current_num_threads(),
             instruction_path: instruction_path().to_owned(),
-            precision: self.precision,
+            precision: self.resources.try_get::<FlowCloud>().map(|cloud| cloud.precision()),
             energies: accounts.iter().map(|a| (a.name.clone(), a.total())).collect(),
             energies_of: bodies().map(|(k, body)| (body.name.clone(), of_body(k))).collect(),
             balance_error: self.ledger.balance_error(),

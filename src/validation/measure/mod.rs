@@ -10,7 +10,7 @@ mod runs;
 
 pub use disorder::Disorder;
 pub use energy::{Balance, Kind};
-pub use motion::{MaterialPoint, body, momentum};
+pub use motion::{MaterialPoint, body, momentum, rounded_forces};
 pub use random::Random;
 pub use record::{Record, rows};
 pub use rigid::state;

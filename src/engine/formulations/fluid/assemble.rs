@@ -180,8 +180,7 @@ fn cloud(
     let Common { kernel, support, spacing, periodic, plane } = common;
     let viscosities = Viscosities::new(&groups, kernel.smoothing_length());
     let spin = viscosities.spin;
-    let is_thin = |group: &&Group| thin.iter().any(|thin| thin.copies[0] == group.cloud);
-    let blocks = blocks::choose(spacing, groups.iter().find(is_thin), spin, sim)?;
+    let blocks = blocks::choose(spacing, !thin.is_empty(), sim)?;
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);

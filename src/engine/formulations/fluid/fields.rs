@@ -1,11 +1,13 @@
 //! Fields that show a flow: vorticity, and where its free surface is.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use crate::correction::FourMoments;
+use crate::correction::{add_moment, moment_of};
 use crate::fields::Field;
-use crate::formulations::fluid::cloud::{FlowCloud, Near, RowPass, smallest_eigenvalue};
-use crate::parallel::{FourLanes, Vector};
+use crate::formulations::fluid::cloud::{FlowCloud, Near, NearPairs, RowPass, RowSums, smallest_eigenvalue};
+use crate::parallel::{Arithmetic, Vector};
 use crate::plugin::BodyKind;
 use crate::world::{Column, Value, Velocity};
 
@@ -22,14 +24,15 @@ pub(crate) fn fields() -> [Field; 2] {
         let velocity = view.read::<Velocity>()?;
         let cloud = input.resources.get::<FlowCloud>();
         let mut rows = vec![DVec3::ZERO; input.rows.len()];
-        cloud.for_each_row(input.rows.start, &mut rows, &Vorticity { cloud: &cloud, velocity: &velocity });
+        let pass = Vorticity { cloud: &cloud, velocity: &velocity };
+        cloud.for_each_row(input.rows.start, &mut rows, &mut RowSums::default(), &pass);
         out.extend(rows.iter().flat_map(DVec3::to_array));
         Ok(())
     });
     let surface = Field::with_input("free_surface", "1", f64::COMPONENTS, needs(), |input, out| {
         let cloud = input.resources.get::<FlowCloud>();
         let mut rows = vec![0.0; input.rows.len()];
-        cloud.for_each_row(input.rows.start, &mut rows, &FreeSurface(&cloud));
+        cloud.for_each_row(input.rows.start, &mut rows, &mut RowSums::default(), &FreeSurface(&cloud));
         out.extend(rows);
         Ok(())
     });
@@ -44,24 +47,40 @@ struct Vorticity<'a> {
     velocity: &'a [Velocity],
 }
 
-impl RowPass for Vorticity<'_> {
+impl RowPass<1, 6> for Vorticity<'_> {
     type Output = DVec3;
 
+    fn among(&self) -> Range<usize> {
+        0..self.cloud.fluid
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> DVec3 {
-        let mut moment = FourMoments::new(a);
-        let mut gradient = [Vector::zero(a); 3];
-        let own = Vector::splat(a, self.velocity[i].0);
-        for near in self.cloud.fours(a, i, &(0..self.cloud.fluid)) {
-            let weight = near.volume * near.weight;
-            moment.add(weight, near.x_ij);
-            let (weighed, v_ij) = (near.x_ij * weight, near.vector(|j| self.velocity[j].0) - own);
-            gradient[0] = weighed.mul_add(v_ij.x, gradient[0]);
-            gradient[1] = weighed.mul_add(v_ij.y, gradient[1]);
-            gradient[2] = weighed.mul_add(v_ij.z, gradient[2]);
-        }
-        let Some(inverse) = moment.sum().inverse() else { return DVec3::ZERO };
-        let [u, v, w] = gradient.map(|sum| inverse * sum.sum());
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.velocity[row].0]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [xx, yy, zz, along_x, along_y, along_z]: &mut [Vector<A>; 6],
+    ) {
+        let weight = near.volume * near.weight;
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        let (weighed, v_ij) = (near.x_ij * weight, *other - *own);
+        *along_x = weighed.mul_add(v_ij.x, *along_x);
+        *along_y = weighed.mul_add(v_ij.y, *along_y);
+        *along_z = weighed.mul_add(v_ij.z, *along_z);
+    }
+
+    #[inline(always)]
+    fn output(&self, _: usize, [xx, yy, zz, u, v, w]: &[DVec3; 6]) -> DVec3 {
+        let Some(inverse) = moment_of([*xx, *yy, *zz], self.cloud.plane).inverse() else {
+            return DVec3::ZERO;
+        };
+        let [u, v, w] = [u, v, w].map(|sum| inverse * *sum);
         DVec3::new(w.y - v.z, u.z - w.x, v.x - u.y)
     }
 }
@@ -70,20 +89,34 @@ impl RowPass for Vorticity<'_> {
 /// particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
 struct FreeSurface<'a>(&'a FlowCloud);
 
-impl RowPass for FreeSurface<'_> {
+impl RowPass<0, 4> for FreeSurface<'_> {
     type Output = f64;
 
+    fn among(&self) -> Range<usize> {
+        self.0.everything()
+    }
+
+    fn reads(&self, _: usize) -> [DVec3; 0] {
+        []
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> f64 {
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        _: &[Vector<A>; 0],
+        _: &[Vector<A>; 0],
+        [xx, yy, zz, inward]: &mut [Vector<A>; 4],
+    ) {
+        let weight = near.volume * near.weight;
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        *inward = near.x_ij.mul_add(weight, *inward);
+    }
+
+    fn output(&self, i: usize, &[xx, yy, zz, inward]: &[DVec3; 4]) -> f64 {
         let cloud = self.0;
-        let (mut moment, mut inward) = (FourMoments::new(a), Vector::zero(a));
-        for near in cloud.fours(a, i, &cloud.everything()) {
-            let weight = near.volume * near.weight;
-            moment.add(weight, near.x_ij);
-            inward = near.x_ij.mul_add(weight, inward);
-        }
-        let (moment, inward) = (moment.sum(), inward.sum());
-        let least = smallest_eigenvalue(moment.matrix(), A::AXES == 2);
+        let moment = moment_of([xx, yy, zz], cloud.plane);
+        let least = smallest_eigenvalue(moment.matrix(), cloud.plane);
         if !(ALONE..=INSIDE).contains(&least) {
             return f64::from(u8::from(least < ALONE));
         }

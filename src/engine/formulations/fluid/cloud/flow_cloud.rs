@@ -10,6 +10,7 @@ use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
 use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::formulations::fluid::lists::{FlowPairs, NearRows};
 use crate::parallel::{EIGHT, Lanes4};
+use crate::scene::Precision;
 use crate::world::BodyId;
 
 /// A neighbour of a fluid particle.
@@ -67,6 +68,16 @@ pub struct FlowCloud {
 }
 
 impl FlowCloud {
+    /// Arithmetic of the sums over neighbours.
+    pub fn precision(&self) -> Precision {
+        if self.blocks.is_some() { Precision::Mixed } else { Precision::Double }
+    }
+
+    /// Whether all particles lie in a plane.
+    pub fn plane(&self) -> bool {
+        self.plane
+    }
+
     /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
     pub fn is_confined(&self) -> bool {
         self.groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.suction))

@@ -18,6 +18,12 @@ mod pack;
 
 mod near;
 
+mod row_pass;
+
+mod row_blocks;
+
+mod rows;
+
 mod surroundings;
 
 mod loads;
@@ -28,11 +34,13 @@ mod neighbors;
 
 pub use flow_cloud::{FlowCloud, Near};
 pub use group::{FluidState, Group, Role, Surface};
-pub use near::{FourNear, Fours, RowPass, part, take_until};
+pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{NEIGHBORS, Neighbors};
 pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
+pub use row_blocks::RowSums;
+pub use row_pass::{NearPairs, RowPass};
 pub use shared::{COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, REPELLED, SPINS};
-pub use surroundings::{SmallestEigenvalue, smallest_eigenvalue};
+pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};

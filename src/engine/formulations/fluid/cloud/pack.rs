@@ -1,9 +1,12 @@
 //! Packing of the cloud from the columns, in every step.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lists::blocks::pack_states;
 use crate::formulations::fluid::lists::{Growing, Spread};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 use crate::world::{
@@ -40,6 +43,13 @@ impl FlowCloud {
             });
         }
         Ok(moved)
+    }
+
+    /// Packs volumes, velocities and pressures of these rows for sums in single precision, once they are those of the end of the step.
+    pub(in crate::formulations::fluid) fn pack_states(&mut self, rows: Range<usize>) {
+        if let Some(blocks) = &mut self.blocks {
+            pack_states(&mut blocks.packed[rows.clone()], &self.records[rows]);
+        }
     }
 
     /// Writes down where the particles are, m.

@@ -81,6 +81,8 @@ impl Run for EquationOfState {
                 step.limits.propose(limit, format_args!("viscosity of `{name}`"));
             }
         }
+        let fluid = cloud.fluid;
+        cloud.pack_states(0..fluid);
         Ok(())
     }
 

@@ -1,41 +1,36 @@
-//! Vectors of rotation of four neighbours at once; in the plane they stand across it.
+//! Vectors of rotation, lane by lane; in the plane they stand across it.
 
 use std::ops::Sub;
 
 use glam::DVec3;
 
-use crate::parallel::{FourLanes, Lanes4, Number, Vector};
+use crate::parallel::{Arithmetic, Number, Vector};
 
-/// An axial vector for each of four neighbours: in the plane its x and y are zero, and cost nothing.
+/// An axial vector for each lane: in the plane its x and y are zero, and cost nothing.
 #[derive(Clone, Copy)]
-pub struct Axial<A: FourLanes> {
+pub struct Axial<A: Arithmetic> {
     x: Number<A>,
     y: Number<A>,
     z: Number<A>,
 }
 
-impl<A: FourLanes> Axial<A> {
-    /// Zero four times.
+impl<A: Arithmetic> Axial<A> {
+    /// Zero in all lanes.
     #[inline(always)]
     pub fn zero(a: A) -> Self {
         Self { x: Number::zero(a), y: Number::zero(a), z: Number::zero(a) }
     }
 
-    /// The first three lanes of four rows.
+    /// Those of vectors that [`pack_axial`] has made.
     #[inline(always)]
-    pub fn from_rows(a: A, [j, k, l, m]: [&Lanes4; 4]) -> Self {
-        let along = |axis: usize| Number::new(a, Lanes4([j.0[axis], k.0[axis], l.0[axis], m.0[axis]]));
-        if A::AXES == 3 {
-            Self { x: along(0), y: along(1), z: along(2) }
-        } else {
-            Self { z: along(2), ..Self::zero(a) }
-        }
+    pub fn of(Vector { x, y, z }: Vector<A>) -> Self {
+        if A::AXES == 3 { Self { x, y, z } } else { Self { z: x, ..Self::zero(x.arithmetic()) } }
     }
 
-    /// The first three lanes of a row, four times.
+    /// The vectors of these, as passes over rows sum them.
     #[inline(always)]
-    pub fn splat(a: A, row: &Lanes4) -> Self {
-        Self::from_rows(a, [row; 4])
+    pub fn into_row(self) -> Vector<A> {
+        if A::AXES == 3 { self.into_vector() } else { Vector { x: self.z, y: self.x, z: self.y } }
     }
 
     /// `x x (self x x)`: the angular momenta of points that turn with it.
@@ -84,19 +79,9 @@ impl<A: FourLanes> Axial<A> {
             Self { z, ..sum }
         }
     }
-
-    /// Sum of the four, in a fixed order.
-    #[inline(always)]
-    pub fn sum(self) -> DVec3 {
-        if A::AXES == 3 {
-            DVec3::new(self.x.sum(), self.y.sum(), self.z.sum())
-        } else {
-            DVec3::new(0.0, 0.0, self.z.sum())
-        }
-    }
 }
 
-impl<A: FourLanes> Sub for Axial<A> {
+impl<A: Arithmetic> Sub for Axial<A> {
     type Output = Self;
 
     #[inline(always)]
@@ -104,4 +89,16 @@ impl<A: FourLanes> Sub for Axial<A> {
         let z = self.z - other.z;
         if A::AXES == 3 { Self { x: self.x - other.x, y: self.y - other.y, z } } else { Self { z, ..self } }
     }
+}
+
+/// An axial vector as a pass over rows reads it: vectors have no z in the plane.
+#[inline(always)]
+pub fn pack_axial(v: DVec3, plane: bool) -> DVec3 {
+    if plane { DVec3::new(v.z, 0.0, 0.0) } else { v }
+}
+
+/// The axial vector that was packed, or summed from such.
+#[inline(always)]
+pub fn unpack_axial(v: DVec3, plane: bool) -> DVec3 {
+    if plane { DVec3::new(0.0, 0.0, v.x) } else { v }
 }

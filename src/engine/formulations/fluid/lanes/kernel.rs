@@ -96,7 +96,10 @@ impl FluidKernel {
                 let slope = a.scale_add(16.0, q, a.splat(7.0));
                 a.times(a.times(a.times(cube, square), square), a.times_add(q, slope, one))
             }
-            Shape::QuinticSpline => a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), q)),
+            Shape::QuinticSpline => {
+                let above_zero = a.larger(q, a.splat(LEAST_LENGTH));
+                a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), above_zero))
+            }
         }
     }
 
@@ -225,6 +228,9 @@ pub trait KernelLoop {
     /// The loop.
     fn run<K: PairShape>(self, kernel: K) -> Self::Output;
 }
+
+/// Least length that a weight is divided by, over the support: a pair in one place has a weight too.
+const LEAST_LENGTH: f64 = 1e-12;
 
 /// Factor of the fourth powers over q = r/H in the pair weight of the quintic spline, which is one at q = 0.
 const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;

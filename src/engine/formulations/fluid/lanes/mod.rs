@@ -8,7 +8,7 @@ mod axial;
 
 mod batch;
 
-pub use axial::Axial;
+pub use axial::{Axial, pack_axial, unpack_axial};
 pub use batch::{BATCH, Batch};
 pub use kernel::{FluidKernel, KernelLoop, PairShape};
 pub use record::{FILLS, Four, MASKS, Own, Periods, Places, Record, as_rows, dot, filled_up, sums};

@@ -90,12 +90,14 @@ impl FlowPairs {
         self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
         self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
+        let mut hides = None;
         if !self.thin.is_empty() {
             let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
             let walls = self.walls.clone();
             self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.turn(fluid..positions.len(), &mut self.boundary);
+            hides = Some((sides, walls));
         }
         if let Some(lists) = blocks {
             let ends = &self.groups;
@@ -106,6 +108,7 @@ impl FlowPairs {
                 skin,
                 plane: self.plane,
                 periodic: &self.periodic,
+                sides: hides,
             };
             lists.build(&sources, (&mut self.search, &self.groups), &self.walls)?;
         }

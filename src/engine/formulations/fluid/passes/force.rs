@@ -39,9 +39,6 @@ impl Run for FlowForce {
         let flows = self.gravity.is_some();
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let mut blocks = if flows { cloud.blocks.take() } else { None };
-        if let Some(blocks) = &mut blocks {
-            blocks.pack_states(&cloud);
-        }
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let mut force = view.write::<Force>()?;

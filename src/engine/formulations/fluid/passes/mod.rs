@@ -12,7 +12,6 @@ mod force;
 
 mod reaction;
 
-pub use blocks::keep_rows;
 pub use compression::Compression;
 pub use force::{FLUID_FORCE, FlowForce, reads_flow};
 pub use pair_force::PairForce;

@@ -7,13 +7,17 @@
 //!
 //! The sum is that of the spin of the cluster, read from the other side: the work of these forces is that of the couple at the spin.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::spin::rotation;
-use crate::formulations::fluid::cloud::{Cluster, FlowCloud, Group, Neighborhood, PARTS, RowPass};
-use crate::formulations::fluid::lanes::{Axial, Record};
+use crate::formulations::fluid::cloud::{
+    Cluster, FlowCloud, Group, NearPairs, Neighborhood, PARTS, RowPass, RowSums,
+};
+use crate::formulations::fluid::lanes::{Axial, Record, pack_axial, unpack_axial};
 use crate::neighbors::Periodic;
-use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
+use crate::parallel::{Arithmetic, Lanes4, Vector, for_each_block};
 use crate::world::Force;
 
 /// Finds the couples on the particles of a boundary, and the forces that make them.
@@ -22,6 +26,7 @@ pub struct Couples {
     /// Couple on every particle, N m, and how fast friction on it grows with its velocity, kg/s.
     couples: Vec<Lanes4>,
     turned: Vec<Turned>,
+    sums: RowSums,
 }
 
 /// How the couple on a particle acts on its cluster: mean place of that, and alpha_w.
@@ -41,7 +46,8 @@ impl Couples {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
         self.couples.resize(records.len(), Lanes4::ZERO);
         self.turned.resize(records.len(), Turned::default());
-        cloud.for_each_row(group.cloud.start, &mut self.couples, &CoupleOn { cloud, group });
+        let pass = CoupleOn { cloud, viscosities: cloud.viscosities.of(group) };
+        cloud.for_each_row(group.cloud.start, &mut self.couples, &mut self.sums, &pass);
         let couples = &self.couples;
         for_each_block(&mut self.turned[..], &mut Vec::new(), &|first, turned: &mut [Turned]| {
             for (k, turned) in (first..).zip(turned) {
@@ -95,31 +101,39 @@ fn force_on(
 /// `1/2 sum_f x_wf x f_wf` with the friction f_wf of a pair, and `2 sum_f V_w V_f 4 mu w_wf`.
 struct CoupleOn<'a> {
     cloud: &'a FlowCloud,
-    group: &'a Group,
+    /// Viscosities between the boundary and all groups, Pa s.
+    viscosities: &'a [f64],
 }
 
-impl RowPass for CoupleOn<'_> {
+impl RowPass<2, 2> for CoupleOn<'_> {
     type Output = Lanes4;
 
+    fn among(&self) -> Range<usize> {
+        0..self.cloud.fluid
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Lanes4 {
-        let Self { cloud, group } = *self;
-        let (mut sum, mut drag) = (Axial::zero(a), Number::zero(a));
-        let own = Vector::splat(a, cloud.records[i].velocity());
-        for (fluid, viscosity) in cloud.groups.iter().zip(cloud.viscosities.of(group)) {
-            if *viscosity == 0.0 {
-                continue;
-            }
-            let half = 0.5 * cloud.viscosities.factor() * viscosity * cloud.volume(i);
-            for near in cloud.fours(a, i, &fluid.cloud) {
-                let v_ij = near.vector(|j| cloud.records[j].velocity()) - own;
-                let spin = Axial::from_rows(a, near.rows.map(|j| &cloud.spins[j]));
-                let friction = v_ij - spin.turn(near.x_ij);
-                let weight = near.volume * near.weight * half;
-                sum = Axial::product(near.x_ij, friction).mul_add(weight, sum);
-                drag += weight;
-            }
-        }
-        Lanes4::new(sum.sum(), 4.0 * drag.sum())
+    fn reads(&self, row: usize) -> [DVec3; 2] {
+        let cloud = self.cloud;
+        [cloud.records[row].velocity(), pack_axial(cloud.spins[row].xyz(), cloud.plane)]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own, _]: &[Vector<A>; 2],
+        [other, spin]: &[Vector<A>; 2],
+        [couple, drag]: &mut [Vector<A>; 2],
+    ) {
+        let friction = *other - *own - Axial::of(*spin).turn(near.x_ij);
+        let weight = near.volume * near.weight * self.viscosities[near.group];
+        *couple = Axial::product(near.x_ij, friction).mul_add(weight, Axial::of(*couple)).into_row();
+        drag.x += weight;
+    }
+
+    fn output(&self, i: usize, &[couple, drag]: &[DVec3; 2]) -> Lanes4 {
+        let half = 0.5 * self.cloud.viscosities.factor() * self.cloud.volume(i);
+        Lanes4::new(half * unpack_axial(couple, self.cloud.plane), 4.0 * half * drag.x)
     }
 }

@@ -13,19 +13,22 @@
 //! zero by nature. The second term sharpens what the fit has smoothed: without it waves of number k decay by (k h)^2 / 7 too fast, with it the error on a lattice is of fourth order.
 //! With omega_i = 0 and half of the factor it is the friction of Morris, Fox, Zhu (J. Comput. Phys. 136 (1997) 214-226), whose stress mu grad v feels a rigid rotation.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use crate::correction::{FourMoments, SINGULAR};
-use crate::formulations::fluid::cloud::{FlowCloud, Group, RowPass};
-use crate::formulations::fluid::lanes::Axial;
+use crate::correction::{SINGULAR, add_moment, moment_of};
+use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums};
+use crate::formulations::fluid::lanes::{Axial, pack_axial, unpack_axial};
 use crate::linalg::Sym3;
-use crate::parallel::{FourLanes, Lanes4, Vector};
+use crate::parallel::{Arithmetic, Lanes4, Vector};
 use crate::schedule::{Run, Step, StepError};
 
 /// Finds the spins of all fluid particles.
 #[derive(Default)]
 pub struct Spin {
     fits: Vec<Fit>,
+    sums: RowSums,
 }
 
 impl Run for Spin {
@@ -35,12 +38,14 @@ impl Run for Spin {
         self.fits.resize(cloud.fluid, Fit::default());
         let fluids = || cloud.groups.iter().filter(|group| group.fluid().is_some());
         for group in fluids() {
-            let rows = group.cloud.clone();
-            cloud.for_each_row(rows.start, &mut self.fits[rows], &BestFit { cloud: &cloud, group });
+            let (rows, viscosities) = (group.cloud.clone(), cloud.viscosities.of(group));
+            let pass = BestFit { cloud: &cloud, viscosities };
+            cloud.for_each_row(rows.start, &mut self.fits[rows], &mut self.sums, &pass);
         }
         for group in fluids() {
-            let (rows, fits) = (group.cloud.clone(), &self.fits);
-            cloud.for_each_row(rows.start, &mut spins[rows], &Sharpened { cloud: &cloud, group, fits });
+            let (rows, viscosities) = (group.cloud.clone(), cloud.viscosities.of(group));
+            let pass = Sharpened { cloud: &cloud, viscosities, fits: &self.fits };
+            cloud.for_each_row(rows.start, &mut spins[rows], &mut self.sums, &pass);
         }
         cloud.spins = spins;
         Ok(())
@@ -58,72 +63,78 @@ struct Fit {
 
 struct BestFit<'a> {
     cloud: &'a FlowCloud,
-    group: &'a Group,
+    /// Viscosities between the fluid and all groups, Pa s.
+    viscosities: &'a [f64],
 }
 
-impl RowPass for BestFit<'_> {
+impl RowPass<1, 4> for BestFit<'_> {
     type Output = Fit;
 
+    fn among(&self) -> Range<usize> {
+        self.cloud.everything()
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Fit {
-        let Self { cloud, group } = *self;
-        let (mut moment, mut angular) = (FourMoments::new(a), Axial::zero(a));
-        let own = Vector::splat(a, cloud.records[i].velocity());
-        let viscosities = cloud.viscosities.of(group);
-        let mut rest = cloud.near_row(i);
-        for n in 0..viscosities.len() {
-            if rest.is_empty() {
-                break;
-            }
-            let fours = cloud.next_fours(a, i, n, &mut rest);
-            if viscosities[n] == 0.0 {
-                continue;
-            }
-            for near in fours {
-                let weight = near.volume * near.weight * viscosities[n];
-                let v_ij = near.vector(|j| cloud.records[j].velocity()) - own;
-                moment.add(weight, near.x_ij);
-                angular = Axial::product(near.x_ij, v_ij).mul_add(weight, angular);
-            }
-        }
-        let moment = *moment.sum().matrix();
-        Fit { spin: Lanes4::new(rotation(&moment, angular.sum(), A::AXES == 2), 0.0), moment }
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.cloud.records[row].velocity()]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [xx, yy, zz, angular]: &mut [Vector<A>; 4],
+    ) {
+        let weight = near.volume * near.weight * self.viscosities[near.group];
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        *angular = Axial::product(near.x_ij, *other - *own).mul_add(weight, Axial::of(*angular)).into_row();
+    }
+
+    #[inline(always)]
+    fn output(&self, _: usize, &[xx, yy, zz, angular]: &[DVec3; 4]) -> Fit {
+        let plane = self.cloud.plane;
+        let moment = *moment_of([xx, yy, zz], plane).matrix();
+        Fit { spin: Lanes4::new(rotation(&moment, unpack_axial(angular, plane), plane), 0.0), moment }
     }
 }
 
 struct Sharpened<'a> {
     cloud: &'a FlowCloud,
-    group: &'a Group,
+    viscosities: &'a [f64],
     fits: &'a [Fit],
 }
 
-impl RowPass for Sharpened<'_> {
+impl RowPass<1, 1> for Sharpened<'_> {
     type Output = Lanes4;
 
+    fn among(&self) -> Range<usize> {
+        0..self.cloud.fluid
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Lanes4 {
-        let Self { cloud, group, fits } = *self;
-        let mut torque = Axial::zero(a);
-        let own = Axial::splat(a, &fits[i].spin);
-        let viscosities = cloud.viscosities.of(group);
-        let mut rest = cloud.near_row(i);
-        // Fluids come first.
-        for n in 0..viscosities.len() {
-            if rest.is_empty() || cloud.groups[n].fluid().is_none() {
-                break;
-            }
-            let fours = cloud.next_fours(a, i, n, &mut rest);
-            if viscosities[n] == 0.0 {
-                continue;
-            }
-            for near in fours {
-                let weight = near.volume * near.weight * (0.5 * viscosities[n]);
-                let others = Axial::from_rows(a, near.rows.map(|j| &fits[j].spin));
-                torque = (own - others).around(near.x_ij).mul_add(weight, torque);
-            }
-        }
-        let Fit { spin, moment } = &fits[i];
-        Lanes4::new(spin.xyz() + rotation(moment, torque.sum(), A::AXES == 2), 0.0)
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [pack_axial(self.fits[row].spin.xyz(), self.cloud.plane)]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [torque]: &mut [Vector<A>; 1],
+    ) {
+        let weight = near.volume * near.weight * (0.5 * self.viscosities[near.group]);
+        let apart = Axial::of(*own) - Axial::of(*other);
+        *torque = apart.around(near.x_ij).mul_add(weight, Axial::of(*torque)).into_row();
+    }
+
+    #[inline(always)]
+    fn output(&self, i: usize, &[torque]: &[DVec3; 1]) -> Lanes4 {
+        let (Fit { spin, moment }, plane) = (&self.fits[i], self.cloud.plane);
+        Lanes4::new(spin.xyz() + rotation(moment, unpack_axial(torque, plane), plane), 0.0)
     }
 }
 

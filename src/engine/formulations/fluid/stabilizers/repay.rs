@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, RowPass};
-use crate::parallel::{FourLanes, Number, Vector, sum_over_blocks};
+use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums};
+use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
 use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, Mass, Removed, Velocity};
 
@@ -18,6 +18,7 @@ const LARGEST: f64 = 0.05;
 #[derive(Debug, Default)]
 pub struct Repayment {
     rubs: Vec<Rub>,
+    sums: RowSums,
 }
 
 /// Friction of strength one.
@@ -48,7 +49,8 @@ impl Repayment {
         }
         let (view, rows) = step.world.body_view(id);
         self.rubs.resize(rows.len(), Rub::default());
-        cloud.for_each_row(rows.start, &mut self.rubs, &Rubbing { cloud, rows: rows.clone() });
+        let pass = Rubbing { cloud, rows: rows.clone() };
+        cloud.for_each_row(rows.start, &mut self.rubs, &mut self.sums, &pass);
         let mut velocity = view.write::<Velocity>()?;
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let both = (&self.rubs[..], &mass[rows.clone()]);
@@ -82,21 +84,34 @@ struct Rubbing<'a> {
     rows: Range<usize>,
 }
 
-impl RowPass for Rubbing<'_> {
+impl RowPass<1, 2> for Rubbing<'_> {
     type Output = Rub;
 
+    fn among(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Rub {
-        let records = self.cloud.records();
-        let v_i = records[i].velocity();
-        let (mut velocity, mut taken) = (Vector::zero(a), Number::zero(a));
-        for near in self.cloud.fours(a, i, &self.rows) {
-            let v_ij = near.vector(|j| records[j].velocity() - v_i);
-            let parting = v_ij.dot(near.x_ij) / near.distance;
-            let share = near.volume * near.kernel * parting;
-            velocity = near.x_ij.mul_add(share / near.distance, velocity);
-            taken += 0.5 * share * parting;
-        }
-        Rub { velocity: velocity.sum(), taken: taken.sum() }
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.cloud.records[row].velocity()]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [velocity, taken]: &mut [Vector<A>; 2],
+    ) {
+        let parting = (*other - *own).dot(near.x_ij) / near.distance;
+        let share = near.volume * near.kernel * parting;
+        *velocity = near.x_ij.mul_add(share / near.distance, *velocity);
+        taken.x += 0.5 * share * parting;
+    }
+
+    #[inline(always)]
+    fn output(&self, _: usize, &[velocity, taken]: &[DVec3; 2]) -> Rub {
+        Rub { velocity, taken: taken.x }
     }
 }

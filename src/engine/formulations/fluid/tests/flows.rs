@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{column, simulation};
+use super::{column, double, simulation};
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
 use crate::simulation::Simulation;
@@ -130,7 +130,7 @@ fn spin<'a>(
 fn forces_are_those_of_a_naive_sum_over_all_pairs_and_opposite_on_the_wall() {
     for dimension in [2, 3] {
         for (wall, no_slip) in [("", false), ("slip: No", true)] {
-            let mut sim = simulation(&dam(dimension, wall));
+            let mut sim = double(&dam(dimension, wall));
             sim.start().expect("a start");
             let support = if dimension == 2 { 3.0 * 0.04 } else { 2.6 * 0.05 };
             let (kernel, h) =
@@ -190,7 +190,7 @@ fn momentum_is_kept_in_a_periodic_box() {
                   formulation: Fluid(pressure: "1000*sin(6.283185307179586*x)"))],
         conditions: [InitialVelocity(on: Select(), value: ("sin(6.283185307179586*y)", "0.5", "cos(6.283185307179586*x)"))],
         time: (end: 1.0))"#;
-    let mut sim = simulation(text);
+    let mut sim = double(text);
     let momentum = |sim: &Simulation| -> DVec3 {
         let (m, v) = (column::<Mass>(sim, 0), column::<Velocity>(sim, 0));
         m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum()
@@ -217,20 +217,22 @@ fn momentum_and_energy_of_a_fluid_with_a_solid_in_it_are_kept() {
         conditions: [InitialVelocity(on: Select(body: "water"), value: ("sin(2*pi*y)", "0.3")),
                      InitialVelocity(on: Select(body: "block"), value: ("-0.5", "0.5"))],
         time: (end: 1.0))"#;
-    let mut sim = simulation(text);
-    let momentum = |sim: &Simulation| -> DVec3 {
-        let sum = |body| {
-            let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
-            m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum::<DVec3>()
+    // In single precision the sums of each particle are rounded: three deviations of that over the steps.
+    for (mut sim, most) in [(double(text), 1e-10), (simulation(text), 1e-7)] {
+        let momentum = |sim: &Simulation| -> DVec3 {
+            let sum = |body| {
+                let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));
+                m.iter().zip(&v).map(|(m, v)| m.0 * v.0).sum::<DVec3>()
+            };
+            sum(0) + sum(1)
         };
-        sum(0) + sum(1)
-    };
-    sim.start().expect("a start");
-    let before = momentum(&sim);
-    sim.run(|sim| sim.clock().time < 0.2).expect("a run");
-    assert!((momentum(&sim) - before).length() < 1e-10 * 500.0, "{before} {}", momentum(&sim));
-    assert!(sim.ledger().total_named("strain") > 0.0);
-    assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+        sim.start().expect("a start");
+        let before = momentum(&sim);
+        sim.run(|sim| sim.clock().time < 0.2).expect("a run");
+        assert!((momentum(&sim) - before).length() < most * 500.0, "{before} {}", momentum(&sim));
+        assert!(sim.ledger().total_named("strain") > 0.0);
+        assert!(sim.ledger().relative_error().abs() < 5e-3, "{}", sim.ledger().relative_error());
+    }
 }
 
 #[test]
@@ -246,7 +248,7 @@ fn a_dam_break_keeps_its_energy_in_the_books() {
 fn sorted_particles_move_as_those_that_keep_their_rows() {
     let positions = |condition: &str| {
         let text = dam(2, "").replace("conditions: [", &format!("conditions: [{condition}"));
-        let mut sim = simulation(&text);
+        let mut sim = double(&text);
         run(&mut sim, 300);
         let ids: Vec<u64> = column::<ParticleId>(&sim, 0).iter().map(|id| id.0).collect();
         let mut rows: Vec<usize> = (0..ids.len()).collect();

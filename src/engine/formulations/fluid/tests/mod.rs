@@ -38,6 +38,11 @@ pub fn simulation(text: &str) -> Simulation {
     }
 }
 
+/// The simulation of a scene with its sums in double precision: for what holds to their round-off.
+pub fn double(text: &str) -> Simulation {
+    simulation(&text.replacen("(dimension", "(precision: Double, dimension", 1))
+}
+
 pub fn column<C: Column + Copy>(sim: &Simulation, body: usize) -> Vec<C> {
     let (view, rows) = sim.world().body_view(BodyId(body));
     view.read::<C>().expect("a column")[rows].to_vec()

@@ -13,6 +13,15 @@ const DENSITY: f64 = 1000.0;
 
 /// Lone particles above a body whose surface is at y = 0, at a height in spacings, from right above a particle of it to right above a gap; their density is over that at rest.
 pub fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &str) -> Simulation {
+    rain_in("Mixed", (dimension, height, velocity, density), below)
+}
+
+/// The same in that precision.
+fn rain_in(
+    precision: &str,
+    (dimension, height, velocity, density): (usize, f64, DVec3, f64),
+    below: &str,
+) -> Simulation {
     let (name, size, floor) = if dimension == 3 {
         ("Three", "(0.04, 1.04, 0.04)", "Box(min: (-0.2, -0.08, -0.2), max: (0.8, 0.0, 0.2))")
     } else {
@@ -20,7 +29,7 @@ pub fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below:
     };
     let low = if dimension == 3 { "(0, 1, 0)" } else { "(0, 1)" };
     let sim = simulation(&format!(
-        r#"(dimension: {name}, materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND}), "rubber": NeoHookean(density: 1200.0, young: 1.0e5, poisson: 0.3)}},
+        r#"(precision: {precision}, dimension: {name}, materials: {{"water": Fluid(density: {DENSITY}, sound_speed: {SOUND}), "rubber": NeoHookean(density: 1200.0, young: 1.0e5, poisson: 0.3)}},
             bodies: [
                 (name: "water", material: "water", spacing: {SPACING}, formulation: Fluid(pressure: 0.0), shape: Box(min: {low}, max: {size})),
                 (name: "below", {below}, spacing: {SPACING}, shape: {floor}),
@@ -73,7 +82,7 @@ fn lone_particles_do_not_pass_a_wall_and_keep_their_energy() {
 #[test]
 fn the_force_is_that_of_the_distance_and_its_opposite_is_on_the_wall() {
     for dimension in [2, 3] {
-        let mut sim = rain(dimension, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5, WALL);
+        let mut sim = rain_in("Double", (dimension, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5), WALL);
         let kernel = Kernel::new(KernelName::WendlandC2, dimension).expect("a kernel");
         let h = 0.5 * SPACING * if dimension == 3 { 2.6 } else { 3.0 };
         let stiffness = DENSITY * SPACING.powi(dimension as i32) * (3.0 * SOUND / h).powi(2);
@@ -119,7 +128,7 @@ fn a_body_that_is_hit_gets_the_momentum() {
     for body in
         [r#"material: "rubber", formulation: Rigid()"#, r#"material: "rubber", formulation: TotalLagrangian"#]
     {
-        let mut sim = rain(2, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5, body);
+        let mut sim = rain_in("Double", (2, 2.6, DVec3::new(0.3, -2.0, 0.0), 0.5), body);
         let momentum = |sim: &Simulation| -> DVec3 {
             let of = |body| {
                 let (m, v) = (column::<Mass>(sim, body), column::<Velocity>(sim, body));

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
-use super::{column, simulation};
+use super::{column, double, simulation};
 use crate::assembly::build;
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
@@ -14,7 +14,7 @@ use crate::world::{Density, Force, Mass, Position, Pressure, ReferencePosition, 
 
 #[test]
 fn two_fluids_press_on_each_other_with_opposite_forces() {
-    let mut sim = simulation(
+    let mut sim = double(
         r#"(dimension: Two, domain: (min: (0, 0), max: (1, 1), periodic: [X, Y]),
             materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 3.0),
                         "oil": Fluid(density: 800.0, sound_speed: 30.0, viscosity: 40.0)},

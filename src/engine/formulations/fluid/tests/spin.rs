@@ -1,6 +1,6 @@
 //! Friction and rotation: nothing turns by itself, and what turns together does not rub.
 
-use super::{column, simulation};
+use super::{column, double, simulation};
 use crate::simulation::Simulation;
 use crate::world::{Mass, Position, Velocity};
 
@@ -16,7 +16,7 @@ fn angular_momentum(sim: &Simulation, bodies: usize) -> f64 {
 
 #[test]
 fn a_square_of_oil_that_spins_freely_keeps_its_angular_momentum() {
-    let mut sim = simulation(
+    let mut sim = double(
         r#"(dimension: Two, materials: {"oil": Fluid(density: 1000.0, sound_speed: 20.0, viscosity: 20.0)},
             bodies: [(name: "oil", material: "oil", shape: Box(min: (-0.5, -0.5), max: (0.5, 0.5)), spacing: 0.05, formulation: Fluid)],
             conditions: [InitialVelocity(on: Select(body: "oil"), value: ("-y", "x"))],
@@ -32,7 +32,7 @@ fn a_square_of_oil_that_spins_freely_keeps_its_angular_momentum() {
 
 /// Oil between a body that spins and nothing: a drop with a core.
 fn drop_with_core(core: &str, start: &str) -> Simulation {
-    simulation(&format!(
+    double(&format!(
         r#"(dimension: Two, materials: {{"oil": Fluid(density: 1000.0, sound_speed: 10.0, viscosity: 30.0),
                 "rubber": NeoHookean(density: 1500.0, young: 2.0e5, poisson: 0.3)}},
             bodies: [

@@ -50,6 +50,8 @@ impl Run for WallState {
             let (gravity, dt) = (self.gravity, step.clock.dt);
             for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
         }
+        let boundaries = cloud.fluid..cloud.records.len();
+        cloud.pack_states(boundaries);
         Ok(())
     }
 }

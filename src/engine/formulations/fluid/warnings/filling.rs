@@ -3,12 +3,15 @@
 //! `sum_j V_j W_ij`, the particle itself and what bounds the flow included, is one wherever the volumes m / rho fill space. The density of a
 //! particle is moved by the velocities around it and does not see gaps.
 
+use std::ops::Range;
+
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::correction::FourMoments;
-use crate::formulations::fluid::cloud::{FlowCloud, RowPass, smallest_eigenvalue};
+use crate::correction::{add_moment, moment_of};
+use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 use crate::notation::quantity;
-use crate::parallel::{FourLanes, Number};
+use crate::parallel::{Arithmetic, Vector};
 use crate::schedule::{Step, warn_anew};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
@@ -37,7 +40,7 @@ impl Filling {
             }
             scratch.clear();
             scratch.resize(group.cloud.len(), None);
-            cloud.for_each_row(group.cloud.start, scratch, &FillingPass(cloud));
+            cloud.for_each_row(group.cloud.start, scratch, &mut RowSums::default(), &FillingPass(cloud));
             let Some(mean) = mean_filling(scratch) else { continue };
             let off = (mean - 1.0).abs();
             if off <= SHARE.max(GROWTH * *told) {
@@ -70,21 +73,34 @@ fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
 /// The filling about a particle; none near a surface.
 pub struct FillingPass<'a>(pub &'a FlowCloud);
 
-impl RowPass for FillingPass<'_> {
+impl RowPass<0, 4> for FillingPass<'_> {
     type Output = Option<f64>;
 
+    fn among(&self) -> Range<usize> {
+        self.0.everything()
+    }
+
+    fn reads(&self, _: usize) -> [DVec3; 0] {
+        []
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Option<f64> {
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        _: &[Vector<A>; 0],
+        _: &[Vector<A>; 0],
+        [xx, yy, zz, filling]: &mut [Vector<A>; 4],
+    ) {
+        add_moment([xx, yy, zz], near.volume * near.weight, near.x_ij);
+        filling.x = near.volume.mul_add(near.kernel, filling.x);
+    }
+
+    fn output(&self, i: usize, &[xx, yy, zz, filling]: &[DVec3; 4]) -> Option<f64> {
         let cloud = self.0;
         let own = cloud.records[i].volume();
-        let (mut moment, mut filling) = (FourMoments::new(a), Number::splat(a, 0.0));
-        for near in cloud.fours(a, i, &cloud.everything()) {
-            moment.add(near.volume * near.weight, near.x_ij);
-            // The lists may hold the particle itself.
-            let other = near.number(|j| if j == i { 0.0 } else { 1.0 });
-            filling = (near.volume * near.kernel).mul_add(other, filling);
-        }
-        let is_inside = own > 0.0 && smallest_eigenvalue(moment.sum().matrix(), A::AXES == 2) > INSIDE;
-        is_inside.then(|| filling.lanes().sum() + own * cloud.kernel.value(0.0))
+        let moment = moment_of([xx, yy, zz], cloud.plane);
+        let is_inside = own > 0.0 && smallest_eigenvalue(moment.matrix(), cloud.plane) > INSIDE;
+        is_inside.then(|| filling.x + own * cloud.kernel.value(0.0))
     }
 }

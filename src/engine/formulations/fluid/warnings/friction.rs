@@ -1,9 +1,13 @@
 //! Friction around a particle, and how even its neighbours are.
 
-use crate::correction::FourMoments;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, RowPass, smallest_eigenvalue};
-use crate::formulations::fluid::lanes::Axial;
-use crate::parallel::{FourLanes, Number, Vector};
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::correction::{add_moment, moment_of};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, NearPairs, RowPass, smallest_eigenvalue};
+use crate::formulations::fluid::lanes::{Axial, pack_axial};
+use crate::parallel::{Arithmetic, Vector};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
@@ -19,39 +23,59 @@ pub struct Friction {
     pub order: f64,
 }
 
-/// [`Friction`] of a particle of a group; none near a surface.
+/// [`Friction`] of the particles of a group; none near a surface.
 pub struct FrictionOf<'a> {
     pub cloud: &'a FlowCloud,
-    pub group: &'a Group,
+    /// Viscosity of the group, Pa s, and those between it and all groups.
+    pub viscosity: f64,
+    pub viscosities: &'a [f64],
 }
 
-impl RowPass for FrictionOf<'_> {
+impl<'a> FrictionOf<'a> {
+    pub fn new(cloud: &'a FlowCloud, group: &Group) -> Self {
+        let viscosity = group.fluid().map_or(0.0, |state| state.viscosity);
+        Self { cloud, viscosity, viscosities: cloud.viscosities.of(group) }
+    }
+}
+
+impl RowPass<2, 5> for FrictionOf<'_> {
     type Output = Option<Friction>;
 
+    fn among(&self) -> Range<usize> {
+        self.cloud.everything()
+    }
+
     #[inline(always)]
-    fn row<A: FourLanes>(&self, a: A, i: usize) -> Option<Friction> {
-        let Self { cloud, group } = *self;
+    fn reads(&self, row: usize) -> [DVec3; 2] {
+        let cloud = self.cloud;
+        [cloud.records[row].velocity(), pack_axial(cloud.spins[row].xyz(), cloud.plane)]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own, spin]: &[Vector<A>; 2],
+        [other, _]: &[Vector<A>; 2],
+        [xx, yy, zz, first, power]: &mut [Vector<A>; 5],
+    ) {
+        let weight = near.volume * near.weight;
+        add_moment([xx, yy, zz], weight, near.x_ij);
+        *first = near.x_ij.mul_add(weight, *first);
+        let sheared = *other - *own - Axial::of(*spin).turn(near.x_ij);
+        let viscosity = self.viscosities[near.group];
+        power.x = sheared.length_squared().mul_add(weight * viscosity, power.x);
+    }
+
+    fn output(&self, i: usize, &[xx, yy, zz, first, power]: &[DVec3; 5]) -> Option<Friction> {
+        let cloud = self.cloud;
         let own = &cloud.records[i];
-        let (velocity, spin) = (Vector::splat(a, own.velocity()), Axial::splat(a, &cloud.spins[i]));
-        let (mut moment, mut first) = (FourMoments::new(a), Vector::zero(a));
-        let mut power = Number::zero(a);
-        for (other, viscosity) in cloud.groups.iter().zip(cloud.viscosities.of(group)) {
-            for near in cloud.fours(a, i, &other.cloud) {
-                let weight = near.volume * near.weight;
-                moment.add(weight, near.x_ij);
-                first = near.x_ij.mul_add(weight, first);
-                let v_ij = near.vector(|j| cloud.records[j].velocity()) - velocity;
-                let sheared = v_ij - spin.turn(near.x_ij);
-                power = sheared.length_squared().mul_add(weight * *viscosity, power);
-            }
-        }
-        let is_inside =
-            own.volume() > 0.0 && smallest_eigenvalue(moment.sum().matrix(), A::AXES == 2) > INSIDE;
-        let viscosity = group.fluid().map_or(0.0, |state| state.viscosity);
-        let moment = cloud.kernel.smoothing_length() * first.sum().length();
-        let stress = (viscosity * power.sum()).sqrt();
+        let moment = moment_of([xx, yy, zz], cloud.plane);
+        let is_inside = own.volume() > 0.0 && smallest_eigenvalue(moment.matrix(), cloud.plane) > INSIDE;
+        let moment = cloud.kernel.smoothing_length() * first.length();
+        let stress = (self.viscosity * power.x).sqrt();
         is_inside.then(|| Friction {
-            power: own.volume() * power.sum(),
+            power: own.volume() * power.x,
             moment,
             order: if stress > 0.0 { own.pressure().abs() * moment / stress } else { 0.0 },
         })

@@ -9,7 +9,7 @@
 //!   lattice is pushed back. A disc that sinks between walls, five particles in radius, is too slow by about a third of this mean.
 
 use super::friction::{Friction, FrictionOf};
-use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::formulations::fluid::density::DensityShift;
 use crate::notation::quantity;
 use crate::schedule::Step;
@@ -45,7 +45,12 @@ impl Unevenness {
             }
             scratch.clear();
             scratch.resize(group.cloud.len(), None);
-            cloud.for_each_row(group.cloud.start, scratch, &FrictionOf { cloud, group });
+            cloud.for_each_row(
+                group.cloud.start,
+                scratch,
+                &mut RowSums::default(),
+                &FrictionOf::new(cloud, group),
+            );
             let Some(Means { plain, weighted, order }) = means(scratch) else { continue };
             let uneven = if is_slow { plain.max(weighted) } else { plain };
             let name = &step.world.body(group.body).name;

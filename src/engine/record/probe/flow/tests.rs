@@ -99,7 +99,10 @@ fn the_flux_through_a_plane_is_speed_times_height() {
 fn a_turning_box_has_twice_its_rate_as_vorticity_and_its_outer_layer_as_surface() {
     let probe = |quantity: &str| at(quantity, r#"on: Select(within: Box(min: (0, 0), max: (1, 0.0249)))"#);
     let scene = |quantity: &str| text(WATER, r#""-3*y", "3*x""#, "(0, 0)", &probe(quantity));
-    near(&first(&scene("Field(\"vorticity.z\")")), &[("vorticity.z", 6.0)], 1e-9);
+    let vorticity = scene("Field(\"vorticity.z\")");
+    near(&first(&vorticity), &[("vorticity.z", 6.0)], 6e-6);
+    let precise = vorticity.replacen("(dimension", "(precision: Double, dimension", 1);
+    near(&first(&precise), &[("vorticity.z", 6.0)], 1e-9);
     near(&first(&scene("Field(\"free_surface\")")), &[("free_surface", 1.0)], 1e-12);
     let inside =
         at("Field(\"free_surface\")", "on: Select(within: Box(min: (0.03, 0.03), max: (0.97, 0.47)))");

@@ -5,7 +5,9 @@
 use glam::DVec3;
 
 use super::record::{Own, Packed, Units, dot, pack_places};
-use super::table::Table;
+use super::seen::write_seen;
+use super::table::{Rows, Table};
+use crate::formulations::fluid::lists::sides::Sides;
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
 use crate::neighbors::{NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, for_each_block, run_blocks_on};
@@ -21,6 +23,8 @@ pub struct Lists {
     pub fluid: NearRows,
     /// What bounds them.
     pub walls: NeighborList,
+    /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are the bits of `fluid`, where all see what is near.
+    seen_walls: Vec<u8>,
     units: Units,
     /// How many fluid particles are near each particle of a block.
     pub counts: Vec<[u32; EIGHT]>,
@@ -40,6 +44,8 @@ pub struct Sources<'a> {
     /// Whether all particles have one z.
     pub plane: bool,
     pub periodic: &'a Periodic,
+    /// Who sees whom beside thin bodies, with what is near each particle and no fluid, seen or not.
+    pub sides: Option<(Sides<'a>, NeighborList)>,
 }
 
 impl Lists {
@@ -49,11 +55,18 @@ impl Lists {
             table: Table::default(),
             fluid: NearRows::default(),
             walls: NeighborList::default(),
+            seen_walls: Vec::new(),
             units,
             counts: Vec::new(),
             candidates: NeighborList::default(),
             places: Vec::new(),
         }
+    }
+
+    /// The bits of the particles of a block that see its neighbours, fluids and what bounds them, where some hide.
+    #[inline(always)]
+    pub fn seen(&self, block: usize) -> (&[u8], &[u8]) {
+        (self.fluid.lanes(block), &self.seen_walls[self.walls.range(block)])
     }
 
     /// Makes blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each particle among what bounds the flow.
@@ -63,23 +76,33 @@ impl Lists {
         (search, groups): (&mut NeighborSearch, &[u32]),
         walls: &NeighborList,
     ) -> Result<(), NeighborError> {
-        let Sources { positions, fluids, support, skin, plane, periodic } = *sources;
-        let Self { table, fluid, walls: of_blocks, units, counts, candidates, places } = self;
+        let Sources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
+        let Self { table, fluid, walls: of_blocks, seen_walls, units, counts, candidates, places } = self;
         table.build(positions, fluids, support, periodic);
         search.of_boxes((&table.centers, &table.halves, groups), skin, periodic, candidates)?;
         of_blocks.join(&table.rows, walls);
         pack_places(places, positions, units);
         fluid.make_room(&[candidates]);
+        if sides.is_some() {
+            fluid.keep_lanes();
+            write_seen(seen_walls, &table.rows, of_blocks, walls);
+        }
         let unit = units.length.to_array();
         let limit = ((support + skin) * CERTAIN).powi(2);
         let (table, candidates, places) = (&*table, &*candidates, &places[..]);
         counts.resize(table.rows.len(), [0; EIGHT]);
         let rows = (&mut counts[..], fluid.writer());
         for_each_block(rows, &mut Vec::new(), &|first, (counts, near): (&mut [_], NearWriter<'_>)| {
-            run_blocks_on(plane, Sift { table, candidates, places, unit, limit, first, counts, near });
+            run_blocks_on(plane, Sift { table, candidates, places, sides, unit, limit, first, counts, near });
         });
         Ok(())
     }
+}
+
+/// The bits of those particles of a block, among the ones whose bits are set, that see a fluid particle.
+fn who_sees(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: usize) -> usize {
+    let sees = |lane: &usize| near >> lane & 1 == 1 && sides.sees(rows[*lane] as usize, j as usize, walls);
+    (0..EIGHT).filter(sees).fold(0, |bits, lane| bits | 1 << lane)
 }
 
 /// Takes out of the candidates those that are near.
@@ -87,6 +110,7 @@ struct Sift<'a> {
     table: &'a Table,
     candidates: &'a NeighborList,
     places: &'a [Packed],
+    sides: &'a Option<(Sides<'a>, NeighborList)>,
     unit: [f64; 3],
     limit: f64,
     first: usize,
@@ -99,17 +123,22 @@ impl BlockLoop for Sift<'_> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Self { table, candidates, places, unit, limit, first, counts, mut near } = self;
+        let Self { table, candidates, places, sides, unit, limit, first, counts, mut near } = self;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let limit = a.splat(limit);
         for (k, counts) in counts.iter_mut().enumerate() {
             let mut count = Lanes8::ZERO;
-            let own = Own::new(places, &table.rows[first + k]);
+            let rows = &table.rows[first + k];
+            let own = Own::new(places, rows);
             let mut row = near.row(k);
             for &j in candidates.row(first + k) {
                 let x = own.to(a, &places[j as usize], &unit).x;
                 let square = dot(a, &x, &x);
-                row.push_if::<false>(j, a.below(square, limit));
+                let bits = a.below(square, limit);
+                match sides {
+                    Some((sides, walls)) => row.push_if::<true>(j, who_sees(sides, walls, rows, j, bits)),
+                    None => row.push_if::<false>(j, bits),
+                }
                 count = a.plus(count, a.where_below(square, limit, a.same(1.0)));
             }
             row.close();

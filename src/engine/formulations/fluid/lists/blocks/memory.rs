@@ -28,13 +28,13 @@ pub struct Blocks {
     pub forces: Vec<Lanes8>,
     /// The largest rates of the pair terms in blocks of the pass.
     pub fastest: Vec<Fastest>,
-    /// Whether the neighbours of every particle are written down in every step.
-    pub keeps_rows: bool,
+    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are then written down in every step.
+    pub hides: bool,
 }
 
 impl Blocks {
-    /// Those of a flow; with `keeps_rows`, the neighbours of every particle are written down in every step.
-    pub fn new(units: Units, keeps_rows: bool) -> Self {
+    /// Those of a flow; `hides` says that thin bodies hide some of what is near from particles.
+    pub fn new(units: Units, hides: bool) -> Self {
         Self {
             lists: Lists::new(units),
             units,
@@ -43,7 +43,7 @@ impl Blocks {
             rates: Vec::new(),
             forces: Vec::new(),
             fastest: Vec::new(),
-            keeps_rows,
+            hides,
         }
     }
 
@@ -52,7 +52,7 @@ impl Blocks {
         let Lists { table, fluid, walls, counts, .. } = &self.lists;
         let most = |block: usize| fluid.row(block).len() + walls.row(block).len();
         self.near.make_room_for(table.rows.len(), most);
-        if self.keeps_rows {
+        if self.hides {
             self.near.keep_lanes();
             let most = |i: usize| {
                 let (block, lane) = table.place(i);
@@ -71,6 +71,6 @@ impl Blocks {
     /// The same, where the neighbours of particles are not written down.
     #[inline(always)]
     pub fn shared_row(&self, row: usize) -> Option<&[u32]> {
-        if self.keeps_rows { None } else { Some(self.near_of(row)) }
+        if self.hides { None } else { Some(self.near_of(row)) }
     }
 }

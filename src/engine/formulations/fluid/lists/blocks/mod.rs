@@ -4,6 +4,10 @@ mod table;
 
 mod record;
 
+mod seen;
+
+mod sums;
+
 mod lists;
 
 mod memory;
@@ -11,4 +15,6 @@ mod memory;
 pub use lists::{Lists, Sources};
 pub use memory::{Blocks, Rates};
 pub use record::{Other, Own, Packed, Units, dot, pack, pack_states};
+pub use seen::SEEN;
+pub use sums::BlockSums;
 pub use table::{Rows, Table};

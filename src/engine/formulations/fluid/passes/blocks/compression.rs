@@ -2,14 +2,14 @@
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, Rates, dot, pack};
+use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, Rates, SEEN, dot, pack};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block, run_blocks_on};
 
 impl FlowCloud {
     /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
     pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
-        let Blocks { lists, units, packed, near, rates, keeps_rows, .. } = blocks;
+        let Blocks { lists, units, packed, near, rates, hides, .. } = blocks;
         pack(packed, &self.records, units);
         rates.resize(lists.table.rows.len(), Rates::default());
         let pass = Compress {
@@ -22,11 +22,11 @@ impl FlowCloud {
             least: self.kernel.least_square(),
             plane: self.plane,
         };
-        let rates_and_near = (&mut rates[..], near.writer());
-        if *keeps_rows {
-            self.kernel.run(AllBlocks::<true> { pass, rows: rates_and_near });
+        let rows = (&mut rates[..], near.writer());
+        if *hides {
+            self.kernel.run(AllBlocks::<true> { pass, rows });
         } else {
-            self.kernel.run(AllBlocks::<false> { pass, rows: rates_and_near });
+            self.kernel.run(AllBlocks::<false> { pass, rows });
         }
         let factor = self.kernel.weight_scale();
         let (rates, table) = (&blocks.rates, &lists.table);
@@ -41,11 +41,14 @@ impl FlowCloud {
                 *is_close = of_block.is_close >> lane & 1 == 1;
             }
         });
-        if blocks.keeps_rows {
+        if blocks.hides {
             self.pack_rows(blocks);
         }
     }
 }
+
+/// The bits of all particles of a block.
+const ALL: u8 = u8::MAX;
 
 /// What the pass reads.
 #[derive(Clone, Copy)]
@@ -63,24 +66,24 @@ struct Compress<'a> {
     plane: bool,
 }
 
-/// `LANES`: with a bit for each particle that a neighbour is near.
-struct AllBlocks<'a, const LANES: bool> {
+/// `HIDDEN`: where some particles do not see what is near them; those who do get a bit each.
+struct AllBlocks<'a, const HIDDEN: bool> {
     pass: Compress<'a>,
     rows: (&'a mut [Rates], NearWriter<'a>),
 }
 
-impl<const LANES: bool> KernelLoop for AllBlocks<'_, LANES> {
+impl<const HIDDEN: bool> KernelLoop for AllBlocks<'_, HIDDEN> {
     type Output = ();
 
     fn run<K: PairShape>(self, kernel: K) {
         let Self { pass, rows } = self;
         for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Rates], NearWriter<'_>)| {
-            run_blocks_on(pass.plane, SomeBlocks::<K, LANES> { pass, kernel, first, out, near });
+            run_blocks_on(pass.plane, SomeBlocks::<K, HIDDEN> { pass, kernel, first, out, near });
         });
     }
 }
 
-struct SomeBlocks<'a, K, const LANES: bool> {
+struct SomeBlocks<'a, K, const HIDDEN: bool> {
     pass: Compress<'a>,
     kernel: K,
     first: usize,
@@ -88,7 +91,7 @@ struct SomeBlocks<'a, K, const LANES: bool> {
     near: NearWriter<'a>,
 }
 
-impl<K: PairShape, const LANES: bool> BlockLoop for SomeBlocks<'_, K, LANES> {
+impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
     type Output = ();
 
     #[inline(always)]
@@ -103,11 +106,22 @@ impl<K: PairShape, const LANES: bool> BlockLoop for SomeBlocks<'_, K, LANES> {
             let mut least = a.splat(f64::INFINITY);
             let own = Own::new(packed, &lists.table.rows[block]);
             let mut sums = Sums { packed, kernel, own, unit, back, limit, smallest, sum: Lanes8::ZERO };
-            for &j in lists.fluid.row(block) {
-                sums.add::<A, LANES>(a, j, &mut near);
-            }
-            for &j in lists.walls.row(block) {
-                least = a.smaller(sums.add::<A, LANES>(a, j, &mut near), least);
+            let (fluid, walls) = (lists.fluid.row(block), lists.walls.row(block));
+            if HIDDEN {
+                let (seen, seen_walls) = lists.seen(block);
+                for (&j, &seen) in fluid.iter().zip(seen) {
+                    sums.add::<A, HIDDEN>(a, (j, seen), &mut near);
+                }
+                for (&j, &seen) in walls.iter().zip(seen_walls) {
+                    least = a.smaller(sums.add::<A, HIDDEN>(a, (j, seen), &mut near), least);
+                }
+            } else {
+                for &j in fluid {
+                    sums.add::<A, HIDDEN>(a, (j, ALL), &mut near);
+                }
+                for &j in walls {
+                    least = a.smaller(sums.add::<A, HIDDEN>(a, (j, ALL), &mut near), least);
+                }
             }
             near.close();
             *out = Rates { rate: sums.sum, is_close: a.below(least, a.splat(reach)) };
@@ -127,19 +141,28 @@ struct Sums<'a, K> {
 }
 
 impl<K: PairShape> Sums<'_, K> {
-    /// Adds a neighbour; gives the squares of the distances at the end of the step, and writes it down where one is within the support.
+    /// Adds a neighbour with the bits of those who see it; gives the squares of the distances at the end of the step, and writes it down where one is within the support.
     #[inline(always)]
-    fn add<A: EightLanes, const LANES: bool>(&mut self, a: A, j: u32, near: &mut NearRow<'_>) -> Lanes8 {
+    fn add<A: EightLanes, const HIDDEN: bool>(
+        &mut self,
+        a: A,
+        (j, seen): (u32, u8),
+        near: &mut NearRow<'_>,
+    ) -> Lanes8 {
         let other = &self.packed[j as usize];
         let pair = self.own.to(a, other, &self.unit);
         let square = dot(a, &pair.x, &pair.x);
-        near.push_if::<LANES>(j, a.below(square, self.limit));
+        near.push_if::<HIDDEN>(j, a.below(square, self.limit) & usize::from(seen));
         let mut x = pair.x;
         for axis in 0..A::AXES {
             x[axis] = a.times_add(pair.v[axis], self.back, x[axis]);
         }
         let distance = a.sqrt(a.larger(dot(a, &x, &x), self.smallest));
-        let approach = a.times(dot(a, &pair.v, &x), a.same(other.volume));
+        let mut volume = a.same(other.volume);
+        if HIDDEN {
+            volume = a.times(volume, SEEN[usize::from(seen)]);
+        }
+        let approach = a.times(dot(a, &pair.v, &x), volume);
         self.sum = a.times_add(self.kernel.shape(a, distance), approach, self.sum);
         square
     }

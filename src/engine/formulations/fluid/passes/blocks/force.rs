@@ -3,12 +3,12 @@
 use std::cell::RefCell;
 
 use super::land::{FIXED, Landing, stride};
-use super::pairs::{Pairs, Sums};
+use super::pairs::{Pairs, Sums, hide};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, Own, Packed, pack_states};
+use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Packed};
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, Fastest, PhaseTerms, TermRows, TermSums};
-use crate::parallel::{BlockLoop, EightLanes, Lanes8, Split, for_each_block_in_tasks, run_blocks_on};
+use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 use glam::DVec3;
@@ -27,13 +27,6 @@ pub struct BlockForce<'a> {
     pub group: &'a Group,
     pub number: usize,
     pub blocks: &'a mut Blocks,
-}
-
-impl Blocks {
-    /// Packs the states at the end of the step.
-    pub fn pack_states(&mut self, cloud: &FlowCloud) {
-        pack_states(&mut self.packed, &cloud.records);
-    }
 }
 
 impl BlockForce<'_> {
@@ -68,7 +61,7 @@ impl BlockForce<'_> {
         let (mut forces, mut sums) = (std::mem::take(forces), std::mem::take(fastest));
         forces.resize(range.len() * stride, Lanes8::ZERO);
         let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
-        let rows = BlockRows { lanes: &mut forces, stride };
+        let rows = BlockSums { lanes: &mut forces, stride };
         let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums: &mut sums });
         (self.blocks.forces, self.blocks.fastest) = (forces, sums);
         fastest
@@ -79,24 +72,6 @@ impl BlockForce<'_> {
         let first = lists.table.of_fluid(self.number).start;
         let first_row = self.group.cloud.start;
         Landing { table: &lists.table, first_block: first, first_row, forces }.run(written, parts);
-    }
-}
-
-/// What is summed for each block.
-struct BlockRows<'a> {
-    lanes: &'a mut [Lanes8],
-    stride: usize,
-}
-
-impl Split for BlockRows<'_> {
-    fn rows(&self) -> usize {
-        self.lanes.len() / self.stride
-    }
-
-    fn split(self, at: usize) -> (Self, Self) {
-        let stride = self.stride;
-        let (lanes, rest) = self.lanes.split_at_mut(at * stride);
-        (Self { lanes, stride }, Self { lanes: rest, stride })
     }
 }
 
@@ -112,7 +87,7 @@ struct Pass<'a> {
 struct AllBlocks<'a> {
     pass: Pass<'a>,
     first: usize,
-    rows: BlockRows<'a>,
+    rows: BlockSums<'a>,
     sums: &'a mut Vec<Fastest>,
 }
 
@@ -134,7 +109,7 @@ struct SomeBlocks<'a, K> {
     pass: &'a Pass<'a>,
     kernel: K,
     first: usize,
-    rows: BlockRows<'a>,
+    rows: BlockSums<'a>,
     pairs: &'a mut BlockPairs,
 }
 
@@ -143,9 +118,9 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) -> Fastest {
-        let Self { pass, kernel, first, rows: BlockRows { lanes, stride }, pairs } = self;
+        let Self { pass, kernel, first, rows: BlockSums { lanes, stride }, pairs } = self;
         let Pass { cloud, group, blocks, terms, count } = *pass;
-        let Blocks { lists, units, packed, near, .. } = blocks;
+        let Blocks { lists, units, packed, near, hides, .. } = blocks;
         let packed: &[Packed] = packed;
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
         let factor = cloud.viscosities.factor();
@@ -159,6 +134,7 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
             of_terms[..count].fill(TermSums::default());
             let mut sums = Sums::ZERO;
             let mut rest = near.row(first + k);
+            let mut seen = if *hides { near.lanes(first + k) } else { &[] };
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
                 if rest.is_empty() {
@@ -170,6 +146,11 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
                 let terms = terms.filter(|_| other.cloud.start == group.cloud.start);
                 for chunk in row.chunks(CHUNK) {
                     of_block.fill(a, chunk, terms.is_some_and(|terms| terms.reads.kernel), pairs);
+                    if *hides {
+                        let (of_chunk, others) = seen.split_at(chunk.len());
+                        hide(a, of_chunk, pairs);
+                        seen = others;
+                    }
                     if other.fluid().is_some() {
                         of_block.add_fluid(a, pairs, &mut sums);
                     } else {

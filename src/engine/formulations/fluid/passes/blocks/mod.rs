@@ -15,4 +15,3 @@ mod tests;
 
 pub use choose::choose;
 pub use force::BlockForce;
-pub use rows::keep_rows;

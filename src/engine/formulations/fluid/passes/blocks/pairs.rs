@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
 use crate::formulations::fluid::lanes::PairShape;
-use crate::formulations::fluid::lists::blocks::{Other, Own, Packed, Rows, Units, dot};
+use crate::formulations::fluid::lists::blocks::{Other, Own, Packed, Rows, SEEN, Units, dot};
 use crate::pair::{BlockPairs, EightPairs};
 use crate::parallel::{EIGHT, EightLanes, Lanes8};
 
@@ -38,6 +38,15 @@ pub struct Sums {
 impl Sums {
     pub const ZERO: Self =
         Self { pressure: [Lanes8::ZERO; 3], viscous: [Lanes8::ZERO; 3], wall: [Lanes8::ZERO; 3] };
+}
+
+/// Takes the pairs that particles of the block do not see, whose bits are zero, out of what is summed.
+#[inline(always)]
+pub fn hide<A: EightLanes>(a: A, seen: &[u8], pairs: &mut BlockPairs) {
+    for (pair, &seen) in pairs.pairs_mut().iter_mut().zip(seen) {
+        let seen = SEEN[usize::from(seen)];
+        (pair.weight, pair.volume) = (a.times(pair.weight, seen), a.times(pair.volume, seen));
+    }
 }
 
 impl<'a, K: PairShape> Pairs<'a, K> {

@@ -1,19 +1,9 @@
-//! The neighbours of every fluid particle, taken out of those of its block: for the systems that look at one particle at a time.
+//! The neighbours of every fluid particle, taken out of those of its block: for those who look at one particle at a time where not all see what is near them.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lists::NearWriter;
 use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot};
-use crate::plugin::SimBuilder;
-
-/// Asks for rows of neighbours in every step.
-pub struct KeepRows;
-
-/// Says that a system goes through the neighbours of fluid particles ([`FlowCloud::fours`]) in every step: with sums in single precision they are then written down for it. Without this, a system
-/// finds the same neighbours, and others beyond the support, in lists that particles have in common.
-pub fn keep_rows(sim: &mut SimBuilder<'_>) {
-    sim.extend(KeepRows);
-}
 
 impl FlowCloud {
     /// Writes down the neighbours of every particle.

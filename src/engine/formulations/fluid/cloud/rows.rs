@@ -1,0 +1,76 @@
+//! Runs passes over rows: in blocks of particles, or four neighbours of one particle at a time.
+
+use glam::DVec3;
+
+use super::flow_cloud::FlowCloud;
+use super::near::{FourNear, part, take_until};
+use super::row_blocks::RowSums;
+use super::row_pass::RowPass;
+use crate::parallel::{FourLanes, HotLoop, Vector, for_each_block, run_hot_on};
+
+impl FlowCloud {
+    /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums` is memory that is kept from step to step.
+    pub fn for_each_row<const R: usize, const S: usize, P: RowPass<R, S>>(
+        &self,
+        first: usize,
+        out: &mut [P::Output],
+        sums: &mut RowSums,
+        pass: &P,
+    ) {
+        match &self.blocks {
+            Some(blocks) if first < self.fluid => self.run_in_blocks(blocks, first, out, sums, pass),
+            _ => for_each_block(out, &mut Vec::new(), &|start, out: &mut [P::Output]| {
+                run_hot_on(self.plane, Rows { cloud: self, pass, first: first + start, out });
+            }),
+        }
+    }
+}
+
+/// Some particles, whose neighbours are taken four at a time.
+struct Rows<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
+    cloud: &'a FlowCloud,
+    pass: &'a P,
+    first: usize,
+    out: &'a mut [P::Output],
+}
+
+impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for Rows<'_, R, S, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        let Self { cloud, pass, first, out } = self;
+        let among = pass.among();
+        let first_group = cloud.group_at(among.start);
+        for (k, out) in out.iter_mut().enumerate() {
+            let i = first + k;
+            let mut sums = [Vector::zero(a); S];
+            if !pass.skips(i) {
+                // By number: mapped arrays would be called.
+                let (read, mut own, mut other) = (pass.reads(i), [Vector::zero(a); R], [Vector::zero(a); R]);
+                for n in 0..R {
+                    own[n] = Vector::splat(a, read[n]);
+                }
+                let mut rest = part(cloud.near_row(i), &among);
+                let mut group = first_group;
+                while !rest.is_empty() {
+                    for chunk in take_until(&mut rest, cloud.groups[group].cloud.end).chunks(4) {
+                        let FourNear { rows, pairs } = cloud.four(a, i, group, chunk);
+                        let [j, k, l, m] = rows;
+                        let (j, k, l, m) = (pass.reads(j), pass.reads(k), pass.reads(l), pass.reads(m));
+                        for n in 0..R {
+                            other[n] = Vector::from_rows(a, [j[n], k[n], l[n], m[n]]);
+                        }
+                        pass.add(&pairs, &own, &other, &mut sums);
+                    }
+                    group += 1;
+                }
+            }
+            let mut totals = [DVec3::ZERO; S];
+            for n in 0..S {
+                totals[n] = sums[n].sum();
+            }
+            *out = pass.output(i, &totals);
+        }
+    }
+}
