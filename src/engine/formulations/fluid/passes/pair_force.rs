@@ -172,7 +172,7 @@ impl<'a> Row<'a> {
         let Self { cloud, group, kernel, viscosities, factor, is_fluid } = *self;
         let own = &cloud.records[i];
         let lanes = Own::<D>::new(own);
-        let mut rest = if is_fluid { cloud.near.row(i) } else { cloud.near_boundary.row(i - cloud.fluid) };
+        let mut rest = cloud.near_row(i);
         let (groups, mut forces, mut is_in_batch) = (&cloud.groups[..], Forces::<D>::ZERO, false);
         // By number: zipped iterators would be called.
         for n in 0..groups.len() {

@@ -76,6 +76,9 @@ fn the_floor_bears_the_weight_and_each_side_half_of_its_square() {
     let all = first(&scene(r#"on: Select(body: "tank")"#, "FluidForce"));
     let weight = 1000.0 * 9.81 * 0.5;
     assert!((all[1].1 + weight).abs() < 0.02 * weight && all[0].1.abs() < 1e-6 * weight, "{all:?}");
+    // What the fluid does to itself and its walls is nothing in all.
+    let water = first(&scene(r#"on: Select(body: "water")"#, "FluidForce"));
+    assert!((all[1].1 + water[1].1).abs() < 1e-5 * weight, "{all:?} {water:?}");
     let right = r#"on: Select(body: "tank", within: Box(min: (1, -1), max: (2, 2)))"#;
     let push = 0.5 * 1000.0 * 9.81 * 0.25;
     let force = first(&scene(right, "FluidForce"));
