@@ -71,7 +71,8 @@ impl BlockForce<'_> {
         let Blocks { lists, forces, .. } = &*self.blocks;
         let first = lists.table.of_fluid(self.number).start;
         let first_row = self.group.cloud.start;
-        Landing { table: &lists.table, first_block: first, first_row, forces }.run(written, parts);
+        let plane = self.cloud.plane;
+        Landing { table: &lists.table, first_block: first, first_row, forces, plane }.run(written, parts);
     }
 }
 

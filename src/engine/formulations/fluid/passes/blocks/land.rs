@@ -24,9 +24,17 @@ pub struct Landing<'a> {
     pub first_block: usize,
     pub first_row: usize,
     pub forces: &'a [Lanes8],
+    pub plane: bool,
 }
 
 impl Landing<'_> {
+    /// The vector of a lane; in the plane it has no z.
+    #[inline(always)]
+    fn vector(&self, x: &Lanes8, y: &Lanes8, z: &Lanes8, lane: usize) -> DVec3 {
+        let z = if self.plane { 0.0 } else { f64::from(z.0[lane]) };
+        DVec3::new(f64::from(x.0[lane]), f64::from(y.0[lane]), z)
+    }
+
     /// Writes the forces, [`PARTS`] parts of each, and what the terms make.
     pub fn run(&self, written: TermRows<'_>, parts: &mut [DVec3]) {
         let terms = written.terms();
@@ -36,23 +44,22 @@ impl Landing<'_> {
             for k in 0..written.rows() {
                 let (block, lane) = self.table.place(self.first_row + first + k);
                 let sums = &self.forces[(block - self.first_block) * stride..][..stride];
-                let (viscous, wall) = (vector(sums, 3, lane), vector(sums, 6, lane));
-                written.total[k] = Force(viscous - vector(sums, 0, lane) - wall);
+                let Some((fixed, of_terms)) = sums.split_first_chunk::<FIXED>() else {
+                    unreachable!("stride")
+                };
+                let vector = |at: usize| self.vector(&fixed[at], &fixed[at + 1], &fixed[at + 2], lane);
+                let (viscous, wall) = (vector(3), vector(6));
+                written.total[k] = Force(viscous - vector(0) - wall);
                 parts[PARTS * k] = viscous;
                 parts[PARTS * k + 1] = -wall;
-                for term in 0..terms {
-                    written.put_force(k, term, vector(sums, FIXED + 3 * term, lane));
+                let (forces, density) = of_terms.as_chunks::<3>();
+                for (term, [x, y, z]) in forces.iter().enumerate() {
+                    written.put_force(k, term, self.vector(x, y, z, lane));
                 }
-                if terms > 0 {
-                    written.put_density(k, f64::from(sums[stride - 1].0[lane]));
+                if let [density] = density {
+                    written.put_density(k, f64::from(density.0[lane]));
                 }
             }
         });
     }
-}
-
-#[inline(always)]
-fn vector(sums: &[Lanes8], at: usize, lane: usize) -> DVec3 {
-    let of = |axis: usize| f64::from(sums[at + axis].0[lane]);
-    DVec3::new(of(0), of(1), of(2))
 }
