@@ -1,9 +1,12 @@
 //! Tests of bodies that are thinner than the support of the fluid.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::{column, double, simulation};
-use crate::formulations::fluid::FlowCloud;
+use crate::formulations::fluid::{FlowCloud, NearPairs, RowPass, RowSums};
+use crate::parallel::{Arithmetic, Vector};
 use crate::simulation::Simulation;
 use crate::world::{Force, Mass, Position, Velocity};
 
@@ -92,19 +95,88 @@ fn momentum_is_kept_with_water_on_both_sides_of_a_sheet() {
     }
 }
 
-/// A sheet between two bodies of water does the same in both precisions.
+/// A sheet that ends in water: there, particles of both sides, and of none, share a list.
+fn immersed(precision: &str) -> Simulation {
+    simulation(&format!(
+        r#"(precision: {precision}, dimension: Two, materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0),
+                    "rubber": NeoHookean(density: 1100.0, young: 1.0e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: 0.01, formulation: Fluid(pressure: "2000"),
+                     shape: Difference(Box(min: (0, 0), max: (0.3, 0.3)), Box(min: (0.15, 0.1), max: (0.16, 0.4)))),
+                    (name: "sheet", material: "rubber", spacing: 0.005, formulation: TotalLagrangian,
+                     shape: Box(min: (0.15, 0.1), max: (0.16, 0.4))),
+                ],
+                conditions: [InitialVelocity(on: Select(body: "water"), value: ("0.2*sin(20*y)", "0.1*cos(20*x)"))],
+                time: (end: 1.0))"#
+    ))
+}
+
+/// A sheet in water does the same in both precisions.
 #[test]
 fn forces_beside_a_sheet_are_those_of_double_precision() {
     let after = |precision| {
-        let mut sim = tanks(precision, 2, 500.0, "formulation: TotalLagrangian,");
+        let mut sim = immersed(precision);
         sim.run(|sim| sim.clock().step < 40).expect("a run");
         assert!(sim.resources().get::<FlowCloud>().builds() > 1);
-        (0..3).flat_map(|body| column::<Force>(&sim, body)).map(|force| force.0).collect::<Vec<_>>()
+        (0..2).flat_map(|body| column::<Force>(&sim, body)).map(|force| force.0).collect::<Vec<_>>()
     };
     let (double, mixed) = (after("Double"), after("Mixed"));
     let rms = (double.iter().map(|f| f.length_squared()).sum::<f64>() / double.len() as f64).sqrt();
     let worst = double.iter().zip(&mixed).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     assert!(rms > 0.0 && worst < 1e-4 * rms, "{worst:e} of {rms:e}");
+}
+
+/// How the velocity changes around a particle, and where its neighbours are: what plugins sum.
+struct Around<'a>(&'a FlowCloud);
+
+impl RowPass<1, 2> for Around<'_> {
+    type Output = [DVec3; 2];
+
+    fn among(&self) -> Range<usize> {
+        self.0.everything()
+    }
+
+    #[inline(always)]
+    fn reads(&self, row: usize) -> [DVec3; 1] {
+        [self.0.records()[row].velocity()]
+    }
+
+    #[inline(always)]
+    fn add<A: Arithmetic>(
+        &self,
+        near: &NearPairs<A>,
+        [own]: &[Vector<A>; 1],
+        [other]: &[Vector<A>; 1],
+        [change, place]: &mut [Vector<A>; 2],
+    ) {
+        *change = (*other - *own).mul_add(near.volume * near.kernel, *change);
+        *place = near.x_ij.mul_add(near.volume * near.weight, *place);
+    }
+
+    fn output(&self, _: usize, sums: &[DVec3; 2]) -> [DVec3; 2] {
+        *sums
+    }
+}
+
+/// Sums of plugins see as little through a sheet as forces do.
+#[test]
+fn sums_over_rows_beside_a_sheet_are_those_of_double_precision() {
+    let after = |precision| {
+        let mut sim = immersed(precision);
+        sim.run(|sim| sim.clock().step < 40).expect("a run");
+        let cloud = sim.resources().get::<FlowCloud>();
+        let mut rows = vec![[DVec3::ZERO; 2]; cloud.fluid];
+        cloud.for_each_row(0, &mut rows, &mut RowSums::default(), &Around(&cloud));
+        // Both start from one lattice, and are sorted alike.
+        assert!(cloud.builds() > 1);
+        rows
+    };
+    let (double, mixed) = (after("Double"), after("Mixed"));
+    for sum in 0..2 {
+        let largest = double.iter().map(|row| row[sum].length()).fold(0.0, f64::max);
+        let worst = double.iter().zip(&mixed).map(|(a, b)| a[sum].distance(b[sum])).fold(0.0, f64::max);
+        assert!(largest > 0.0 && worst < 1e-4 * largest, "{sum}: {worst:e} of {largest:e}");
+    }
 }
 
 /// A tank of 0.6 m with water to 0.3 m, and a body of rubber in or above it.
