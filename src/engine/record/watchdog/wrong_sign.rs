@@ -11,13 +11,18 @@ use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, Step, warn_anew};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
-const SHARE: f64 = 0.05;
+const SHARE: f64 = 0.01;
+/// The same where walls give it: their pressure is extrapolated, and they push fluid on that starts or arrives, to take as much a little later.
+const SHARE_OF_WALLS: f64 = 0.05;
 /// The same over the work that gravity and loads on fluids could do on all bodies along their own heights: what is at rest has hardly any energy else.
 const SHARE_OF_WEIGHT: f64 = 0.005;
 /// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of a run counts for all.
 const LOOKS: u32 = 5;
 /// Growth of that share for which the warning is written anew.
 const GROWTH: f64 = 1.2;
+
+/// Account of the pressure of walls.
+const WALLS: &str = "wall_pressure";
 
 /// Watches the accounts of what takes energy out of the motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -48,20 +53,22 @@ impl WrongSign {
         if let Some(cloud) = step.resources.try_get::<FlowCloud>() {
             self.weight = self.weight.max(work_of_loads(&cloud));
         }
-        let largest = step.ledger.largest().max(SHARE_OF_WEIGHT / SHARE * self.weight);
+        let largest = step.ledger.largest();
         let can_only_take = |account: &&Account| {
             // What has left the domain may have been below zero height.
             account.kind == AccountKind::Dissipated && account.name != REMOVED_ENERGY
         };
         for account in step.ledger.accounts().iter().filter(can_only_take) {
-            let share = if largest > 0.0 { -account.total() / largest } else { 0.0 };
+            let worth = if account.name == WALLS { SHARE_OF_WALLS } else { SHARE };
+            let scale = largest.max(SHARE_OF_WEIGHT / worth * self.weight);
+            let share = if scale > 0.0 { -account.total() / scale } else { 0.0 };
             let k = self.accounts.iter().position(|given| given.name == account.name).unwrap_or_else(|| {
                 self.accounts.push(Given { name: account.name.clone(), ..Given::default() });
                 self.accounts.len() - 1
             });
             let given = &mut self.accounts[k];
-            given.looks = if share > SHARE { given.looks + 1 } else { 0 };
-            if share <= SHARE.max(GROWTH * given.told) || (given.looks < LOOKS && !at_end) {
+            given.looks = if share > worth { given.looks + 1 } else { 0 };
+            if share <= worth.max(GROWTH * given.told) || (given.looks < LOOKS && !at_end) {
                 continue;
             }
             given.told = share;
@@ -108,7 +115,7 @@ fn work_of_loads(cloud: &FlowCloud) -> f64 {
 }
 
 fn advice(account: &str, remedies: &Remedies, step: &Step<'_>) -> String {
-    if account == "wall_pressure" {
+    if account == WALLS {
         return remedies.of_walls(step);
     }
     "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
