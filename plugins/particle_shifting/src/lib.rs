@@ -8,7 +8,7 @@ mod local;
 mod response;
 
 use meshless_engine::formulations::fluid::{
-    DensityShift, FLOW_RECORDS, FlowCloud, Repayment, RowSums, SHIFTING_ENERGY, displace,
+    DensityShift, FLOW_RECORDS, FlowCloud, Interior, Repayment, RowSums, SHIFTING_ENERGY, displace,
 };
 use meshless_engine::glam::DVec3;
 use meshless_engine::materials::ParameterError;
@@ -18,7 +18,7 @@ use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity}
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use displacement::{Displacements, Shift, mark_surfaces};
+use displacement::{Displacements, Shift};
 use local::{Local, Locals};
 use response::{Response, Responses};
 
@@ -107,7 +107,7 @@ struct Shifting {
 #[derive(Default)]
 struct Fields {
     locals: Vec<Local>,
-    near_surface: Vec<bool>,
+    interior: Interior,
     shifts: Vec<Shift>,
     moves: Vec<DVec3>,
     pending: Vec<f64>,
@@ -118,7 +118,6 @@ struct Fields {
 impl Fields {
     fn resize(&mut self, fluid: usize) {
         self.locals.resize(fluid, Local::default());
-        self.near_surface.resize(fluid, false);
         self.shifts.resize(fluid, Shift::default());
         self.moves.resize(fluid, DVec3::ZERO);
         self.pending.resize(fluid, 0.0);
@@ -133,18 +132,18 @@ impl Run for Shifting {
         let cloud: &FlowCloud = &cloud;
         let bodies = resources.of(self.bodies);
         self.fields.resize(cloud.fluid);
-        let Fields { locals, near_surface, shifts, moves, pending, responses, sums } = &mut self.fields;
+        let Fields { locals, interior, shifts, moves, pending, responses, sums } = &mut self.fields;
         let dt = step.clock.dt;
         let spacing = bodies.iter().map(|(id, _)| step.world.body(*id).spacing).fold(0.0, f64::max);
         cloud.for_each_row(0, locals, sums, &Locals::new(cloud, spacing));
-        mark_surfaces(cloud, locals, near_surface);
+        interior.find(cloud, |i| locals[i].lambda);
         for &(id, strength) in bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
             let displacements = Displacements::new(cloud, strength, sound_speed, dt);
             let old = view.read::<PendingDilation>()?;
             for row in rows {
-                shifts[row] = displacements.of(&locals[row], near_surface[row]);
+                shifts[row] = displacements.of(&locals[row], interior.has(row));
                 (moves[row], pending[row]) = (shifts[row].displacement, old[row].0);
             }
         }

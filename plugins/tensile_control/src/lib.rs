@@ -2,19 +2,20 @@
 //!
 //! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is less
 //! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
-//! no better than particles are evenly spread. Energy that it has given is paid back by friction between neighbours.
+//! no better than particles are evenly spread, and all of it is scaled down where it would give more energy than it has taken.
 
-use std::ops::Range;
+mod local;
 
-use meshless_engine::correction::{add_moment, moment_of};
-use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, NearPairs, Repayment, RowPass, RowSums};
+use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, Interior, RowSums};
 use meshless_engine::glam::DVec3;
-use meshless_engine::parallel::{Arithmetic, Vector, sum_over_blocks};
+use meshless_engine::parallel::sum_over_blocks;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
-use meshless_engine::world::{BodySet, Force, Mass, Pressure, Removed, Velocity};
+use meshless_engine::schedule::{AccountId, AccountKind, Mode, Run, Shared, Stage, Step, StepError, System};
+use meshless_engine::world::{BodyId, Force, Pressure, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
+
+use local::{Local, Locals};
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -26,6 +27,9 @@ pub fn register(registry: &mut Registry) {
 #[serde(deny_unknown_fields, default)]
 pub struct TensileControl {}
 
+/// The bodies that are controlled.
+type Controlled = Vec<BodyId>;
+
 impl Plugin for TensileControl {
     const NAME: &'static str = "tensile_control";
     const REFERENCE: &'static str = "tensile control: P. N. Sun, A. Colagrossi, S. Marrone, M. Antuono, A. M. Zhang, Comput. Phys. Commun. 224 (2018) 63-80";
@@ -35,125 +39,100 @@ impl Plugin for TensileControl {
         if bodies.is_empty() {
             return Ok(());
         }
-        let control = Control { bodies: bodies.clone(), changes: Vec::new(), sums: RowSums::default() };
+        // What is inside is found for all fluids at once: one system serves all bodies, however many have the plugin.
+        if let Some(controlled) = sim.take_extensions::<Shared<Controlled>>().pop() {
+            sim.shared_mut(controlled).extend(bodies.iter());
+            sim.extend(controlled);
+            return Ok(());
+        }
+        let controlled = sim.share(bodies.iter().collect::<Controlled>());
+        sim.extend(controlled);
+        let phases = sim.phases_of(&bodies);
+        let control = Control::new(controlled);
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, control)
-                .on_bodies(bodies.clone())
+                .on_phases(phases)
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .reads::<Pressure>()
                 .reads::<Velocity>()
                 .adds::<Force>(),
         );
-        let repayment = Repaying { bodies: bodies.clone(), repayment: Repayment::default() };
-        sim.add_system(
-            System::new(Stage::PostStep, "tensile_control_repayment", repayment)
-                .on_bodies(bodies)
-                .after_any("local_damping")
-                .after_any("xsph")
-                .after_any("particle_shifting")
-                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
-                .reads::<Mass>()
-                .reads::<Removed>()
-                .writes::<Velocity>(),
-        );
         Ok(())
     }
 }
 
-/// Trace of the moment matrix over that inside a fluid, below which a particle is at a free surface.
-const INSIDE: f64 = 0.85;
-
 struct Control {
-    bodies: BodySet,
+    bodies: Shared<Controlled>,
+    locals: Vec<Local>,
+    interior: Interior,
     changes: Vec<DVec3>,
     sums: RowSums,
 }
 
+impl Control {
+    fn new(bodies: Shared<Controlled>) -> Self {
+        Self {
+            bodies,
+            locals: Vec::new(),
+            interior: Interior::default(),
+            changes: Vec::new(),
+            sums: RowSums::default(),
+        }
+    }
+
+    /// Adds the force to a body, and books its work.
+    fn add_force(
+        &mut self,
+        step: &mut Step<'_>,
+        cloud: &FlowCloud,
+        (id, account): (BodyId, AccountId),
+    ) -> Result<(), StepError> {
+        let (view, rows) = step.world.body_view(id);
+        let (pressure, velocity) = (view.read::<Pressure>()?, view.read::<Velocity>()?);
+        let mut force = view.write::<Force>()?;
+        self.changes.clear();
+        self.changes.extend(rows.clone().map(|i| {
+            let tension = if self.interior.has(i) { pressure[i].0.min(0.0) } else { 0.0 };
+            self.locals[i].first_moment * (2.0 * tension * cloud.volume(i))
+        }));
+        let both = (&velocity[rows.clone()], &self.changes[..]);
+        let given = step.clock.dt
+            * sum_over_blocks(both, &|_, (velocity, changes): (&[Velocity], &[DVec3])| {
+                velocity.iter().zip(changes).map(|(v, change)| v.0.dot(*change)).sum::<f64>()
+            });
+        let share = affordable(given, step.ledger.of(account, id));
+        for (force, change) in force[rows].iter_mut().zip(&self.changes) {
+            force.0 += share * *change;
+        }
+        step.ledger.add(account, id, -share * given);
+        Ok(())
+    }
+}
+
+/// Share of a force that would give so much energy, J, at most what it has taken before.
+fn affordable(given: f64, taken: f64) -> f64 {
+    if given > taken.max(0.0) { taken.max(0.0) / given } else { 1.0 }
+}
+
 impl Run for Control {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let cloud = step.resources.get::<FlowCloud>();
-        let account = step.ledger.account(TensileControl::NAME, AccountKind::Dissipated);
-        for id in self.bodies.iter() {
-            let (view, rows) = step.world.body_view(id);
-            let (pressure, velocity) = (view.read::<Pressure>()?, view.read::<Velocity>()?);
-            let mut force = view.write::<Force>()?;
-            self.changes.resize(rows.len(), DVec3::ZERO);
-            let pass = Changes { cloud: &cloud, pressure: &pressure };
-            cloud.for_each_row(rows.start, &mut self.changes, &mut self.sums, &pass);
-            let slices = (&mut force[rows.clone()], &velocity[rows], &self.changes[..]);
-            type Rows<'a> = (&'a mut [Force], &'a [Velocity], &'a [DVec3]);
-            let power = sum_over_blocks(slices, &|_, (force, velocity, changes): Rows<'_>| {
-                let mut power = 0.0;
-                for ((force, v), change) in force.iter_mut().zip(velocity).zip(changes) {
-                    force.0 += change;
-                    power += change.dot(v.0);
-                }
-                power
-            });
-            step.ledger.add(account, id, -power * step.clock.dt);
-        }
-        Ok(())
-    }
-}
-
-/// Pays back what the control has given.
-struct Repaying {
-    bodies: BodySet,
-    repayment: Repayment,
-}
-
-impl Run for Repaying {
-    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
-        let cloud = resources.get::<FlowCloud>();
-        for id in self.bodies.iter() {
-            self.repayment.pay(step, &cloud, id, TensileControl::NAME)?;
+        let (cloud, bodies) = (resources.get::<FlowCloud>(), resources.of(self.bodies));
+        let account = step.ledger.account(TensileControl::NAME, AccountKind::Dissipated);
+        let mut tension = false;
+        for &id in bodies.iter() {
+            let (view, rows) = step.world.body_view(id);
+            tension |= view.read::<Pressure>()?[rows].iter().any(|pressure| pressure.0 < 0.0);
+        }
+        if !tension {
+            return Ok(());
+        }
+        self.locals.resize(cloud.fluid, Local::default());
+        cloud.for_each_row(0, &mut self.locals, &mut self.sums, &Locals(&cloud));
+        self.interior.find(&cloud, |i| self.locals[i].lambda);
+        for &id in bodies.iter() {
+            self.add_force(step, &cloud, (id, account))?;
         }
         Ok(())
-    }
-}
-
-/// What is added to the forces.
-struct Changes<'a> {
-    cloud: &'a FlowCloud,
-    pressure: &'a [Pressure],
-}
-
-impl RowPass<0, 4> for Changes<'_> {
-    type Output = DVec3;
-
-    fn among(&self) -> Range<usize> {
-        self.cloud.everything()
-    }
-
-    fn reads(&self, _: usize) -> [DVec3; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn skips(&self, i: usize) -> bool {
-        self.pressure[i].0 >= 0.0
-    }
-
-    #[inline(always)]
-    fn add<A: Arithmetic>(
-        &self,
-        near: &NearPairs<A>,
-        _: &[Vector<A>; 0],
-        _: &[Vector<A>; 0],
-        [xx, yy, zz, sum]: &mut [Vector<A>; 4],
-    ) {
-        let weight = near.volume * near.weight;
-        *sum = near.x_ij.mul_add(weight, *sum);
-        add_moment([xx, yy, zz], weight, near.x_ij);
-    }
-
-    #[inline(always)]
-    fn output(&self, i: usize, &[xx, yy, zz, sum]: &[DVec3; 4]) -> DVec3 {
-        let plane = self.cloud.plane();
-        let axes = if plane { 2.0 } else { 3.0 };
-        let is_inside = moment_of([xx, yy, zz], plane).matrix().trace() > INSIDE * axes;
-        let factor = 2.0 * self.pressure[i].0 * self.cloud.volume(i);
-        if is_inside && !self.skips(i) { sum * factor } else { DVec3::ZERO }
     }
 }

@@ -105,6 +105,11 @@ impl Ledger {
         self.accounts[account.0].per_body.iter().sum()
     }
 
+    /// The energy of an account that one body has, J.
+    pub fn of(&self, account: AccountId, body: BodyId) -> f64 {
+        self.accounts[account.0].of(body)
+    }
+
     /// The energy of the account of that name, all bodies together, J; zero if there is none.
     pub fn total_named(&self, name: &str) -> f64 {
         self.accounts.iter().filter(|a| a.name == name).flat_map(|a| &a.per_body).sum()

@@ -66,5 +66,5 @@ pub(crate) use fields::fields;
 pub use formulation::Fluid;
 pub use lanes::{FluidKernel, Record};
 pub use setup::estimate_sound_speeds;
-pub use stabilizers::{Repayment, displace};
+pub use stabilizers::{Interior, Repayment, displace};
 pub use walls::{Slip, Wall};

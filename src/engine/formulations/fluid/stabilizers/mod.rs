@@ -1,8 +1,11 @@
-//! What plugins that stabilize a flow do to it: they move particles, and pay energy back.
+//! What plugins that stabilize a flow do to it: they act away from free surfaces, move particles, and pay energy back.
 
 mod displace;
+
+mod interior;
 
 mod repay;
 
 pub use displace::displace;
+pub use interior::Interior;
 pub use repay::Repayment;
