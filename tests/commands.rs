@@ -69,6 +69,62 @@ fn a_check_reviews_bodies_by_what_they_are() {
     assert!(!notes.contains("hourglass_control") && !notes.contains("plastic flow"), "{notes}");
 }
 
+/// What `check` says of water in a tank, with another fluid beside it where `other` has the text of one.
+fn notes_on_water(axes: &str, water: &str, other: &str, set: &str) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (dimension, gravity, [low, high, top, outer]) = match axes {
+        "two" => ("Two", "(0, -9.81)", ["(-0.1, -0.1)", "(0.3, 0.3)", "(0.2, 1)", "(0, 0)"]),
+        _ => (
+            "Three",
+            "(0, -9.81, 0)",
+            ["(-0.1, -0.1, -0.1)", "(0.3, 0.3, 0.3)", "(0.2, 1, 0.2)", "(0, 0, 0)"],
+        ),
+    };
+    let text = format!(
+        r#"(dimension: {dimension}, gravity: {gravity}, materials: {{"water": Fluid(density: 1000.0), "oil": Fluid(density: 800.0)}},
+            bodies: [
+                (name: "water", material: "water", shape: {water}, spacing: 0.025, formulation: Fluid(), plugins: [density_diffusion()]),
+                (name: "tank", material: "wall", spacing: 0.025, formulation: Wall(slip: Free),
+                 shape: Difference(Box(min: {low}, max: {high}), Box(min: {outer}, max: {top}))), {other}
+            ],
+            time: (end: 1.0))"#
+    );
+    std::fs::write(folder.path().join("tank.ron"), text).expect("a scene");
+    let output = meshless(folder.path(), &["check", "tank.ron", "--set", set]);
+    assert!(output.status.success(), "{}", err(&output));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn a_check_proposes_a_wider_support_where_a_flow_needs_one() {
+    let still = "is at rest: in three dimensions its particles rearrange";
+    let cube = "Box(min: (0, 0, 0), max: (0.2, 0.2, 0.2))";
+    let nothing = "time.end=1.0";
+    assert!(notes_on_water("three", cube, "", nothing).contains(still));
+    assert!(
+        !notes_on_water("three", cube, "", "bodies.water.formulation=Fluid(support: 3.0)").contains(still)
+    );
+    assert!(!notes_on_water("three", cube, "", "materials.water.viscosity=10.0").contains(still));
+    let irregular = "bodies.water.lattice=Relaxed(seed: 1, iterations: 30)";
+    assert!(!notes_on_water("three", cube, "", irregular).contains(still));
+    // A column that falls is not at rest.
+    let column = "Box(min: (0, 0, 0), max: (0.1, 0.2, 0.2))";
+    assert!(!notes_on_water("three", column, "", nothing).contains(still));
+
+    let two = "waves on their interface";
+    let square = "Box(min: (0, 0), max: (0.2, 0.2))";
+    let oil = |support: &str| {
+        format!(
+            r#"(name: "oil", material: "oil", shape: Box(min: (0, 0.2), max: (0.2, 0.25)), spacing: 0.025,
+                formulation: Fluid({support}), plugins: [density_diffusion()])"#
+        )
+    };
+    assert!(notes_on_water("two", square, &oil(""), nothing).contains(two));
+    let wide = "bodies.water.formulation=Fluid(support: 3.3)";
+    assert!(!notes_on_water("two", square, &oil("support: 3.3"), wide).contains(two));
+    assert!(!notes_on_water("two", square, "", nothing).contains(two));
+}
+
 #[cfg(unix)]
 #[test]
 fn the_exit_code_tells_the_signal_and_the_run_can_go_on() {

@@ -18,6 +18,7 @@ use super::text::{Table, bytes, complain, say};
 
 mod body;
 mod review;
+mod support;
 mod trial;
 
 use body::BodyReport;
@@ -64,7 +65,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
     let trial = Trial::run(&mut sim).inspect_err(|_| warn(&sim))?;
-    let notes = review::notes(&bodies, &sim, &trial);
+    let notes = review::notes(&scene, &bodies, &sim, &trial);
     if arguments.json {
         say(&json(&scene, &sim, &bodies, &trial, &notes)?);
         return Ok(());

@@ -2,9 +2,11 @@
 
 use meshless_engine::notation::{count, number};
 use meshless_engine::plugin::BodyKind;
+use meshless_engine::scene::Scene;
 use meshless_engine::simulation::Simulation;
 
 use super::body::BodyReport;
+use super::support;
 use super::trial::Trial;
 
 /// Particles across a solid below which its bending is too stiff.
@@ -13,8 +15,9 @@ const ACROSS: f64 = 4.0;
 const MANY_SUB_STEPS: u32 = 50;
 
 /// Notes on the scene; they do not keep it from running.
-pub fn notes(bodies: &[BodyReport], sim: &Simulation, trial: &Trial) -> Vec<String> {
+pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &Trial) -> Vec<String> {
     let mut notes: Vec<String> = bodies.iter().flat_map(of_body).collect();
+    notes.extend(support::notes(scene, sim));
     if let Some((sub_steps, _)) = sim.sub_steps().filter(|(sub_steps, _)| *sub_steps > 1) {
         let limit = sim.short_limit().map(|limit| format!(", limited by {}", limit.by)).unwrap_or_default();
         let costly = match sub_steps >= MANY_SUB_STEPS {
