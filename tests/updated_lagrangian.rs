@@ -4,10 +4,11 @@ mod common;
 
 use common::touching::touching;
 use common::{all_plugins, failing, failing_metals, removal, simulation, with_formulation};
+use meshless::formulations::updated_lagrangian::UpdatedReference;
 use meshless::glam::DVec3;
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, DeformationGradient, Mass, Position, Velocity};
+use meshless::world::{BodyId, DeformationGradient, Mass, Position, ReferencePosition, Velocity};
 
 /// Updates often, so that short runs have many of them.
 const OFTEN: &str = "UpdatedLagrangian(update: Adaptive(change: 0.01))";
@@ -80,6 +81,36 @@ fn bits_do_not_depend_on_threads_or_on_a_restart() {
         second.run(|sim| sim.clock().step < steps).expect("a run");
         assert_eq!(one, second.state_hash(), "{}: restart", source.name);
     }
+}
+
+#[test]
+fn a_body_that_loses_particles_updates_no_other_one() {
+    let body = |name: &str, at: f64| {
+        format!(
+            r#"(name: "{name}", material: "soft", shape: Box(min: (0, {at:?}), max: (1.0, {:?})), spacing: 0.04,
+                formulation: UpdatedLagrangian(update: Never), plugins: [hourglass_control()])"#,
+            at + 0.4
+        )
+    };
+    let text = format!(
+        r#"(dimension: Two, domain: (min: (-1, -1), max: (1.05, 1), outside: Remove),
+            materials: {{"soft": NeoHookean(density: 1, young: 1, poisson: 0.3)}}, bodies: [{}, {}],
+            conditions: [InitialVelocity(on: Select(body: "a"), value: ("0.5", "0")),
+                         InitialVelocity(on: Select(body: "b"), value: ("0.05*x", "0"))], time: (end: 10.0))"#,
+        body("a", 0.0),
+        body("b", -0.8)
+    );
+    let sim = after(&Source::new("two.ron", text), 40);
+    let world = sim.world();
+    let moved = |body: usize| {
+        let body = world.body(BodyId(body));
+        let view = world.phase(body.phase);
+        let original = view.read::<ReferencePosition>().expect("places of the start");
+        let reference = view.read::<UpdatedReference>().expect("the reference");
+        body.rows.clone().any(|row| reference[row].0 != original[row].0)
+    };
+    assert!(moved(0), "particles of `a` have left");
+    assert!(!moved(1), "`b` has lost nothing");
 }
 
 /// A beam that is thrown, spins and swings: 24 x 6 particles of rubber, irregular.

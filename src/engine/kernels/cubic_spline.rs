@@ -32,6 +32,8 @@ impl KernelProfile for CubicSpline {
 
     #[inline]
     fn weight(q: f64) -> f64 {
-        if q < 1.0 { 12.0 - 9.0 * q } else { 3.0 * below(2.0, q) * (2.0 / q - 1.0) }
+        // Both at once, without a branch; where q is zero the second one has no meaning.
+        let (near, far) = (12.0 - 9.0 * q, 3.0 * below(2.0, q) * (2.0 / q - 1.0));
+        if q < 1.0 { near } else { far }
     }
 }

@@ -4,6 +4,7 @@ mod dyad;
 mod eigen;
 mod near_identity;
 mod polar;
+mod root;
 mod stretch;
 mod sym3;
 #[cfg(test)]
@@ -12,5 +13,5 @@ mod tests;
 pub use dyad::dyad;
 pub use eigen::Eigen;
 pub use polar::polar;
-pub use stretch::smallest_and_largest_stretch;
+pub use stretch::{extreme_eigenvalues, smallest_and_largest_stretch};
 pub use sym3::Sym3;

@@ -77,6 +77,11 @@ impl NeighborList {
         self.indices.iter_mut().for_each(|j| *j += by);
     }
 
+    /// Gives every neighbour another number.
+    pub(crate) fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+        self.indices.iter_mut().for_each(|j| *j = number(*j));
+    }
+
     /// The same pairs from the other side: row k of `other` has the rows of this list, ascending, that hold the k-th of `rows`.
     pub fn turn(&self, rows: Range<usize>, other: &mut Self) {
         let Self { offsets, indices } = other;

@@ -10,10 +10,12 @@
 
 mod axis;
 mod buckets;
+mod cells;
 mod cloud;
 mod error;
 mod grid;
 mod list;
+mod parting;
 mod periodic;
 mod rows;
 mod search;
@@ -22,10 +24,12 @@ mod tests;
 mod verlet;
 
 pub(crate) use buckets::Buckets;
+pub(crate) use cells::sort_into_cells;
 pub(crate) use cloud::bounds;
 pub use cloud::{Cloud, Support};
 pub use error::NeighborError;
 pub use list::NeighborList;
+pub(crate) use parting::{Parted, Parting};
 pub use periodic::Periodic;
 pub(crate) use periodic::SHIFT;
 pub use search::NeighborSearch;

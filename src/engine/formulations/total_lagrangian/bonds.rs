@@ -18,6 +18,9 @@ use crate::symmetry::Ghosts;
 /// Blocks of rows whose bonds are made before they are put together: enough for all threads, and little memory.
 const BLOCKS_AT_ONCE: usize = 256;
 
+/// Rows whose stable steps one task finds.
+const ROWS_OF_TASK: usize = 1024;
+
 /// Why the bonds of a body cannot be made.
 #[derive(Debug, Error)]
 pub enum BondError {
@@ -57,7 +60,7 @@ pub struct Bonds {
 }
 
 /// The reference configuration of one body.
-pub(in crate::formulations) struct BodyBonds<'a> {
+pub(super) struct BodyBonds<'a> {
     /// Rows of the body in the phase.
     pub rows: Range<usize>,
     /// Reference positions of the whole phase, m.
@@ -66,8 +69,6 @@ pub(in crate::formulations) struct BodyBonds<'a> {
     pub volume: &'a [f64],
     /// Support radii of the whole phase, m.
     pub support: &'a [f64],
-    /// Supports that are ellipsoids in place of spheres.
-    pub ellipsoids: Option<Ellipsoids<'a>>,
     /// Kernel.
     pub kernel: Kernel,
     /// Ghosts of the bodies.
@@ -96,14 +97,13 @@ impl BodyBonds<'_> {
             search.within(cloud, 0.0, &Periodic::NONE, &mut list)
         };
         let (position, support) = (&self.position[self.rows.clone()], &self.support[self.rows.clone()]);
-        let farthest = |row: usize| self.support[row] * self.ellipsoids.map_or(1.0, |own| own.0[row].longest);
-        if self.ghost_rows.is_empty() && self.ellipsoids.is_none() {
+        if self.ghost_rows.is_empty() {
             find(position, support)?;
         } else {
             let places = self.ghost_rows.clone().map(|row| self.ghosts.place(self.position, row));
             let sources = self.ghost_rows.clone().map(|row| self.ghosts.source(row));
             let position: Vec<DVec3> = position.iter().copied().chain(places).collect();
-            let support: Vec<f64> = self.rows.clone().chain(sources).map(farthest).collect();
+            let support: Vec<f64> = self.rows.clone().chain(sources).map(|row| self.support[row]).collect();
             find(&position, &support)?;
         }
         Ok(list)
@@ -118,18 +118,11 @@ impl BodyBonds<'_> {
         self.hidden.binary_search(&own).is_err()
     }
 
-    /// Weight of the bond from row `i` to row `j`, of those that lie in the sphere around it; none where it is outside of the ellipsoid.
-    fn weight(&self, i: usize, j: usize) -> Option<f32> {
-        let r_ij = self.ghosts.pair(self.position, i, j);
+    /// Weight of the bond from row `i` to row `j`.
+    fn weight(&self, i: usize, j: usize) -> f32 {
+        let distance = self.ghosts.pair(self.position, i, j).length();
         let support = 0.5 * (self.support[i] + self.support[self.ghosts.source(j)]);
-        let (distance, density) = self.ellipsoids.map_or((r_ij.length(), 1.0), |own| {
-            (own.distance(self.ghosts, i, j, r_ij), own.density(self.ghosts, i, j))
-        });
-        if self.ellipsoids.is_some() && distance >= support {
-            return None;
-        }
-        let h = support * self.kernel.smoothing_length(1.0);
-        Some((density * self.kernel.pair_weight(distance, h)) as f32)
+        self.kernel.pair_weight(distance, support * self.kernel.smoothing_length(1.0)) as f32
     }
 
     /// Neighbours and weights of some rows, by their numbers in the body.
@@ -138,10 +131,8 @@ impl BodyBonds<'_> {
         for k in rows {
             if is_seen[k] {
                 for j in list.row(k).iter().filter(|&&j| is_seen[j as usize]).map(|&j| self.row(j)) {
-                    if let Some(weight) = self.weight(self.rows.start + k, j as usize) {
-                        bonds.neighbors.push(j);
-                        bonds.weights.push(weight);
-                    }
+                    bonds.neighbors.push(j);
+                    bonds.weights.push(self.weight(self.rows.start + k, j as usize));
                 }
             }
             bonds.ends.push(bonds.neighbors.len());
@@ -162,7 +153,7 @@ impl BodyBonds<'_> {
 
 impl Bonds {
     /// Appends the bonds of the next body; bodies must come in the order of their rows.
-    pub(in crate::formulations) fn append(
+    pub(super) fn append(
         &mut self,
         body: &BodyBonds<'_>,
         search: &mut NeighborSearch,
@@ -197,28 +188,25 @@ impl Bonds {
         self.weights.extend_from_slice(&next.weights);
     }
 
-    /// Sets the weights of the bonds of some rows, on all threads.
-    pub(in crate::formulations) fn set_weights(
-        &mut self,
-        rows: Range<usize>,
-        weight: impl Fn(usize, usize) -> f32 + Sync,
-    ) {
-        let Self { offsets, neighbors, weights, .. } = self;
-        weights.resize(neighbors.len(), 0.0);
-        let mut rest = &mut weights[offsets[rows.start] as usize..];
-        let mut parts = Vec::with_capacity(rows.len());
-        for i in rows {
-            let (part, tail) = rest.split_at_mut((offsets[i + 1] - offsets[i]) as usize);
-            parts.push((i, part));
-            rest = tail;
-        }
-        let (offsets, neighbors) = (&*offsets, &*neighbors);
-        parts.par_iter_mut().for_each(|(i, weights)| {
-            let bonds = offsets[*i] as usize..offsets[*i + 1] as usize;
-            for (own, &j) in weights.iter_mut().zip(&neighbors[bonds]) {
-                *own = weight(*i, j as usize);
-            }
-        });
+    /// Lets go of all bonds; memory is kept.
+    pub(in crate::formulations) fn clear(&mut self) {
+        let Self { offsets, neighbors, weights, inverse_moment, reach, weight_sum, free, carried: _ } = self;
+        offsets.clear();
+        neighbors.clear();
+        weights.clear();
+        inverse_moment.clear();
+        reach.clear();
+        weight_sum.clear();
+        free.clear();
+    }
+
+    /// Lists which of some rows, the next ones, are free; returns how many.
+    pub(in crate::formulations) fn list_free(&mut self, rows: &Range<usize>) -> usize {
+        let before = self.free.len();
+        let inverse = &self.inverse_moment;
+        let is_free = |row: &usize| inverse[*row] == Sym3::ZERO;
+        self.free.extend(rows.clone().filter(is_free).map(|row| u32::try_from(row).unwrap_or(u32::MAX)));
+        self.free.len() - before
     }
 
     /// Makes the moment matrices of the given rows; a neighbour without volume has no part in them, and a row without
@@ -277,7 +265,8 @@ impl Bonds {
             let mean_inverse = trace(i, &self.inverse_moment[i]) / axes as f64;
             estimate.stable_step_with(sum, mean_inverse, 0.5 * support[i] * sum)
         };
-        rows.map(particle).filter(|dt| dt.is_finite()).fold(f64::INFINITY, f64::min)
+        let steps = rows.into_par_iter().with_min_len(ROWS_OF_TASK).map(particle).filter(|dt| dt.is_finite());
+        steps.reduce(|| f64::INFINITY, f64::min)
     }
 
     /// Neighbours and weights of a row; neighbours beyond the last particle are ghosts (see [`Ghosts`]).
@@ -292,10 +281,16 @@ impl Bonds {
         self.free.push(u32::try_from(row).unwrap_or(u32::MAX));
     }
 
-    /// Takes the neighbours of other bonds; the weights have to be given, and the rows to be corrected.
+    /// Takes the neighbours of other bonds, with room for weights and moments, which have to be given.
     pub(in crate::formulations) fn take_topology(&mut self, other: &Self) {
         self.offsets.clone_from(&other.offsets);
         self.neighbors.clone_from(&other.neighbors);
+        self.weights.resize(other.weights.len(), 0.0);
+        let rows = other.inverse_moment.len();
+        self.inverse_moment.resize(rows, Sym3::ZERO);
+        self.reach.resize(rows, DVec3::ZERO);
+        self.weight_sum.resize(rows, 0.0);
+        self.free.clear();
     }
 
     /// Number of directed bonds.

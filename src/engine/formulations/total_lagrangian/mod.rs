@@ -28,7 +28,6 @@ mod state_tests;
 mod support;
 mod system;
 
-pub(super) use bonds::BodyBonds;
 pub use bonds::{BondError, Bonds};
 pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;

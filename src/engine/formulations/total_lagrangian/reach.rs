@@ -6,59 +6,75 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::linalg::{Eigen, Sym3};
+use crate::linalg::{Eigen, Sym3, extreme_eigenvalues};
 use crate::symmetry::Ghosts;
 
 /// Longest half axis of an ellipsoid, and shortest one's inverse.
 const LONGEST: f64 = 20.0;
-/// Share of the deformation that an ellipsoid follows: half way, in the logarithm of the stretches, between a sphere and what a sphere becomes.
-const FOLLOWED: f64 = 0.5;
-/// Share of a stretch that it follows in any case: a support of 2.4 spacings then reaches over 1.6 of those that the stretch makes of them.
+/// Share of a stretch that it follows in any case, beyond its root: a support of 2.4 spacings then reaches over 1.6 of those that the stretch makes of them.
 const LEAST: f64 = 2.0 / 3.0;
+/// Trace of F F^T up to which no stretch is so large that more than its root counts.
+const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
+/// Determinant of F F^T down to which, with such a trace, no stretch is below 1/20, far above the limit.
+const FLAT: f64 = 0.02;
 
 /// The ellipsoid r . G r = 1 of a particle.
 #[derive(Clone, Copy)]
 pub(in crate::formulations) struct Ellipsoid {
-    tensor: Sym3,
-    /// G^(-1/2), which makes it of the unit sphere.
-    axes: Sym3,
-    /// Longest and shortest half axis.
+    /// G.
+    pub tensor: Sym3,
+    /// G^-1.
+    inverse: Sym3,
+    /// Longest and shortest half axis, to 1e-7.
     pub longest: f64,
     pub shortest: f64,
     /// (det G)^(1/2), one over its volume.
-    density: f64,
+    pub density: f64,
 }
 
 impl Ellipsoid {
-    /// G of the ellipsoid that follows a deformation F.
+    /// The unit sphere.
+    pub const SPHERE: Self =
+        Self { tensor: Sym3::IDENTITY, inverse: Sym3::IDENTITY, longest: 1.0, shortest: 1.0, density: 1.0 };
+
+    /// G of the ellipsoid that follows a deformation F half way, in the logarithm of the stretches, between a sphere and what a sphere becomes: the inverse of the left
+    /// stretch tensor, as long as no stretch is large.
     pub fn following(f: &DMat3) -> Sym3 {
-        let axis = |stretch: f64| stretch.powf(FOLLOWED).max(LEAST * stretch);
-        let squares = Eigen::new(&Sym3::gram(f.transpose()));
-        squares.map(|square| axis(square.sqrt()).clamp(LONGEST.recip(), LONGEST).powi(-2))
+        let squares = Sym3::gram(f.transpose());
+        if squares.trace() <= WIDE && squares.determinant() >= FLAT {
+            return squares.inverse_root();
+        }
+        let axis = |stretch: f64| stretch.sqrt().max(LEAST * stretch);
+        Eigen::new(&squares).map(|square| axis(square.sqrt()).clamp(LONGEST.recip(), LONGEST).powi(-2))
     }
 
     /// The ellipsoid of G.
     pub fn new(tensor: Sym3) -> Self {
-        let own = Eigen::new(&tensor);
-        let axis = |value: f64| value.sqrt().recip();
+        let inverse = tensor.inverse();
         Self {
             tensor,
-            axes: own.map(axis),
-            longest: axis(own.values.x),
-            shortest: axis(own.values.z),
-            density: (own.values.x * own.values.y * own.values.z).sqrt(),
+            inverse,
+            longest: extreme_eigenvalues(&inverse).1.sqrt(),
+            shortest: extreme_eigenvalues(&tensor).1.sqrt().recip(),
+            density: tensor.determinant().sqrt(),
         }
     }
 
     /// The matrix A of a quadratic form, seen in the coordinates in which the ellipsoid is the unit sphere.
     pub fn rounded(&self, a: &Sym3) -> Sym3 {
-        let axes = self.axes.to_matrix();
+        let axes = Eigen::new(&self.tensor).map(|value| value.sqrt().recip()).to_matrix();
         Sym3::symmetric_part(axes * a.to_matrix() * axes)
+    }
+
+    /// Trace of [`Ellipsoid::rounded`].
+    #[inline]
+    pub fn rounded_trace(&self, a: &Sym3) -> f64 {
+        self.inverse.double_dot(a)
     }
 
     /// Trace of an inverse moment matrix as waves along the shortest axis feel it.
     pub fn trace(&self, inverse: &Sym3) -> f64 {
-        self.rounded(inverse).trace() / (self.shortest * self.shortest)
+        self.rounded_trace(inverse) / (self.shortest * self.shortest)
     }
 }
 
@@ -73,12 +89,6 @@ impl Ellipsoids<'_> {
         let seen = ghosts.mirror(j).map_or(r_ij, |signs| signs * r_ij);
         let theirs = square(&self.0[ghosts.source(j)].tensor, seen);
         (0.5 * (square(&self.0[i].tensor, r_ij) + theirs)).sqrt()
-    }
-
-    /// Factor of the kernel of a pair.
-    #[inline]
-    pub fn density(&self, ghosts: &Ghosts, i: usize, j: usize) -> f64 {
-        0.5 * (self.0[i].density + self.0[ghosts.source(j)].density)
     }
 }
 
@@ -101,12 +111,21 @@ mod tests {
         assert!((own.longest - 6.0).abs() < 1e-12 && (own.shortest - 0.5).abs() < 1e-12);
         assert!((own.density * 1.2 * 0.5 * 6.0 - 1.0).abs() < 1e-12);
         assert!((own.rounded(&own.tensor) - Sym3::IDENTITY).norm() < 1e-12);
+        let other = Sym3 { xx: 0.3, yy: 2.0, zz: 1.1, xy: 0.2, xz: -0.4, yz: 0.1 };
+        let trace = own.rounded(&other).trace();
+        assert!((own.rounded_trace(&other) - trace).abs() < 1e-12 * trace);
         let (ghosts, both) = (Ghosts::new(2), [own; 2]);
         for (axis, length) in [(DVec3::X, 1.2), (DVec3::Y, 0.5), (DVec3::Z, 6.0)] {
             let found = Ellipsoids(&both).distance(&ghosts, 0, 1, turn * axis * length);
             assert!((found - 1.0).abs() < 1e-12, "{found} along {axis}");
         }
         let round = [Ellipsoid::new(Ellipsoid::following(&turn)); 2];
+        // On both sides of the strains from which on the stretches are looked at one by one.
+        for stretch in [1.99_f64, 2.01] {
+            let f = turn * DMat3::from_diagonal(DVec3::new(stretch, 0.5, 0.9));
+            let longest = Ellipsoid::new(Ellipsoid::following(&f)).longest;
+            assert!((longest - stretch.sqrt()).abs() < 1e-12, "{longest}");
+        }
         let r = DVec3::new(0.3, -1.0, 2.0);
         assert!((Ellipsoids(&round).distance(&ghosts, 0, 1, r) - r.length()).abs() < 1e-12);
     }

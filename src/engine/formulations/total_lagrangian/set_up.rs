@@ -126,7 +126,6 @@ impl SetUp {
                 position: reference.position,
                 volume: reference.volume,
                 support: reference.support,
-                ellipsoids: None,
                 kernel: body.kernel(dimension).kernel,
                 ghosts: &ghosts,
                 ghost_rows,

@@ -20,11 +20,11 @@
 use glam::{DMat3, DVec3};
 
 use super::phase::UpdatedRows;
-use super::reference::bounds;
 use crate::formulations::total_lagrangian::{
-    BodyKernel, Bonds, Ellipsoids, Frame, Gather, HessianBlock, Site, fill_ghosts,
+    BodyKernel, Bonds, Frame, Gather, HessianBlock, Site, fill_ghosts,
 };
 use crate::linalg::Sym3;
+use crate::neighbors::bounds;
 use crate::parallel::{BLOCK, run_hot_in};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
 use crate::symmetry::Ghosts;
@@ -73,8 +73,8 @@ impl Control {
 
 impl UpdatedRows {
     /// Decides which bodies need sums of their own, and makes their bonds. What has `failed` does not hold; the rows are ascending.
-    pub fn weigh_control(&mut self, world: &World, original: &[DVec3], support: &[f64], failed: &[u32]) {
-        let Self { bonds, ghosts, gradient, kernels, control, volume, ellipsoids, follows, .. } = self;
+    pub fn weigh_control(&mut self, world: &World, original: &[DVec3], failed: &[u32]) {
+        let Self { bonds, ghosts, gradient, kernels, control, volume, lists, follows, .. } = self;
         control.is_apart.clear();
         for (k, BodyKernel { body, .. }) in kernels.iter().enumerate() {
             let rows = world.body(*body).rows.clone();
@@ -93,21 +93,10 @@ impl UpdatedRows {
         control.volume.clone_from(volume);
         failed.iter().for_each(|&row| control.volume[row as usize] = 0.0);
         control.bonds.take_topology(bonds);
-        let ellipsoids = Ellipsoids(ellipsoids);
+        lists.begin_control((original, &control.volume), gradient, ghosts);
         let apart = kernels.iter().zip(&control.is_apart).filter(|(_, is_apart)| **is_apart);
         for (BodyKernel { body, kernel, .. }, _) in apart {
-            let rows = world.body(*body).rows.clone();
-            let ratio = kernel.smoothing_length(1.0);
-            control.bonds.set_weights(rows.clone(), |i, j| {
-                let source = ghosts.source(j);
-                let signs = ghosts.mirror(j).unwrap_or(DVec3::ONE);
-                let x_ij = ghosts.pair(original, i, j);
-                let mean = 0.5 * (gradient[i] * x_ij + signs * (gradient[source] * (signs * x_ij)));
-                let h = 0.5 * (support[i] + support[source]) * ratio;
-                let distance = ellipsoids.distance(ghosts, i, j, mean);
-                (ellipsoids.density(ghosts, i, j) * kernel.pair_weight(distance, h)) as f32
-            });
-            control.bonds.correct(rows, kernel.dimension(), original, &control.volume, ghosts);
+            lists.weigh_control(&world.body(*body).rows, kernel, &mut control.bonds);
         }
         let (real, all) = (volume.len(), volume.len() + ghosts.len());
         control.sites.resize(all, Site::default());

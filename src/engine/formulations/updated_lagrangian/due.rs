@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::parameters::{USUAL_CHANGE, Update};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{Ellipsoid, Ellipsoids, Site};
-use crate::parallel::{Largest, sum_over_blocks};
+use crate::formulations::total_lagrangian::{BondedRows, Bonds, Ellipsoid, Ellipsoids, Site};
+use crate::linalg::smallest_and_largest_stretch;
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
 
 /// Steps between two looks at the lengths of pairs: they change slowly against the stable step.
@@ -52,41 +53,100 @@ impl Rule {
         if !self.is_elastic {
             return false;
         }
-        let UpdatedRows { sites, bonds, ghosts, .. } = packed;
-        let (limit, first_row) = (LOST * 2.0 * self.h, rows.start);
-        let place = |row: usize| sites[row].reference.xyz() + sites[row].displacement.xyz();
-        let farthest = |distance: &(dyn Fn(usize, usize, DVec3) -> f64 + Sync)| {
-            let farthest: Largest = sum_over_blocks(&sites[rows.clone()], &|first, own: &[Site]| {
-                let distances = (0..own.len()).flat_map(|k| {
-                    let i = first_row + first + k;
-                    let beside = bonds.row(i).filter(move |(j, _)| {
-                        let x_ij = ghosts.pair(original, i, *j);
-                        sites[*j].is_present() && x_ij.length_squared() < (BESIDE * self.spacing).powi(2)
-                    });
-                    beside.map(move |(j, _)| distance(i, j, place(j) - place(i)))
-                });
-                Largest::of(distances)
-            });
-            farthest.0
-        };
-        // An ellipsoid is nowhere thinner than the root of the smallest stretch, which is more than one over the norm of F^-1.
-        let thin: Vec<f64> = deformation.iter().map(|f| norm(&f.0.inverse()).max(1.0)).collect();
-        let bound = |i: usize, j: usize, r_ij: DVec3| {
-            (0.5 * (thin[i] + thin[ghosts.source(j)]) * r_ij.length_squared()).sqrt()
-        };
-        if farthest(&bound) < limit {
+        let limit = LOST * 2.0 * self.h;
+        // An ellipsoid is nowhere thinner than the root of the smallest stretch, which is found to 1e-7.
+        let farthest = farthest_beside(rows.clone(), packed, BESIDE * self.spacing);
+        if farthest * farthest < limit * limit * (1.0 - 1e-5) * smallest_stretch(&deformation[rows.clone()]) {
             return false;
         }
+        let UpdatedRows { sites, bonds, ghosts, .. } = packed;
+        let first_row = rows.start;
+        let place = |row: usize| sites[row].reference.xyz() + sites[row].displacement.xyz();
         let following: Vec<Ellipsoid> =
             deformation.iter().map(|f| Ellipsoid::new(Ellipsoid::following(&f.0))).collect();
         let ellipsoids = Ellipsoids(&following);
-        farthest(&|i, j, r_ij| ellipsoids.distance(ghosts, i, j, r_ij)) > limit
+        let farthest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+            let distances = (0..own.len()).flat_map(|k| {
+                let i = first_row + first + k;
+                let beside = bonds.row(i).filter(move |(j, _)| {
+                    let x_ij = ghosts.pair(original, i, *j);
+                    sites[*j].is_present() && x_ij.length_squared() < (BESIDE * self.spacing).powi(2)
+                });
+                beside.map(move |(j, _)| ellipsoids.distance(ghosts, i, j, place(j) - place(i)))
+            });
+            Largest::of(distances)
+        });
+        farthest.0 > limit
     }
 }
 
-/// The root of the sum of the squares of the components.
-fn norm(a: &DMat3) -> f64 {
-    (a.x_axis.length_squared() + a.y_axis.length_squared() + a.z_axis.length_squared()).sqrt()
+/// The smallest stretch of some particles, at most one.
+fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
+    let most: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
+        Largest::of(rows.iter().map(|f| 1.0 / smallest_and_largest_stretch(f.0).0))
+    });
+    1.0 / most.0.max(1.0)
+}
+
+/// The largest distance of two particles that were closer than that at the start, m, and are beside each other in the lists.
+fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64 {
+    let (sites, bonds, start) = (packed.pair_sites(), packed.bonds(), rows.start);
+    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+        let first = start + first;
+        Largest(run_hot(Beside { sites, bonds, rows: first..first + own.len(), square: beside * beside }))
+    });
+    largest.0.sqrt()
+}
+
+/// Finds the square of the largest present distance of the bonds of some rows that were short at the start, m2.
+struct Beside<'a> {
+    /// Original places, and displacements since the start.
+    sites: &'a [Site],
+    bonds: &'a Bonds,
+    rows: Range<usize>,
+    /// Square of the length up to which a bond was short, m2.
+    square: f64,
+}
+
+impl HotLoop for Beside<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) -> f64 {
+        let Self { sites, bonds, rows, square } = self;
+        let limit = Lanes4::splat(square);
+        let mut largest = Lanes4::ZERO;
+        for i in rows {
+            let own = &sites[i];
+            let (x_i, u_i) =
+                (Vector::splat(a, own.reference.xyz()), Vector::splat(a, own.displacement.xyz()));
+            let row = &bonds.neighbors[bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize];
+            for n in (0..row.len()).step_by(4) {
+                // Where there are no more, the last one again.
+                let last = row.len() - 1;
+                let of = [
+                    &sites[row[n] as usize],
+                    &sites[row[(n + 1).min(last)] as usize],
+                    &sites[row[(n + 2).min(last)] as usize],
+                    &sites[row[(n + 3).min(last)] as usize],
+                ];
+                let [x, y, z, volume] =
+                    a.transpose([of[0].reference, of[1].reference, of[2].reference, of[3].reference]);
+                let then = Vector::new(a, [x, y, z]) - x_i;
+                let [x, y, z, _] = a.transpose([
+                    of[0].displacement,
+                    of[1].displacement,
+                    of[2].displacement,
+                    of[3].displacement,
+                ]);
+                let now = then + (Vector::new(a, [x, y, z]) - u_i);
+                let short = a.where_below(then.length_squared().lanes(), limit, now.length_squared().lanes());
+                let present = a.where_below(Lanes4::ZERO, volume, short);
+                largest = a.larger(present, largest);
+            }
+        }
+        largest.0[0].max(largest.0[1]).max(largest.0[2]).max(largest.0[3])
+    }
 }
 
 /// Whether a pair has changed its length by more than `most` since the last update, m.

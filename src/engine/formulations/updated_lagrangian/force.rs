@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::control::Control;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::InternalForce as StressForce;
+use crate::parallel::for_each_block;
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -23,9 +24,24 @@ impl Run for InternalForce {
         let rows = step.resources.solid_rows::<UpdatedRows>(self.phase);
         let mass = view.read::<Mass>()?;
         let mut force = view.write::<Force>()?;
-        write(&rows, &mass, self.gravity, self.plane, &mut force);
+        if rows.has_force {
+            add_gravity(&rows, &mass, self.gravity, &mut force);
+        } else {
+            write(&rows, &mass, self.gravity, self.plane, &mut force);
+        }
         Ok(())
     }
+}
+
+/// Writes the force that an update has left, N, with gravity.
+fn add_gravity(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
+    let UpdatedRows { force: known, sites, .. } = rows;
+    for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
+        for (force, row) in force.iter_mut().zip(first..) {
+            let weight = if sites[row].is_present() { gravity * mass[row].0 } else { DVec3::ZERO };
+            *force = Force(known[row].0 + weight);
+        }
+    });
 }
 
 /// Writes the force of the last first pass, N.

@@ -118,8 +118,8 @@ fn number_of(warning: &str, begin: &str) -> usize {
 
 /// Whether the moment matrix that has this inverse has an eigenvalue below a limit, as seen in the ellipsoid of the particle.
 fn is_below(limit: f64, inverse: &Sym3, ellipsoid: &Ellipsoid) -> bool {
-    let round = ellipsoid.rounded(inverse);
     // The largest eigenvalue of a positive matrix is at most its trace.
     let most = 1.0 / limit;
-    round.trace() > most && Eigen::new(&round).values.max_element() > most
+    ellipsoid.rounded_trace(inverse) > most
+        && Eigen::new(&ellipsoid.rounded(inverse)).values.max_element() > most
 }

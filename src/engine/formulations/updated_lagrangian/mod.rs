@@ -13,16 +13,20 @@
 //! (`gradient`, `force`), and so are neighbour lists and pair terms: between updates the body is a total-Lagrangian one. Hourglass control measures from the
 //! original pair vectors (`control`), so that an update does not erase the residual that it resists.
 
+mod candidates;
 mod columns;
 mod control;
 mod due;
 mod force;
 mod gradient;
+mod lists;
 mod lost_neighbors;
 mod pack;
 mod parameters;
 mod phase;
 mod reference;
+mod row_loops;
+mod seen;
 mod set_up;
 mod smoothed_reference;
 mod system;

@@ -3,14 +3,14 @@
 use glam::{DMat3, DVec3};
 
 use super::control::Control;
+use super::lists::Lists;
 use crate::formulations::total_lagrangian::{
     BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site, fill_ghosts, frame_of,
 };
 use crate::linalg::dyad;
-use crate::neighbors::NeighborSearch;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghosts, Repeat};
-use crate::world::{Mobility, Velocity};
+use crate::world::{Force, Mobility, Velocity};
 
 /// What the systems of the formulation share.
 pub(super) struct UpdatedRows {
@@ -51,7 +51,11 @@ pub(super) struct UpdatedRows {
     /// Of every body: how many particles carry no stress for want of neighbours, from the start on.
     pub released_at_start: Vec<usize>,
     /// Kept for the next update.
-    pub search: NeighborSearch,
+    pub lists: Lists,
+    /// Internal forces after an update, N: those of the step where no couple is added to the stresses.
+    pub force: Vec<Force>,
+    /// Whether they are those of the present stresses.
+    pub has_force: bool,
 }
 
 impl UpdatedRows {
@@ -126,6 +130,7 @@ impl SolidPhase for UpdatedRows {
     }
 
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]) {
+        self.has_force = false;
         for (&node, couple) in nodes.iter().zip(couples).filter(|(_, couple)| **couple != DMat3::ZERO) {
             let row = first + node as usize;
             let site = &self.sites[row].reference;

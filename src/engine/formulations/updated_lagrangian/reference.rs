@@ -4,10 +4,11 @@ use glam::DVec3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::is_original;
+use super::lists::{ListedBody, Reference};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{
-    BodyBonds, BodyKernel, BondError, Bonds, Ellipsoid, Ellipsoids, Site,
-};
+use crate::formulations::total_lagrangian::{BodyKernel, BondError, Ellipsoid, Ellipsoids, Site};
+use crate::neighbors::bounds;
+use crate::parallel::for_each_block;
 use crate::schedule::StepError;
 use crate::solids::{CorrectedStress, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
@@ -47,8 +48,11 @@ impl UpdatedRows {
         let support = view.read::<SupportRadius>().map_err(internal)?;
         let metric = view.read::<UpdatedMetric>().map_err(internal)?;
         let start = view.read::<ReferenceVolume>().map_err(internal)?;
-        self.ellipsoids.clear();
-        self.ellipsoids.extend(metric.iter().map(|metric| Ellipsoid::new(metric.0)));
+        let metric = &metric[..];
+        self.ellipsoids.resize(metric.len(), Ellipsoid::SPHERE);
+        for_each_block(&mut self.ellipsoids[..], &mut Vec::new(), &|first, own: &mut [Ellipsoid]| {
+            own.iter_mut().zip(&metric[first..]).for_each(|(own, metric)| *own = Ellipsoid::new(metric.0));
+        });
         self.volume.clear();
         self.volume.extend(volume.iter().map(|volume| volume.0));
         removed.iter().for_each(|&row| self.volume[row as usize] = 0.0);
@@ -65,28 +69,24 @@ impl UpdatedRows {
     fn renew_bonds(&mut self, world: &World, position: &[DVec3], support: &[f64]) -> Result<(), RenewError> {
         let (low, high) = bounds(position);
         self.origin = 0.5 * (low + high);
-        self.bonds = Bonds { carried: std::mem::take(&mut self.bonds.carried), ..Bonds::default() };
         self.ghosts = Ghosts::new(position.len());
-        for (kernel, repeats) in self.kernels.iter().zip(&self.repeats) {
+        let mut bodies = Vec::with_capacity(self.kernels.len());
+        for (k, (kernel, repeats)) in self.kernels.iter().zip(&self.repeats).enumerate() {
             let rows = world.body(kernel.body).rows.clone();
             let (low, high) = bounds(&position[rows.clone()]);
             let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
             let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
             let (repeats, reach) = follow(repeats, low, high, widest);
             let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
-            let body = BodyBonds {
-                rows,
-                position,
-                volume: &self.volume,
-                support,
-                ellipsoids: Some(Ellipsoids(&self.ellipsoids)),
-                kernel: kernel.kernel,
-                ghosts: &self.ghosts,
-                ghost_rows,
-                hidden: self.held.hidden_of(kernel.body),
-            };
-            let made = self.bonds.append(&body, &mut self.search);
-            made.map_err(|error| RenewError { body: kernel.body, error })?;
+            let hidden = self.held.hidden_of(kernel.body);
+            bodies.push(ListedBody { body: k, rows, ghost_rows, kernel: kernel.kernel, hidden });
+        }
+        let Self { lists, bonds, volume, ellipsoids, ghosts, kernels, .. } = self;
+        let reference = Reference { places: position, volumes: volume, support, ellipsoids, ghosts };
+        lists.begin(&reference, bodies.iter().map(|body| body.rows.clone()));
+        bonds.clear();
+        for (own, BodyKernel { body, .. }) in bodies.iter().zip(kernels) {
+            lists.append(&reference, own, bonds).map_err(|error| RenewError { body: *body, error })?;
         }
         Ok(())
     }
@@ -138,19 +138,12 @@ impl UpdatedRows {
                 (world.body(*body).rows.clone(), (&self.volume[..], bytemuck::cast_slice(&start)));
             self.follows.push(!is_original(rows, (reference, original), &self.gradient, volumes));
         }
-        let support = view.read::<SupportRadius>()?;
-        self.weigh_control(world, original, bytemuck::cast_slice(&support), failed);
+        self.weigh_control(world, original, failed);
         if self.has_followed() {
             self.pair_sites.resize(self.sites.len(), Site::default());
         }
         Ok(())
     }
-}
-
-/// The corners of the box around some points.
-pub(super) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
-    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    points.iter().fold(start, |(low, high), &x| (low.min(x), high.max(x)))
 }
 
 /// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their sources: a body that fills a period goes along

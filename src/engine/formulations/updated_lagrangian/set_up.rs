@@ -4,11 +4,11 @@ use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::Control;
+use super::lists::Lists;
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
 use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows};
 use crate::linalg::Sym3;
-use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError};
 use crate::removal::Leaving;
 use crate::solids::StepEstimate;
@@ -88,7 +88,9 @@ impl SetUp {
             stable_step: Vec::with_capacity(bodies.len()),
             follows: Vec::with_capacity(bodies.len()),
             released_at_start: Vec::new(),
-            search: NeighborSearch::default(),
+            lists: Lists::default(),
+            force: Vec::new(),
+            has_force: false,
             repeats: bodies.into_iter().map(|body| body.repeats).collect(),
         }
     }

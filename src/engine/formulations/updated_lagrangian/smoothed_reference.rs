@@ -9,7 +9,7 @@
 //!
 //! `x_r,i <- x_r,i + theta sum_j V_j w_ij [r_ij - (F_i + F_j) X_ij / 2] / sum_j V_j w_ij`,
 //!
-//! a few times. The bracket vanishes for affine motions and is of third order for smooth ones; for zero-energy motions it is the part that the gradient does not see. It is measured from
+//! a few times. The sum is taken once, with the places of the particles; then only what the relaxation has moved is summed, x_r,j - x_j. The bracket vanishes for affine motions and is of third order for smooth ones; for zero-energy motions it is the part that the gradient does not see. It is measured from
 //! the original configuration and not from the last update, so that the remainder of one update is removed by the next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F, so that an
 //! update does not change F.
 
@@ -19,8 +19,8 @@ use glam::{DMat3, DVec3};
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::fit_gradients;
-use crate::parallel::for_each_block;
+use crate::formulations::total_lagrangian::{Bonds, fit_gradients};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
 /// theta: it takes nine tenths of a saw-tooth along one axis of a square lattice at once, and all of a checkerboard.
@@ -30,16 +30,15 @@ const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
 
-/// f - I of all rows of the phase, ghosts too, at the places that the sites hold.
-pub(super) fn increments(packed: &UpdatedRows, plane: bool) -> Vec<DMat3> {
-    let UpdatedRows { bonds, ghosts, sites, volume, .. } = packed;
-    let mut gradient = vec![DMat3::ZERO; sites.len()];
-    fit_gradients(bonds, sites, plane, 0, &mut gradient[..volume.len()]);
-    ghosts.fill(&mut gradient, |ghost, h| ghost.map.tensor(*h));
-    gradient
+/// Writes f - I of all real rows of the phase at the places that the sites hold.
+pub(super) fn increments(packed: &UpdatedRows, plane: bool, gradient: &mut Vec<DMat3>) {
+    let UpdatedRows { bonds, sites, volume, .. } = packed;
+    gradient.resize(volume.len(), DMat3::ZERO);
+    fit_gradients(bonds, sites, plane, 0, gradient);
 }
 
 /// What the reference places of a body are smoothed by.
+#[derive(Clone, Copy)]
 pub(super) struct Smoothing<'a> {
     pub packed: &'a UpdatedRows,
     /// Original positions, m.
@@ -48,45 +47,211 @@ pub(super) struct Smoothing<'a> {
     pub damage: Option<&'a [Damage]>,
     /// Smoothing length, m.
     pub h: f64,
+    /// Plane strain.
+    pub plane: bool,
 }
 
-/// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
-pub(super) fn smooth(by: &Smoothing<'_>, rows: Range<usize>, places: &mut [UpdatedReference]) {
-    let Smoothing { packed, original, deformation, damage, h } = *by;
-    let UpdatedRows { bonds, ghosts, volume, .. } = packed;
-    let holds = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
-    let held: Vec<f64> =
-        volume.iter().enumerate().map(|(row, v)| if holds(row) { *v } else { 0.0 }).collect();
-    let start: Vec<DVec3> = places.iter().map(|place| place.0).collect();
-    let mut now = start.clone();
-    for _ in 0..TIMES {
-        let own = &mut places[rows.clone()];
-        for_each_block(own, &mut Vec::new(), &|first, own: &mut [UpdatedReference]| {
-            for (k, place) in own.iter_mut().enumerate() {
-                let i = rows.start + first + k;
-                if held[i] == 0.0 {
-                    continue;
-                }
-                let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-                for (j, weight) in bonds.row(i) {
-                    let (source, x_ij) = (ghosts.source(j), ghosts.pair(original, i, j));
-                    let theirs = match ghosts.mirror(j) {
-                        Some(signs) => signs * (deformation[source].0 * (signs * x_ij)),
-                        None => deformation[source].0 * x_ij,
-                    };
-                    let expected = deformation[i].0 * x_ij + theirs;
-                    let weight = f64::from(weight) * held[source];
-                    sum += (ghosts.pair(&now, i, j) - 0.5 * expected) * weight;
-                    total += weight;
-                }
-                if total > 0.0 {
-                    let moved = now[i] + sum * (SHARE / total) - start[i];
-                    place.0 = start[i] + moved.clamp_length_max(FARTHEST * h);
-                }
+/// Memory of the relaxation, of real rows and ghosts.
+#[derive(Default)]
+pub(super) struct Relaxation {
+    held: Vec<Expected>,
+    pulls: Vec<Pull>,
+    /// What a place has moved from its particle, m, with the volume of what holds.
+    moved: Vec<Lanes4>,
+    next: Vec<Lanes4>,
+}
+
+/// What neighbours see of a particle: the pair vectors that it expects.
+#[derive(Clone, Copy, Default)]
+#[repr(C, align(64))]
+struct Expected {
+    /// Columns of -F / 2, with the components of X in the last lanes.
+    columns: [Lanes4; 3],
+    /// x - F X / 2, with the volume V of what holds, zero of all else.
+    place: Lanes4,
+}
+
+impl Expected {
+    /// That of a place, m, whose original one was X, m.
+    fn new(place: DVec3, original: DVec3, deformation: &DMat3, volume: f64) -> Self {
+        let half = *deformation * -0.5;
+        let column = |column: DVec3, x: f64| Lanes4::new(column, x);
+        Self {
+            columns: [
+                column(half.x_axis, original.x),
+                column(half.y_axis, original.y),
+                column(half.z_axis, original.z),
+            ],
+            place: Lanes4::new(place + half * original, volume),
+        }
+    }
+}
+
+/// What moves a place.
+#[derive(Clone, Copy, Default)]
+struct Pull {
+    /// `sum_j V_j w_ij [x_ij - (F_i + F_j) X_ij / 2]`, with `sum_j V_j w_ij` in the last lane.
+    sum: Lanes4,
+    /// theta over `sum_j V_j w_ij`; zero where nothing moves.
+    factor: f64,
+}
+
+impl Relaxation {
+    /// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
+    pub fn smooth(&mut self, by: &Smoothing<'_>, rows: Range<usize>, places: &mut [UpdatedReference]) {
+        self.expect(by, &rows, places);
+        let Self { held, pulls, moved, next } = self;
+        let (bonds, ghosts, start) = (&by.packed.bonds, &by.packed.ghosts, rows.start);
+        for_each_block(&mut pulls[rows.clone()], &mut Vec::new(), &|first, pulls: &mut [Pull]| {
+            run_hot_in(by.plane, Pulls { bonds, held, first: start + first, pulls });
+        });
+        let farthest = FARTHEST * by.h;
+        for time in 0..TIMES {
+            for_each_block(&mut next[rows.clone()], &mut Vec::new(), &|first, next: &mut [Lanes4]| {
+                let first = start + first;
+                run_hot_in(
+                    by.plane,
+                    Moves { bonds, pulls, moved, first, farthest, next, is_first: time == 0 },
+                );
+            });
+            ghosts.fill(next, |ghost, own| Lanes4::new(ghost.map.vector(own.xyz()), own.0[3]));
+            std::mem::swap(moved, next);
+        }
+        let moved = &*moved;
+        for_each_block(&mut places[rows], &mut Vec::new(), &|first, places: &mut [UpdatedReference]| {
+            places.iter_mut().zip(&moved[start + first..]).for_each(|(place, moved)| place.0 += moved.xyz());
+        });
+    }
+
+    /// Fills what neighbours see of the rows of a body and its ghosts, from places near the middle of the body.
+    fn expect(&mut self, by: &Smoothing<'_>, rows: &Range<usize>, places: &[UpdatedReference]) {
+        let Smoothing { packed, original, deformation, damage, .. } = *by;
+        let UpdatedRows { ghosts, volume, sites, .. } = packed;
+        let middle = rows.start + rows.len() / 2;
+        let (x_0, original_0, start) = (places[middle].0, original[middle], rows.start);
+        let held_volume = |row: usize| {
+            let holds = damage.is_none_or(|damage| damage[row].0 < 1.0);
+            if holds { volume[row] } else { 0.0 }
+        };
+        let Self { held, pulls, moved, next } = self;
+        held.resize(sites.len(), Expected::default());
+        pulls.resize(volume.len(), Pull::default());
+        moved.resize(sites.len(), Lanes4::ZERO);
+        next.resize(sites.len(), Lanes4::ZERO);
+        let own = (&mut held[rows.clone()], &mut next[rows.clone()]);
+        type Rows<'a> = (&'a mut [Expected], &'a mut [Lanes4]);
+        for_each_block(own, &mut Vec::new(), &|first, (held, next): Rows<'_>| {
+            for (k, (held, next)) in held.iter_mut().zip(next).enumerate() {
+                let row = start + first + k;
+                let (x, then, v) = (places[row].0 - x_0, original[row] - original_0, held_volume(row));
+                *held = Expected::new(x, then, &deformation[row].0, v);
+                *next = Lanes4::new(DVec3::ZERO, v);
             }
         });
-        for row in rows.clone() {
-            now[row] = places[row].0;
+        moved[rows.clone()].copy_from_slice(&next[rows.clone()]);
+        ghosts.fill(held, |ghost, _| {
+            let (row, map) = (ghost.source, ghost.map);
+            if !rows.contains(&row) {
+                return Expected::default();
+            }
+            let (x, then) = (map.place(places[row].0) - x_0, map.place(original[row]) - original_0);
+            Expected::new(x, then, &map.tensor(deformation[row].0), held_volume(row))
+        });
+    }
+}
+
+/// Sums what moves the places of a block.
+struct Pulls<'a> {
+    bonds: &'a Bonds,
+    held: &'a [Expected],
+    /// First row of the block in the phase.
+    first: usize,
+    pulls: &'a mut [Pull],
+}
+
+impl PlaneOrSolid for Pulls<'_> {
+    #[inline(always)]
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        let Self { bonds, held, first, pulls } = self;
+        for (k, pull) in pulls.iter_mut().enumerate() {
+            let i = first + k;
+            let own = &held[i];
+            *pull = Pull::default();
+            if own.place.0[3] == 0.0 {
+                continue;
+            }
+            let (mut columns, mut place, mut total) = ([Lanes4::ZERO; D], Lanes4::ZERO, 0.0);
+            for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                let other = &held[bonds.neighbors[bond] as usize];
+                let weight = f64::from(bonds.weights[bond]) * other.place.0[3];
+                for axis in 0..D {
+                    columns[axis] = a.scale_add(weight, other.columns[axis], columns[axis]);
+                }
+                place = a.scale_add(weight, other.place, place);
+                total += weight;
+            }
+            if total > 0.0 {
+                let sum = own.pull(a, &columns, place, total);
+                *pull = Pull { sum: Lanes4::new(sum, total), factor: SHARE / total };
+            }
+        }
+    }
+}
+
+impl Expected {
+    /// The sum over the bonds of a particle, from sums over its neighbours.
+    #[inline(always)]
+    fn pull<A: FourLanes, const D: usize>(
+        &self,
+        a: A,
+        columns: &[Lanes4; D],
+        place: Lanes4,
+        total: f64,
+    ) -> DVec3 {
+        // -F_i / 2 acts on X_j - X_i, of which `place` has X_i already.
+        let mut sum = a.scale_add(-total, self.place, place);
+        for axis in 0..D {
+            let then = self.columns[axis].0[3];
+            sum = a.scale_add(-then, columns[axis], sum);
+            sum = a.scale_add(columns[axis].0[3], self.columns[axis], sum);
+        }
+        sum.xyz()
+    }
+}
+
+/// Moves the places of a block once.
+struct Moves<'a> {
+    bonds: &'a Bonds,
+    pulls: &'a [Pull],
+    moved: &'a [Lanes4],
+    /// First row of the block in the phase.
+    first: usize,
+    farthest: f64,
+    next: &'a mut [Lanes4],
+    /// Whether nothing has moved yet.
+    is_first: bool,
+}
+
+impl PlaneOrSolid for Moves<'_> {
+    #[inline(always)]
+    fn run<A: FourLanes, const D: usize>(self, a: A) {
+        let Self { bonds, pulls, moved, first, farthest, next, is_first } = self;
+        for (k, next) in next.iter_mut().enumerate() {
+            let i = first + k;
+            let (own, Pull { sum, factor }) = (moved[i], pulls[i]);
+            let mut pull = sum;
+            if !is_first && factor > 0.0 {
+                pull = a.scale_add(-sum.0[3], own, pull);
+                for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
+                    let other = moved[bonds.neighbors[bond] as usize];
+                    pull = a.scale_add(f64::from(bonds.weights[bond]) * other.0[3], other, pull);
+                }
+            }
+            let to = a.scale_add(factor, pull, own);
+            let square = to.0[0] * to.0[0] + to.0[1] * to.0[1] + to.0[2] * to.0[2];
+            let share = if square > farthest * farthest { farthest / square.sqrt() } else { 1.0 };
+            let to = a.scale(share, to);
+            *next = Lanes4([to.0[0], to.0[1], to.0[2], own.0[3]]);
         }
     }
 }

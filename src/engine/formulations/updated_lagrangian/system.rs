@@ -1,5 +1,7 @@
 //! The system of the first pass, and of updates of the reference.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
@@ -9,7 +11,7 @@ use super::force;
 use super::gradient::{GradientPass, GradientRows};
 use super::lost_neighbors::widen;
 use super::phase::UpdatedRows;
-use super::smoothed_reference::{Smoothing, increments, smooth};
+use super::smoothed_reference::{Relaxation, Smoothing, increments};
 use crate::formulations::total_lagrangian::{BondedSites, Ellipsoid, Frame, FrameIndifferent, Site};
 use crate::notation::quantity;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -42,6 +44,17 @@ pub(super) struct UpdatedSolids {
     failed: Vec<u32>,
     /// Whether the lists are those of another reference than that of the columns: after a restart.
     is_stale: bool,
+    kept: Kept,
+}
+
+/// Memory that is kept from one update to the next.
+#[derive(Default)]
+struct Kept {
+    relaxation: Relaxation,
+    /// f - I at the places of the reference.
+    changes: Vec<DMat3>,
+    /// Internal forces before the update, N.
+    before: Vec<Force>,
 }
 
 impl UpdatedSolids {
@@ -57,6 +70,7 @@ impl UpdatedSolids {
             removed: Vec::new(),
             failed: Vec::new(),
             is_stale: false,
+            kept: Kept::default(),
         }
     }
 
@@ -79,6 +93,7 @@ impl UpdatedSolids {
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
         packed.pack(world, self.phase)?;
+        packed.has_force = false;
         let mut columns = SolidColumns::of(&view)?;
         let support = view.read::<SupportRadius>()?;
         let UpdatedRows { bonds, ghosts, hessian, kernels, sites, .. } = &mut *packed;
@@ -206,7 +221,7 @@ impl UpdatedSolids {
         Ok(!self.keeps[k])
     }
 
-    /// Makes the present configuration the reference: of the bodies that are due, and of all where particles have been removed or have failed.
+    /// Makes the present configuration the reference of the bodies that are due, among them those of which particles have been removed or have failed.
     ///
     /// The second kick of the step uses the new forces, the motion up to here was made by the old ones: what that takes from the motion is booked with the
     /// change of the stored energies.
@@ -217,15 +232,55 @@ impl UpdatedSolids {
         is_due: &[bool],
     ) -> Result<(), StepError> {
         let held = self.solids.stored();
-        let before = self.forces(step.world, packed)?;
-        self.move_reference(step.world, packed, is_due)?;
+        let mut kept = std::mem::take(&mut self.kept);
+        self.write_forces(step.world, packed, &mut kept.before)?;
+        self.move_reference(step.world, packed, is_due, &mut kept)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;
         packed.warn_of_released(step);
-        let after = self.forces(step.world, packed)?;
+        let mut after = std::mem::take(&mut packed.force);
+        self.write_forces(step.world, packed, &mut after)?;
         let account = step.ledger.account(ACCOUNT, AccountKind::Dissipated);
-        self.solids.book_change(step, account, &held, &before, &after)
+        self.solids.book_change(step, account, &held, &kept.before, &after)?;
+        (packed.force, packed.has_force) = (after, true);
+        self.kept = kept;
+        Ok(())
+    }
+
+    /// Places the reference of the bodies that are due where their particles are, as nearly as it may be.
+    fn place_reference(
+        &self,
+        world: &World,
+        packed: &UpdatedRows,
+        is_due: &[bool],
+        relaxation: &mut Relaxation,
+    ) -> Result<(), MissingColumn> {
+        let view = world.phase(self.phase);
+        let (position, original) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
+        let (deformation, start) = (view.read::<DeformationGradient>()?, view.read::<ReferenceVolume>()?);
+        let damage = view.read::<Damage>().ok();
+        let mut reference = view.write::<UpdatedReference>()?;
+        let mut volume = view.write::<UpdatedVolume>()?;
+        let mut metric = view.write::<UpdatedMetric>()?;
+        for k in (0..is_due.len()).filter(|&k| is_due[k]) {
+            let rows = world.body(self.solids.id(k)).rows.clone();
+            let (position, deformation, start) = (&position[..], &deformation[..], &start[..]);
+            fill_rows(&mut reference[rows.clone()], rows.start, |row| UpdatedReference(position[row].0));
+            fill_rows(&mut metric[rows.clone()], rows.start, |row| {
+                UpdatedMetric(Ellipsoid::following(&deformation[row].0))
+            });
+            fill_rows(&mut volume[rows.clone()], rows.start, |row| {
+                UpdatedVolume(start[row].0 * deformation[row].0.determinant())
+            });
+            if self.is_smoothed(k) {
+                let (damage, h) = (damage.as_deref(), self.rules[k].h);
+                let (original, plane) = (bytemuck::cast_slice(&original), self.plane);
+                let by = Smoothing { packed, original, deformation, damage, h, plane };
+                relaxation.smooth(&by, rows, &mut reference);
+            }
+        }
+        Ok(())
     }
 
     /// Gives the bodies that are due another reference, with the same deformation gradient.
@@ -234,34 +289,12 @@ impl UpdatedSolids {
         world: &World,
         packed: &mut UpdatedRows,
         is_due: &[bool],
+        kept: &mut Kept,
     ) -> Result<(), StepError> {
+        self.place_reference(world, packed, is_due, &mut kept.relaxation)?;
         let view = world.phase(self.phase);
-        let (position, original) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
         let deformation = view.read::<DeformationGradient>()?;
         let damage = view.read::<Damage>().ok();
-        let due = |k: &usize| is_due[*k];
-        {
-            let mut reference = view.write::<UpdatedReference>()?;
-            let mut volume = view.write::<UpdatedVolume>()?;
-            let mut metric = view.write::<UpdatedMetric>()?;
-            let start = view.read::<ReferenceVolume>()?;
-            for k in (0..is_due.len()).filter(due) {
-                let rows = world.body(self.solids.id(k)).rows.clone();
-                let (position, deformation, start) = (&position[..], &deformation[..], &start[..]);
-                fill_rows(&mut reference[rows.clone()], rows.start, |row| UpdatedReference(position[row].0));
-                fill_rows(&mut metric[rows.clone()], rows.start, |row| {
-                    UpdatedMetric(Ellipsoid::following(&deformation[row].0))
-                });
-                fill_rows(&mut volume[rows.clone()], rows.start, |row| {
-                    UpdatedVolume(start[row].0 * deformation[row].0.determinant())
-                });
-                if self.is_smoothed(k) {
-                    let (damage, h) = (damage.as_deref(), self.rules[k].h);
-                    let original = bytemuck::cast_slice(&original);
-                    smooth(&Smoothing { packed, original, deformation, damage, h }, rows, &mut reference);
-                }
-            }
-        }
         loop {
             let renewed = packed.renew(world, self.phase, &self.estimates(), &self.removed);
             renewed.map_err(|error| error.in_step(world))?;
@@ -271,10 +304,11 @@ impl UpdatedSolids {
             }
         }
         packed.pack_reference(world, self.phase)?;
-        let changes = increments(packed, self.plane);
+        increments(packed, self.plane, &mut kept.changes);
+        let changes = &kept.changes[..];
         {
             let mut gradient = view.write::<UpdatedGradient>()?;
-            for k in (0..is_due.len()).filter(due) {
+            for k in (0..is_due.len()).filter(|&k| is_due[k]) {
                 let (rows, deformation) = (world.body(self.solids.id(k)).rows.clone(), &deformation[..]);
                 let is_smoothed = self.is_smoothed(k);
                 fill_rows(&mut gradient[rows.clone()], rows.start, |row| {
@@ -296,35 +330,54 @@ impl UpdatedSolids {
         })
     }
 
-    /// The internal forces of the last pass.
-    fn forces(&self, world: &World, packed: &UpdatedRows) -> Result<Vec<Force>, MissingColumn> {
+    /// Writes the internal forces of the last pass.
+    fn write_forces(
+        &self,
+        world: &World,
+        packed: &UpdatedRows,
+        force: &mut Vec<Force>,
+    ) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
-        let mut force = vec![Force::default(); view.len()];
-        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, self.plane, &mut force);
-        Ok(force)
+        force.resize(view.len(), Force::default());
+        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, self.plane, force);
+        Ok(())
     }
 }
 
 impl UpdatedSolids {
-    /// Takes up what has been removed or has failed since the last update; returns whether anything has.
-    fn take_up_lost(&mut self, world: &World) -> Result<bool, MissingColumn> {
+    /// Takes up what has been removed or has failed since the last update, and notes which bodies have lost something.
+    fn take_up_lost(&mut self, world: &World, has_lost: &mut [bool]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let removed = view.read::<Removed>()?;
         let count = count_rows(&removed, |row| *row != Removed::NO);
         let damage = view.read::<Damage>().ok();
         let damage = damage.as_deref().unwrap_or_default();
         let failed = count_rows(damage, has_failed);
-        let has_lost = count != self.removed.len() || failed != self.failed.len();
-        if has_lost {
-            let take = |rows: &mut Vec<u32>, is_lost: &dyn Fn(usize) -> bool, all: usize| {
-                rows.clear();
-                rows.extend((0..all as u32).filter(|&row| is_lost(row as usize)));
-            };
-            take(&mut self.removed, &|row| removed[row] != Removed::NO, removed.len());
-            take(&mut self.failed, &|row| has_failed(&damage[row]), damage.len());
+        if count == self.removed.len() && failed == self.failed.len() {
+            return Ok(());
         }
-        Ok(has_lost)
+        let take = |rows: &mut Vec<u32>, is_lost: &dyn Fn(usize) -> bool, all: usize| {
+            let lost = (0..all as u32).filter(|&row| is_lost(row as usize)).collect();
+            std::mem::replace(rows, lost)
+        };
+        let before = [
+            take(&mut self.removed, &|row| removed[row] != Removed::NO, removed.len()),
+            take(&mut self.failed, &|row| has_failed(&damage[row]), damage.len()),
+        ];
+        for (k, has_lost) in has_lost.iter_mut().enumerate() {
+            let rows = &world.body(self.solids.id(k)).rows;
+            let now = [&self.removed, &self.failed];
+            *has_lost =
+                now.into_iter().zip(&before).any(|(now, before)| within(now, rows) != within(before, rows));
+        }
+        Ok(())
     }
+}
+
+/// Number of rows that are within a range; they are ascending.
+fn within(rows: &[u32], range: &Range<usize>) -> usize {
+    let below = |end: usize| rows.partition_point(|&row| (row as usize) < end);
+    below(range.end) - below(range.start)
 }
 
 impl Run for UpdatedSolids {
@@ -340,11 +393,12 @@ impl Run for UpdatedSolids {
         self.solids.book(step)?;
         // From the first step on, so that it has its place among the energies.
         step.ledger.account(ACCOUNT, AccountKind::Dissipated);
-        let has_lost = self.take_up_lost(step.world)?;
         let mut due = std::mem::take(&mut self.due);
         due.clear();
-        for k in 0..self.solids.len() {
-            due.push(has_lost || self.is_due(k, step, &packed)?);
+        due.resize(self.solids.len(), false);
+        self.take_up_lost(step.world, &mut due)?;
+        for (k, due) in due.iter_mut().enumerate() {
+            *due = *due || self.is_due(k, step, &packed)?;
         }
         if due.contains(&true) {
             self.update(step, &mut packed, &due)?;

@@ -7,10 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cells::sort_into_cells;
 use super::spread::{Growing, Spread};
 use crate::formulations::fluid::lanes::Record;
-use crate::neighbors::{Buckets, Periodic, SHIFT};
+use crate::neighbors::{Buckets, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
 /// What has to hold for lists to be good, m.

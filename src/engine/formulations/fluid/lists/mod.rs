@@ -1,7 +1,5 @@
 //! Who is near whom: lists of neighbours, how long they are good for, and what thin bodies hide.
 
-mod cells;
-
 mod spread;
 
 mod near_rows;
@@ -16,7 +14,6 @@ mod sides;
 
 mod pairs;
 
-pub use cells::sort_into_cells;
 pub use drift::Skins;
 pub use near_rows::{NearRow, NearRows, NearWriter};
 pub use pairs::FlowPairs;

@@ -6,8 +6,7 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::formulations::fluid::lists::sort_into_cells;
-use crate::neighbors::{Buckets, Periodic};
+use crate::neighbors::{Buckets, Periodic, sort_into_cells};
 use crate::parallel::EIGHT;
 
 /// Particles that are halved together.

@@ -2,7 +2,7 @@
 
 use glam::{BVec3, DVec3};
 
-use crate::neighbors::{Buckets, Periodic, bounds};
+use super::{Buckets, Periodic, bounds};
 
 /// Cells of equal length along each axis, x running fastest.
 pub struct Cells {

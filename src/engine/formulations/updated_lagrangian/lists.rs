@@ -1,0 +1,168 @@
+//! Neighbours, weights and moments of a reference, made from lists of who may be a neighbour.
+//!
+//! Everything is done block by block in buffers that are kept from one update to the next: who is near by the largest radius, who is within the ellipsoids, weights of
+//! their distances, and moments of the weights as they are rounded. The stabilizers have the same neighbours with other weights, at the distances of the original pair vectors as
+//! the deformation has moved them, and moments of the original pair vectors.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::candidates::{Candidates, Searched, largest, radii};
+use super::row_loops::{Block, Corrections, Measure, RowPairs, Source, Weights};
+use super::seen::{Columns, Seen, fill, fill_columns, place};
+use crate::formulations::total_lagrangian::{BondError, Bonds, Ellipsoid};
+use crate::kernels::Kernel;
+use crate::neighbors::NeighborSearch;
+use crate::parallel::{BLOCK, block_count, run_hot_on};
+use crate::symmetry::Ghosts;
+
+/// Blocks of rows that are made before they are put together: enough for all threads, and little memory.
+const BLOCKS_AT_ONCE: usize = 256;
+
+/// What is kept from one update to the next.
+#[derive(Default)]
+pub(super) struct Lists {
+    /// Of every body.
+    candidates: Vec<Candidates>,
+    search: NeighborSearch,
+    radii: Vec<f64>,
+    seen: Vec<Seen>,
+    columns: Vec<Columns>,
+    blocks: Vec<Block>,
+}
+
+/// The reference of all bodies of a phase.
+#[derive(Clone, Copy)]
+pub(super) struct Reference<'a> {
+    /// Places, m.
+    pub places: &'a [DVec3],
+    /// Volumes, m3.
+    pub volumes: &'a [f64],
+    /// Support radii, m.
+    pub support: &'a [f64],
+    pub ellipsoids: &'a [Ellipsoid],
+    pub ghosts: &'a Ghosts,
+}
+
+/// A body.
+#[derive(Clone)]
+pub(super) struct ListedBody<'a> {
+    /// Number of the body in its formulation.
+    pub body: usize,
+    pub rows: Range<usize>,
+    pub ghost_rows: Range<usize>,
+    pub kernel: Kernel,
+    /// Particles that no other one sees, by their numbers in the body, ascending.
+    pub hidden: &'a [u32],
+}
+
+impl Lists {
+    /// Begins a reference of bodies with these rows.
+    pub fn begin(&mut self, reference: &Reference<'_>, bodies: impl Iterator<Item = Range<usize>>) {
+        let Reference { places, volumes, support, ellipsoids, ghosts } = *reference;
+        fill(&mut self.seen, ghosts, ellipsoids, support, (places, volumes));
+        self.radii.clear();
+        let mut count = 0;
+        for rows in bodies {
+            radii(&support[rows.clone()], &ellipsoids[rows], &mut self.radii);
+            count += 1;
+        }
+        self.candidates.resize_with(count, Candidates::default);
+    }
+
+    /// Appends the bonds of the next body; bodies must come in the order of their rows.
+    pub fn append(
+        &mut self,
+        reference: &Reference<'_>,
+        body: &ListedBody<'_>,
+        bonds: &mut Bonds,
+    ) -> Result<(), BondError> {
+        let ListedBody { body, rows, ghost_rows, kernel, hidden } = body.clone();
+        let Self { candidates, search, radii, seen, blocks, .. } = self;
+        let searched = Searched { places: reference.places, radii, ghosts: reference.ghosts, hidden };
+        let candidates = &mut candidates[body];
+        let list = candidates.renewed((rows.clone(), ghost_rows), &searched, search)?;
+        let square = largest(&radii[rows.clone()]).powi(2);
+        let source = Source::Near { list, first: rows.start, square };
+        let pairs = RowPairs { seen, source, has_ghosts: !reference.ghosts.is_empty() };
+        if bonds.offsets.is_empty() {
+            bonds.offsets.push(0);
+        }
+        in_waves(&pairs, &rows, &kernel, blocks, |block| append(bonds, block));
+        candidates.rest();
+        if bonds.list_free(&rows) == rows.len() {
+            let most = rows.map(|row| bonds.row(row).count()).max().unwrap_or(0);
+            return Err(BondError::NoStiffness { most });
+        }
+        Ok(())
+    }
+
+    /// Begins the bonds of the stabilizers, with original places, m, volumes, m3, and F_r.
+    pub fn begin_control(
+        &mut self,
+        (original, volumes): (&[DVec3], &[f64]),
+        gradient: &[DMat3],
+        ghosts: &Ghosts,
+    ) {
+        place(&mut self.seen, ghosts, original, volumes);
+        fill_columns(&mut self.columns, ghosts, gradient);
+    }
+
+    /// Gives the bonds of the stabilizers of some rows, whose neighbours are there already, weights and moments.
+    pub fn weigh_control(&mut self, rows: &Range<usize>, kernel: &Kernel, bonds: &mut Bonds) {
+        let Self { seen, columns, blocks, .. } = self;
+        let Bonds { offsets, neighbors, weights, inverse_moment, reach, weight_sum, .. } = bonds;
+        let source = Source::Known { offsets, neighbors, columns };
+        let pairs = RowPairs { seen, source, has_ghosts: seen.len() > inverse_moment.len() };
+        let mut row = rows.start;
+        in_waves(&pairs, rows, kernel, blocks, |block| {
+            let first = offsets[row] as usize;
+            weights[first..first + block.len()].copy_from_slice(&block.weights);
+            for correction in &block.corrections {
+                inverse_moment[row] = correction.inverse;
+                reach[row] = correction.reach;
+                weight_sum[row] = correction.weight_sum;
+                row += 1;
+            }
+        });
+        bonds.list_free(rows);
+    }
+}
+
+/// Appends the rows of a block.
+fn append(bonds: &mut Bonds, block: &Block) {
+    let start = bonds.neighbors.len();
+    bonds.offsets.extend(block.ends.iter().map(|end| u32::try_from(start + end).unwrap_or(u32::MAX)));
+    bonds.neighbors.extend_from_slice(&block.neighbors[..block.len()]);
+    bonds.weights.extend_from_slice(&block.weights);
+    for correction in &block.corrections {
+        bonds.inverse_moment.push(correction.inverse);
+        bonds.reach.push(correction.reach);
+        bonds.weight_sum.push(correction.weight_sum);
+    }
+}
+
+/// Makes rows block by block, on all threads, and gives the blocks to `take` in their order.
+fn in_waves(
+    pairs: &RowPairs<'_>,
+    rows: &Range<usize>,
+    kernel: &Kernel,
+    blocks: &mut Vec<Block>,
+    mut take: impl FnMut(&Block),
+) {
+    let (count, plane) = (block_count(rows.len()), kernel.dimension() == 2);
+    blocks.resize_with(blocks.len().max(count.min(BLOCKS_AT_ONCE)), Block::default);
+    for group in (0..count).step_by(BLOCKS_AT_ONCE) {
+        let wave = &mut blocks[..(count - group).min(BLOCKS_AT_ONCE)];
+        wave.par_iter_mut().enumerate().for_each(|(k, block)| {
+            let first = rows.start + (group + k) * BLOCK;
+            let rows = first..rows.end.min(first + BLOCK);
+            run_hot_on(plane, Measure { pairs, rows: rows.clone(), block: &mut *block });
+            kernel.dispatch(Weights(&mut *block));
+            run_hot_on(plane, Corrections { pairs, rows, block });
+        });
+        wave.iter().for_each(&mut take);
+    }
+}

@@ -1,0 +1,362 @@
+//! The loops over pairs that make the rows of a block: distances, weights, moments. A lane is a neighbour.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::seen::{Columns, Own, Seen};
+use crate::correction::{MomentMatrix, add_moment};
+use crate::kernels::{KernelProfile, KernelVisitor, ProfiledKernel};
+use crate::linalg::Sym3;
+use crate::neighbors::NeighborList;
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, run_hot};
+
+/// The rows of a block. Those of pairs are longer than what is used.
+#[derive(Default)]
+pub(super) struct Block {
+    /// Where those of each row end.
+    pub ends: Vec<usize>,
+    pub neighbors: Vec<u32>,
+    /// Distance as both ends measure it, m.
+    distance: Vec<f64>,
+    /// Factor of the kernel.
+    density: Vec<f64>,
+    /// Support radius, m.
+    support: Vec<f64>,
+    pub weights: Vec<f32>,
+    pub corrections: Vec<Correction>,
+    /// Who is near a particle by the largest radius.
+    near: Vec<u32>,
+}
+
+/// What the bonds of a row have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Correction {
+    /// Inverse moment matrix; zero where there is none.
+    pub inverse: Sym3,
+    /// `sum_j V_j w_ij x_ij`.
+    pub reach: DVec3,
+    /// `sum_j V_j w_ij`, 1/m2.
+    pub weight_sum: f64,
+}
+
+/// Where pairs come from.
+#[derive(Clone, Copy)]
+pub(super) enum Source<'a> {
+    /// Of those that may be neighbours, who is within the ellipsoids.
+    Near {
+        /// A row for every particle of the body.
+        list: &'a NeighborList,
+        /// First row of the body.
+        first: usize,
+        /// Square of the distance that no neighbour reaches, m2.
+        square: f64,
+    },
+    /// Known pairs, whose vectors the deformation moves before they are measured.
+    Known {
+        /// Where the neighbours of each row start.
+        offsets: &'a [u32],
+        neighbors: &'a [u32],
+        /// F_r of all rows.
+        columns: &'a [Columns],
+    },
+}
+
+/// Pairs of all rows.
+#[derive(Clone, Copy)]
+pub(super) struct RowPairs<'a> {
+    pub seen: &'a [Seen],
+    pub source: Source<'a>,
+    /// Whether there are ghosts.
+    pub has_ghosts: bool,
+}
+
+/// The lanes that hold one of that many neighbours.
+const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
+
+impl Block {
+    /// Makes room for a row of that many pairs, four at a time, behind those that are used.
+    #[inline(always)]
+    fn reserve(&mut self, used: usize, count: usize) {
+        let room = used + count + 4;
+        if self.distance.len() < room {
+            let room = room * 3 / 2;
+            self.neighbors.resize(room, 0);
+            self.distance.resize(room, 0.0);
+            self.density.resize(room, 0.0);
+            self.support.resize(room, 0.0);
+        }
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.ends.last().copied().unwrap_or(0)
+    }
+}
+
+/// Four neighbours from the n-th on; where there are no more, the particle itself.
+#[inline(always)]
+fn four(row: &[u32], n: usize, own: usize) -> [usize; 4] {
+    match row[n..].first_chunk::<4>() {
+        Some(&[j, k, l, m]) => [j as usize, k as usize, l as usize, m as usize],
+        None => {
+            let mut rows = [own; 4];
+            for k in 0..row.len() - n {
+                rows[k] = row[n + k] as usize;
+            }
+            rows
+        }
+    }
+}
+
+#[inline(always)]
+fn of<T>(all: &[T], [j, k, l, m]: [usize; 4]) -> [&T; 4] {
+    [&all[j], &all[k], &all[l], &all[m]]
+}
+
+/// Finds the pairs of some rows and measures their distances.
+pub(super) struct Measure<'a, 'b> {
+    pub pairs: &'a RowPairs<'a>,
+    pub rows: Range<usize>,
+    pub block: &'b mut Block,
+}
+
+impl HotLoop for Measure<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        if self.pairs.has_ghosts { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
+    }
+}
+
+impl Measure<'_, '_> {
+    #[inline(always)]
+    fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
+        let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
+        block.ends.clear();
+        let mut used = 0;
+        for i in rows {
+            match *source {
+                Source::Near { list, first, square } => {
+                    let own = Own::new(a, &seen[i]);
+                    let count =
+                        sieve::<A, GHOSTS>(a, (seen, &own, i), list.row(i - first), square, &mut block.near);
+                    block.reserve(used, count);
+                    used = measure_near::<A, GHOSTS>(a, (seen, &own, i), count, used, block);
+                }
+                Source::Known { offsets, neighbors, columns } => {
+                    let row = &neighbors[offsets[i] as usize..offsets[i + 1] as usize];
+                    block.reserve(used, row.len());
+                    let own = Own::moving(a, &seen[i], &columns[i]);
+                    for n in (0..row.len()).step_by(4) {
+                        let rows = four(row, n, i);
+                        let (arm, _) = own.arms::<GHOSTS>(a, of(seen, rows));
+                        let moved = own.moved(a, arm, of(columns, rows));
+                        let pairs = own.measure(a, moved, of(seen, rows));
+                        put(&mut block.distance, used + n, pairs.square.sqrt().lanes());
+                        put(&mut block.density, used + n, pairs.density.lanes());
+                        put(&mut block.support, used + n, pairs.support.lanes());
+                    }
+                    used += row.len();
+                }
+            }
+            block.ends.push(used);
+        }
+    }
+}
+
+#[inline(always)]
+fn put(values: &mut [f64], at: usize, four: Lanes4) {
+    if let Some(to) = values[at..].first_chunk_mut::<4>() {
+        *to = four.0;
+    }
+}
+
+/// Takes those candidates that are closer than the root of `square`; returns how many there are.
+#[inline(always)]
+fn sieve<A: FourLanes, const GHOSTS: bool>(
+    a: A,
+    (seen, own, i): (&[Seen], &Own<A>, usize),
+    candidates: &[u32],
+    square: f64,
+    near: &mut Vec<u32>,
+) -> usize {
+    if near.len() < candidates.len() + 4 {
+        near.resize(candidates.len() + 4, 0);
+    }
+    let limit = Lanes4::splat(square);
+    let mut used = 0;
+    for n in (0..candidates.len()).step_by(4) {
+        let rows = four(candidates, n, i);
+        let (arm, _) = own.arms::<GHOSTS>(a, of(seen, rows));
+        let mask = a.below(arm.length_squared().lanes(), limit) & MASKS[(candidates.len() - n).min(4)];
+        if let Some(to) = near[used..].first_chunk_mut::<4>() {
+            *to = a.pack([rows[0] as u32, rows[1] as u32, rows[2] as u32, rows[3] as u32], mask);
+        }
+        used += mask.count_ones() as usize;
+    }
+    used
+}
+
+/// Puts those that are near and within the ellipsoids behind the pairs that are used; returns how many are used then.
+#[inline(always)]
+fn measure_near<A: FourLanes, const GHOSTS: bool>(
+    a: A,
+    (seen, own, i): (&[Seen], &Own<A>, usize),
+    count: usize,
+    mut used: usize,
+    block: &mut Block,
+) -> usize {
+    let Block { neighbors, distance, density, support, near, .. } = block;
+    for n in (0..count).step_by(4) {
+        let rows = four(&near[..count], n, i);
+        let others = of(seen, rows);
+        let (arm, _) = own.arms::<GHOSTS>(a, others);
+        let pairs = own.measure(a, arm, others);
+        let limit = pairs.support.squared().lanes();
+        let mask = a.below(pairs.square.lanes(), limit) & MASKS[(count - n).min(4)];
+        let (root, factor, radius) =
+            (pairs.square.sqrt().lanes(), pairs.density.lanes(), pairs.support.lanes());
+        if mask == MASKS[4] {
+            if let Some(to) = neighbors[used..].first_chunk_mut::<4>() {
+                *to = [rows[0] as u32, rows[1] as u32, rows[2] as u32, rows[3] as u32];
+            }
+            put(distance, used, root);
+            put(density, used, factor);
+            put(support, used, radius);
+            used += 4;
+        } else {
+            for lane in 0..4 {
+                neighbors[used] = rows[lane] as u32;
+                distance[used] = root.0[lane];
+                density[used] = factor.0[lane];
+                support[used] = radius.0[lane];
+                used += mask >> lane & 1;
+            }
+        }
+    }
+    used
+}
+
+/// Makes the weights of distances.
+pub(super) struct Weights<'a>(pub &'a mut Block);
+
+impl KernelVisitor for Weights<'_> {
+    type Output = ();
+
+    fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
+        let count = self.0.len();
+        let Block { distance, density, support, weights, .. } = self.0;
+        weights.resize(count, 0.0);
+        let (distance, density, support) = (&distance[..count], &density[..count], &support[..count]);
+        run_hot(WeightLoop { kernel, distance, density, support, weights });
+    }
+}
+
+struct WeightLoop<'a, K: KernelProfile> {
+    kernel: ProfiledKernel<K>,
+    distance: &'a [f64],
+    density: &'a [f64],
+    support: &'a [f64],
+    weights: &'a mut [f32],
+}
+
+impl<K: KernelProfile> HotLoop for WeightLoop<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, _: A) {
+        let Self { kernel, distance, density, support, weights } = self;
+        let count = weights.len();
+        let Some(&first) = support.first() else { return };
+        let ratio = 1.0 / K::SUPPORT;
+        let scaled = kernel.scaled(first * ratio);
+        let mut is_uniform = true;
+        for k in 0..count {
+            is_uniform &= support[k] == first;
+        }
+        if is_uniform {
+            for k in 0..count {
+                weights[k] = (density[k] * scaled.pair_weight(distance[k])) as f32;
+            }
+        } else {
+            for k in 0..count {
+                let own = kernel.scaled(support[k] * ratio);
+                weights[k] = (density[k] * own.pair_weight(distance[k])) as f32;
+            }
+        }
+    }
+}
+
+/// Makes the inverse moment matrices of some rows from the rounded weights; a neighbour without volume has no part in them, and a row without volume has none.
+pub(super) struct Corrections<'a, 'b> {
+    pub pairs: &'a RowPairs<'a>,
+    pub rows: Range<usize>,
+    pub block: &'b mut Block,
+}
+
+impl HotLoop for Corrections<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        if self.pairs.has_ghosts { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
+    }
+}
+
+impl Corrections<'_, '_> {
+    #[inline(always)]
+    fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
+        let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
+        let Block { ends, neighbors, weights, corrections, .. } = block;
+        corrections.clear();
+        let mut start = 0;
+        for (k, i) in rows.enumerate() {
+            let end = ends[k];
+            let row = match *source {
+                Source::Near { .. } => &neighbors[start..end],
+                Source::Known { offsets, neighbors, .. } => {
+                    &neighbors[offsets[i] as usize..offsets[i + 1] as usize]
+                }
+            };
+            corrections.push(correction::<A, GHOSTS>(a, seen, i, row, &weights[start..end]));
+            start = end;
+        }
+    }
+}
+
+#[inline(always)]
+fn correction<A: FourLanes, const GHOSTS: bool>(
+    a: A,
+    seen: &[Seen],
+    i: usize,
+    row: &[u32],
+    weights: &[f32],
+) -> Correction {
+    let own = Own::new(a, &seen[i]);
+    let (mut x, mut y, mut z) = (Vector::zero(a), Vector::zero(a), Vector::zero(a));
+    let (mut reach, mut weight_sum) = (Vector::zero(a), Number::zero(a));
+    for n in (0..row.len()).step_by(4) {
+        let (arm, volume) = own.arms::<GHOSTS>(a, of(seen, four(row, n, i)));
+        let mut weight = Lanes4::ZERO;
+        for lane in 0..(row.len() - n).min(4) {
+            weight.0[lane] = f64::from(weights[n + lane]);
+        }
+        let volume_weight = volume * Number::new(a, weight);
+        add_moment([&mut x, &mut y, &mut z], volume_weight, arm);
+        reach = arm.mul_add(volume_weight, reach);
+        weight_sum += volume_weight;
+    }
+    let [xx, xy, xz, yy] = a.sums([x.x.lanes(), x.y.lanes(), x.z.lanes(), y.y.lanes()]).0;
+    let [yz, zz, reach_x, reach_y] = a.sums([y.z.lanes(), z.z.lanes(), reach.x.lanes(), reach.y.lanes()]).0;
+    let [reach_z, weight_sum, _, _] =
+        a.sums([reach.z.lanes(), weight_sum.lanes(), Lanes4::ZERO, Lanes4::ZERO]).0;
+    let moment = MomentMatrix::of(Sym3 { xx, yy, zz, xy, xz, yz }, A::AXES);
+    let inverse = if seen[i].place.0[3] > 0.0 { moment.inverse() } else { None };
+    Correction {
+        inverse: inverse.unwrap_or_default(),
+        reach: DVec3::new(reach_x, reach_y, reach_z),
+        weight_sum,
+    }
+}

@@ -1,0 +1,187 @@
+//! What the lists of a reference need to know of every particle, in the form that loops over pairs read.
+
+use glam::{DMat3, DVec3};
+
+use crate::formulations::total_lagrangian::Ellipsoid;
+use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
+use crate::symmetry::{Ghost, Ghosts};
+
+/// A particle, or a ghost.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub(super) struct Seen {
+    /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of places: seen from both ends of a bond, these are then the
+    /// same to the last bit.
+    pub place: Lanes4,
+    /// Shift of a ghost, m.
+    pub shift: Lanes4,
+    /// Gxx, Gyy, Gzz of the ellipsoid, and the factor of its kernel.
+    stretch: Lanes4,
+    /// Gxy, Gxz, Gyz, and the support radius, m.
+    shear: Lanes4,
+}
+
+/// The columns of F_r.
+pub(super) type Columns = [Lanes4; 3];
+
+impl Seen {
+    fn of(ellipsoid: &Ellipsoid, support: f64, place: DVec3, volume: f64) -> Self {
+        let g = &ellipsoid.tensor;
+        Self {
+            place: Lanes4::new(place, volume),
+            shift: Lanes4::ZERO,
+            stretch: Lanes4([g.xx, g.yy, g.zz, ellipsoid.density]),
+            shear: Lanes4([g.xy, g.xz, g.yz, support]),
+        }
+    }
+
+    fn image(&self, ghost: &Ghost<'_>) -> Self {
+        let DVec3 { x, y, z } = ghost.map.signs;
+        let [xy, xz, yz, support] = self.shear.0;
+        Self {
+            place: Lanes4::new(ghost.map.vector(self.place.xyz()), self.place.0[3]),
+            shift: Lanes4::new(ghost.map.shift, 0.0),
+            stretch: self.stretch,
+            shear: Lanes4([x * y * xy, x * z * xz, y * z * yz, support]),
+        }
+    }
+}
+
+/// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and their ghosts.
+pub(super) fn fill(
+    seen: &mut Vec<Seen>,
+    ghosts: &Ghosts,
+    ellipsoids: &[Ellipsoid],
+    support: &[f64],
+    (places, volumes): (&[DVec3], &[f64]),
+) {
+    seen.resize(places.len() + ghosts.len(), Seen::default());
+    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [Seen]| {
+        for (own, row) in seen.iter_mut().zip(first..) {
+            *own = Seen::of(&ellipsoids[row], support[row], places[row], volumes[row]);
+        }
+    });
+    ghosts.fill(seen, |ghost, own| own.image(&ghost));
+}
+
+/// Moves the particles to other places, m, and gives them other volumes, m3; their ellipsoids stay.
+pub(super) fn place(seen: &mut [Seen], ghosts: &Ghosts, places: &[DVec3], volumes: &[f64]) {
+    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [Seen]| {
+        for (own, row) in seen.iter_mut().zip(first..) {
+            own.place = Lanes4::new(places[row], volumes[row]);
+        }
+    });
+    ghosts.fill(seen, |ghost, own| own.image(&ghost));
+}
+
+/// Fills the columns of F_r of all particles and their ghosts.
+pub(super) fn fill_columns(columns: &mut Vec<Columns>, ghosts: &Ghosts, gradient: &[DMat3]) {
+    let of = |f: DMat3| [f.x_axis, f.y_axis, f.z_axis].map(|column| Lanes4::new(column, 0.0));
+    columns.resize(gradient.len() + ghosts.len(), [Lanes4::ZERO; 3]);
+    for_each_block(&mut columns[..gradient.len()], &mut Vec::new(), &|first, columns: &mut [Columns]| {
+        columns.iter_mut().zip(first..).for_each(|(own, row)| *own = of(gradient[row]));
+    });
+    ghosts.fill(columns, |ghost, _| of(ghost.map.tensor(gradient[ghost.source])));
+}
+
+/// A particle in every lane.
+#[derive(Clone, Copy)]
+pub(super) struct Own<A: FourLanes> {
+    place: Vector<A>,
+    stretch: [Number<A>; 4],
+    shear: [Number<A>; 4],
+    columns: [Vector<A>; 3],
+}
+
+/// Four pairs.
+#[derive(Clone, Copy)]
+pub(super) struct FourPairs<A: FourLanes> {
+    /// Square of the distance as both measure it, m2.
+    pub square: Number<A>,
+    /// Factor of the kernel.
+    pub density: Number<A>,
+    /// Mean support radius, m.
+    pub support: Number<A>,
+}
+
+impl<A: FourLanes> Own<A> {
+    /// That of a row.
+    #[inline(always)]
+    pub fn new(a: A, seen: &Seen) -> Self {
+        Self {
+            place: vector(a, seen.place),
+            stretch: numbers(a, seen.stretch),
+            shear: numbers(a, seen.shear),
+            columns: [Vector::zero(a); 3],
+        }
+    }
+
+    /// That of a row with its F_r.
+    #[inline(always)]
+    pub fn moving(a: A, seen: &Seen, [x, y, z]: &Columns) -> Self {
+        Self { columns: [vector(a, *x), vector(a, *y), vector(a, *z)], ..Self::new(a, seen) }
+    }
+
+    /// Pair vectors to four others, m, with their volumes, m3; `GHOSTS` where there are ghosts among them.
+    #[inline(always)]
+    pub fn arms<const GHOSTS: bool>(&self, a: A, of: [&Seen; 4]) -> (Vector<A>, Number<A>) {
+        let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
+        let arm = Vector::new(a, [x, y, z]) - self.place;
+        if !GHOSTS {
+            return (arm, Number::new(a, volume));
+        }
+        let [x, y, z, _] = a.transpose([of[0].shift, of[1].shift, of[2].shift, of[3].shift]);
+        (arm + Vector::new(a, [x, y, z]), Number::new(a, volume))
+    }
+
+    /// Pair vectors as the mean of the F_r of both ends moves them, m.
+    #[inline(always)]
+    pub fn moved(&self, a: A, arm: Vector<A>, of: [&Columns; 4]) -> Vector<A> {
+        let half = Number::splat(a, 0.5);
+        let mut sum = Vector::zero(a);
+        let along = [arm.x, arm.y, arm.z];
+        for c in 0..A::AXES {
+            let [x, y, z, _] = a.transpose([of[0][c], of[1][c], of[2][c], of[3][c]]);
+            sum = (self.columns[c] + Vector::new(a, [x, y, z])).mul_add(along[c] * half, sum);
+        }
+        sum
+    }
+
+    /// What both measure along pair vectors, m, to four others.
+    #[inline(always)]
+    pub fn measure(&self, a: A, r: Vector<A>, of: [&Seen; 4]) -> FourPairs<A> {
+        let [xx, yy, zz, density] = a.transpose([of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch]);
+        let [xy, xz, yz, support] = a.transpose([of[0].shear, of[1].shear, of[2].shear, of[3].shear]);
+        let ([own_xx, own_yy, own_zz, own_density], [own_xy, own_xz, own_yz, own_support]) =
+            (self.stretch, self.shear);
+        let shear = sum(a, own_xy, xy);
+        let mut twice =
+            sum(a, own_xx, xx) * r.x * r.x + sum(a, own_yy, yy) * r.y * r.y + 2.0 * shear * r.x * r.y;
+        if A::AXES == 3 {
+            let shears = sum(a, own_xz, xz) * r.x + sum(a, own_yz, yz) * r.y;
+            twice += (sum(a, own_zz, zz) * r.z + 2.0 * shears) * r.z;
+        }
+        FourPairs {
+            square: twice * 0.5,
+            density: sum(a, own_density, density) * 0.5,
+            support: sum(a, own_support, support) * 0.5,
+        }
+    }
+}
+
+/// The first three lanes in all lanes of a vector.
+#[inline(always)]
+fn vector<A: FourLanes>(a: A, of: Lanes4) -> Vector<A> {
+    Vector::splat(a, of.xyz())
+}
+
+/// Each lane in all lanes of a number.
+#[inline(always)]
+fn numbers<A: FourLanes>(a: A, Lanes4([x, y, z, w]): Lanes4) -> [Number<A>; 4] {
+    [Number::splat(a, x), Number::splat(a, y), Number::splat(a, z), Number::splat(a, w)]
+}
+
+#[inline(always)]
+fn sum<A: FourLanes>(a: A, own: Number<A>, other: Lanes4) -> Number<A> {
+    own + Number::new(a, other)
+}

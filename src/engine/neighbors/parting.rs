@@ -1,0 +1,169 @@
+//! How far particles near each other have moved against each other since a list of neighbours was built.
+//!
+//! A list with a skin misses no pair as long as no two particles that were apart have come closer by more than the skin. That is a matter of how particles near each other move
+//! against each other, not of how far they go: what flies as a whole carries its list along. Space is cut into cells; the displacements of the particles of a cell lie in a box,
+//! and the box around those of a cell and the cells beside it bounds how much particles in them have moved against each other. Particles of cells that do not touch were
+//! the length of a cell apart.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Buckets, Periodic, sort_into_cells};
+
+/// Cells that a task takes.
+const CELLS_OF_TASK: usize = 64;
+
+/// The cells, and where their particles were.
+#[derive(Debug, Default)]
+pub(crate) struct Parting {
+    counts: [usize; 3],
+    length: f64,
+    cells: Buckets,
+    /// In the order of cells, m.
+    then: Vec<DVec3>,
+    boxes: Vec<Displacements>,
+    window: Vec<Displacements>,
+}
+
+/// How far particles have moved against each other, m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parted {
+    /// Those that were nearer than the length of a cell, at most.
+    pub near: f64,
+    /// Any two, at most.
+    pub all: f64,
+}
+
+/// The box around displacements, m; inverted where there are none, without end where one is no number.
+#[derive(Clone, Copy, Debug)]
+struct Displacements {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Displacements {
+    const NONE: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+
+    fn with(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn and(self, d: DVec3) -> Self {
+        if d.is_finite() {
+            self.with(Self { low: d, high: d })
+        } else {
+            Self { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY }
+        }
+    }
+
+    /// Most that two of them differ, m.
+    fn diagonal(self) -> f64 {
+        (self.high - self.low).max(DVec3::ZERO).length()
+    }
+}
+
+impl Parting {
+    /// Notes where particles are, in cells of at least that length, m.
+    pub fn note(&mut self, positions: &[DVec3], length: f64) {
+        let sorted = sort_into_cells(&mut self.cells, positions, length, &Periodic::NONE);
+        (self.counts, self.length) = (sorted.counts, sorted.length);
+        self.then.clear();
+        self.then.extend(self.cells.rows.iter().map(|&row| positions[row as usize]));
+    }
+
+    /// Least length of a cell, m.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// How far the particles have moved against each other since they were noted; without end where none were.
+    pub fn parted(&mut self, positions: &[DVec3]) -> Parted {
+        if self.then.len() != positions.len() {
+            return Parted { near: f64::INFINITY, all: f64::INFINITY };
+        }
+        let Self { cells, then, boxes, .. } = self;
+        boxes.resize(cells.count(), Displacements::NONE);
+        boxes.par_iter_mut().with_min_len(CELLS_OF_TASK).enumerate().for_each(|(cell, own)| {
+            let range = cells.range(cell);
+            let places = cells.rows[range.clone()].iter().zip(&then[range]);
+            let moved = places.map(|(&row, then)| positions[row as usize] - *then);
+            *own = moved.fold(Displacements::NONE, Displacements::and);
+        });
+        let all = boxes.iter().fold(Displacements::NONE, |all, own| all.with(*own)).diagonal();
+        (0..3).for_each(|axis| self.widen(axis));
+        let near = self.boxes.iter().map(|own| own.diagonal()).fold(0.0, f64::max);
+        Parted { near, all }
+    }
+
+    /// Joins each cell with those beside it along an axis.
+    fn widen(&mut self, axis: usize) {
+        let Self { counts, boxes, window, .. } = self;
+        let stride: usize = counts[..axis].iter().product();
+        let count = counts[axis];
+        if count == 1 {
+            return;
+        }
+        std::mem::swap(boxes, window);
+        boxes.clear();
+        boxes.extend(window.iter().enumerate().map(|(cell, own)| {
+            let k = cell / stride % count;
+            let before = if k > 0 { window[cell - stride] } else { Displacements::NONE };
+            let after = if k + 1 < count { window[cell + stride] } else { Displacements::NONE };
+            own.with(before).with(after)
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn places() -> Vec<DVec3> {
+        let place = |k: usize| {
+            let t = k as f64;
+            DVec3::new((0.37 * t).sin(), (1.7 * t + 0.3).sin(), 0.3 * (0.9 * t + 1.1).sin())
+        };
+        (0..700).map(place).collect()
+    }
+
+    #[test]
+    fn no_two_particles_have_moved_farther_than_it_says() {
+        let then = places();
+        let mut parting = Parting::default();
+        parting.note(&then, 0.4);
+        let mut is_tight = 0;
+        for n in 1..40 {
+            let t = 0.005 * f64::from(n);
+            let now: Vec<DVec3> = then
+                .iter()
+                .map(|x| *x + DVec3::new(70.0 + t * x.y, t * (2.0 * x.x).sin(), t * t * x.z))
+                .collect();
+            let Parted { near, all } = parting.parted(&now);
+            let (mut of_near, mut of_all) = (0.0_f64, 0.0_f64);
+            for i in 0..then.len() {
+                for j in 0..i {
+                    let moved = ((now[i] - now[j]) - (then[i] - then[j])).length();
+                    of_all = of_all.max(moved);
+                    if (then[i] - then[j]).length() < parting.length() {
+                        of_near = of_near.max(moved);
+                    }
+                }
+            }
+            assert!(of_near <= near + 1e-12 && of_all <= all + 1e-12, "{of_near} {near} {of_all} {all}");
+            is_tight += i32::from(near < 0.8 * all);
+        }
+        assert!(is_tight > 30, "{is_tight}");
+    }
+
+    #[test]
+    fn what_flies_as_a_whole_stays_together_and_what_is_no_number_does_not() {
+        let then = places();
+        let mut parting = Parting::default();
+        assert!(parting.parted(&then).near == f64::INFINITY);
+        parting.note(&then, 0.4);
+        let mut now: Vec<DVec3> = then.iter().map(|x| *x + DVec3::new(70.0, -3.0, 0.1)).collect();
+        assert!(parting.parted(&now).all < 1e-12);
+        now[5].x = f64::NAN;
+        assert!(parting.parted(&now).near == f64::INFINITY);
+    }
+}
