@@ -153,6 +153,32 @@ fn half_a_block_with_a_symmetry_plane_moves_like_the_whole_in_two_dimensions() {
 }
 
 #[test]
+fn loads_on_the_sides_of_half_a_block_move_it_like_the_whole() {
+    let half = Case {
+        dimension: "Two",
+        min: "(0.0, 0.0)",
+        max: "(1.0, 0.5)",
+        spacing: 0.0625,
+        velocity: "(\"x*(1 + y)\", \"-y*cos(2*x)\")",
+        conditions: "Traction(on: Select(face: MaxX), value: (\"2e5\", \"1e4*y\")), Pressure(on: Select(face: MaxY), value: \"1e5*(1 + x^2)\"),
+            Symmetry(plane: X, at: 0.0)",
+        fields: "",
+    };
+    let whole = Case {
+        min: "(-1.0, 0.0)",
+        conditions: "Traction(on: Select(face: MaxX), value: (\"2e5\", \"1e4*y\")), Traction(on: Select(face: MinX), value: (\"-2e5\", \"1e4*y\")),
+            Pressure(on: Select(face: MaxY), value: \"1e5*(1 + x^2)\")",
+        ..half
+    };
+    let (half, whole) = (run(&half, 100), run(&whole, 100));
+    assert_equal(&half, &whole, |place| place);
+    for name in ["kinetic", "strain", "traction", "pressure"] {
+        let (part, all) = (stored(&half, name), stored(&whole, name));
+        assert!((2.0 * part - all).abs() < 1e-9 * all.abs() && all != 0.0, "{name}: {part} and {all}");
+    }
+}
+
+#[test]
 fn an_eighth_of_a_block_with_three_symmetry_planes_moves_like_the_whole() {
     let eighth = Case {
         dimension: "Three",

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::field::Field;
+use super::symmetry::planes_of;
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
 use crate::scene::{Expression, Select};
@@ -70,14 +71,12 @@ fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc
     body.solid_law().ok()?.state(&mut state);
     let is_whole = body.offers(Offer::DeformedContact) && state.get(Damage::NAME).is_none();
     let is_surface = (select.face.is_some() || select.surface.is_some()) && select.nearest.is_none();
-    // The vertices of a skin at a symmetry plane are carried from one side alone: a uniform load would not stay uniform.
-    let is_cut =
-        select.surface.is_none() && sim.scene().conditions.iter().any(|item| item.name() == "Symmetry");
-    if !is_whole || !is_surface || is_cut {
+    if !is_whole || !is_surface {
         return None;
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
-    Skin::of(body, shape, &[], sim.dimension(), sim.folder()).map(Arc::new)
+    // Vertices at a symmetry plane are carried from both sides of it, so that a uniform load stays uniform.
+    Skin::of(body, shape, &planes_of(body, sim), sim.dimension(), sim.folder()).map(Arc::new)
 }
 
 /// What a scene says of a loaded surface.

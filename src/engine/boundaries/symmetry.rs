@@ -77,6 +77,17 @@ impl Plugin for Symmetry {
     }
 }
 
+/// The symmetry planes of the scene at which a body ends, whether their conditions are built already or not.
+pub(super) fn planes_of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<MirrorPlane> {
+    let items = sim.scene().conditions.iter().filter(|item| item.name() == Symmetry::NAME);
+    // What is wrong with a plane is told where its condition is built.
+    let planes = items.filter_map(|item| item.parse::<Symmetry>().ok());
+    let cut = planes.filter(|own| body.offers(Offer::MirrorImages) && own.cuts(body).unwrap_or(false));
+    let plane =
+        |own: Symmetry| MirrorPlane { axis: own.plane.index(), at: own.at, bodies: BodySet::new([body.id]) };
+    cut.map(plane).collect()
+}
+
 impl Symmetry {
     /// That no body ends at the plane.
     fn no_body(&self, sim: &SimBuilder<'_>) -> SetupError {
