@@ -63,8 +63,8 @@ fn build_in(
     let mut sim = SimBuilder::new(scene, source.folder(), bodies, phases);
     clamps::warn(scene, registry, &mut sim);
     lattice_edges::warn(scene, registry, &mut sim);
-    drawn_sides::warn(scene, registry, &mut sim);
     supports::place(scene, registry, &mut sim);
+    drawn_sides::warn(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);

@@ -34,8 +34,7 @@ pub(super) fn place_bodies<'r>(
     source: &Source,
     registry: &'r Registry,
 ) -> Result<Placed<'r>, Vec<Problem>> {
-    let mut problems = Vec::new();
-    let mut materials = Vec::new();
+    let (mut problems, mut materials) = (Vec::new(), Vec::new());
     for (name, item) in &scene.materials {
         match registry.build_material(item) {
             Ok(material) => materials.push((name.as_str(), material)),
@@ -82,6 +81,7 @@ pub(super) fn place_bodies<'r>(
             sites,
             carried: Vec::new(),
             hidden: Vec::new(),
+            sides: Vec::new(),
             bounds,
             velocity: body.velocity,
         };

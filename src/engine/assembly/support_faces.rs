@@ -2,12 +2,12 @@
 //!
 //! The outermost layer of a lattice is half a spacing inside, which would shorten the body by that much. It is moved onto the side with its mass and volume: the next layer is then one and a half
 //! spacings away, and the cells of both fill the body between them. Particles keep their lattice where the side is not a plane, beside symmetry planes and periodic sides, and in scenes with fluids, for which
-//! the particles of a body are its surface.
+//! the particles of a body are its surface. Formulations let the particles beside a side that is held along its normal alone carry what a uniform stress needs to be in balance.
 
 use glam::DVec3;
 
 use crate::boundaries::Symmetry;
-use crate::plugin::{BodyKind, Offer, Plugin, Registry, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, HeldSide, Offer, Plugin, Registry, SimBuilder};
 use crate::scene::{Edge, Face, Scene};
 use crate::shapes::{Aabb, Region};
 
@@ -21,8 +21,8 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
     if sim.bodies.iter().any(|body| body.kind == BodyKind::Fluid) {
         return;
     }
-    let mut ways: Vec<Vec<DVec3>> =
-        sim.bodies.iter().map(|body| vec![DVec3::ZERO; body.sites.len()]).collect();
+    // With the axes along which a condition holds the side.
+    let mut sides: Vec<Vec<(HeldSide, [bool; 3])>> = vec![Vec::new(); sim.bodies.len()];
     for item in &scene.conditions {
         registry.support(item, |support| {
             let (Some(face), Edge::Stated, None) = (support.on.face, support.edge, &support.on.nearest)
@@ -42,16 +42,43 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                 if !body.offers(Offer::Sides) || rows.len() == body.sites.len() {
                     continue;
                 }
-                for number in rows.iter().map(|row| *row as usize - body.rows.start) {
-                    ways[id.0][number] +=
-                        way_to_side(body.sites[number].position, face, at, body.spacing, &*region);
+                let way = |row: &u32| {
+                    let number = *row - body.rows.start as u32;
+                    let x = body.sites[number as usize].position;
+                    (number, INSIDE * way_to_side(x, face, at, body.spacing, &*region))
+                };
+                let moved: Vec<_> = rows.iter().map(way).filter(|(_, way)| *way != DVec3::ZERO).collect();
+                if moved.is_empty() {
+                    continue;
                 }
+                let (axis, sign) = face.outward();
+                let side = HeldSide { normal: sign * DVec3::AXES[axis], plane: (axis, at), moved };
+                sides[id.0].push((side, support.axes));
             }
         });
     }
-    for (body, ways) in sim.bodies.iter_mut().zip(&ways) {
-        body.sites.iter_mut().zip(ways).for_each(|(site, way)| site.position += INSIDE * *way);
+    for (body, sides) in sim.bodies.iter_mut().zip(&sides) {
+        place_body(body, sides, scene.dimension.count());
     }
+}
+
+/// Puts the particles of a body onto its sides, each with the axes along which a condition holds it.
+fn place_body(body: &mut BodyPlan, sides: &[(HeldSide, [bool; 3])], axes: usize) {
+    // Several conditions may hold one side, each along some axes: it is one plane all the same.
+    let mut ways = vec![DVec3::ZERO; body.sites.len()];
+    for (k, way) in sides.iter().flat_map(|(side, _)| &side.moved) {
+        let axis = way.abs().max_position();
+        ways[*k as usize][axis] = way[axis];
+    }
+    body.sites.iter_mut().zip(ways).for_each(|(site, way)| site.position += way);
+    let is_held = |side: &HeldSide, axis: usize| {
+        sides.iter().any(|(other, held)| other.normal == side.normal && held[axis])
+    };
+    // A stress that is uniform up to a side needs a side that can contract.
+    let is_drawn =
+        |side: &HeldSide, held: &[bool; 3]| held[side.plane.0] && (0..axes).any(|axis| !is_held(side, axis));
+    let drawn = sides.iter().filter(|(side, held)| is_drawn(side, held));
+    body.sides.extend(drawn.map(|(side, _)| side.clone()));
 }
 
 /// Coordinate of a side of a box, m.

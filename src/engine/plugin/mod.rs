@@ -17,7 +17,7 @@ pub use error::SetupError;
 pub(crate) use facet_selection::facets_of;
 pub use handed::ForBodies;
 pub use offers::{BodyKind, Offer};
-pub use plan::BodyPlan;
+pub use plan::{BodyPlan, HeldSide};
 pub use prescription::{MotionOfPlace, Prescription};
 pub(crate) use registry::FormulationEntry;
 pub use registry::{Entry, Kind, Registry};

@@ -3,12 +3,25 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use crate::materials::{FluidLaw, Law, Material, SolidLaw};
 use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, PhaseId};
+
+/// A plane side of a body whose particles are held along its normal, and free along another axis: they have been put onto it.
+#[derive(Clone, Debug)]
+pub struct HeldSide {
+    /// Unit normal out of the body.
+    pub normal: DVec3,
+    /// Axis and coordinate, m, of the plane.
+    pub plane: (usize, f64),
+    /// The particles, by their numbers, ascending, and how far they have been moved, m.
+    pub moved: Vec<(u32, DVec3)>,
+}
 
 /// A body whose particles are placed.
 #[derive(Clone)]
@@ -41,6 +54,8 @@ pub struct BodyPlan {
     pub carried: Vec<(u32, f64)>,
     /// Held particles behind that edge, which no other one sees, by their numbers, ascending.
     pub hidden: Vec<u32>,
+    /// Sides held along their normals.
+    pub sides: Vec<HeldSide>,
     /// Box around its shape, m.
     pub bounds: Aabb,
     /// Velocity at the start, m/s.

@@ -55,6 +55,7 @@ pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -
         sites,
         carried: Vec::new(),
         hidden: Vec::new(),
+        sides: Vec::new(),
         bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
         velocity: None,
         kind: crate::plugin::BodyKind::Solid,

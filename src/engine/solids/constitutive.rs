@@ -226,7 +226,7 @@ pub struct Constitutive<'a> {
 impl Constitutive<'_> {
     /// Computes the stress of a block whose deformation gradient is there, and calls `make` with what makes the force: the stress with that of damping.
     /// Each particle makes the share of its force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no deformation
-    /// gradient for want of neighbours, or that is held.
+    /// gradient for want of neighbours; other shares beside what is held.
     pub fn stress(
         &self,
         rows: &mut SolidRows<'_>,
@@ -258,7 +258,7 @@ impl Constitutive<'_> {
         let mut is_whole = true;
         for k in 0..n {
             let share = carried(k);
-            if share < 1.0 {
+            if share != 1.0 {
                 is_whole = false;
                 block.carry(k, share);
             }

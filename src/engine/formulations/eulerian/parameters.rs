@@ -14,6 +14,7 @@ use super::pairs::EulerianPairs;
 use super::rates::Rates;
 use super::rows::{BodyKernel, EulerianRows, PointColumns};
 use super::stress::Stress;
+use crate::formulations::total_lagrangian::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
@@ -131,13 +132,25 @@ impl Formulation for Eulerian {
                 sim.add_column_to::<HourglassEnergy>(&BodySet::new([own.id]));
             }
         }
+        let shares = shares_of(&listed, &kernels, sim);
         sim.add_setup(move |setup| set_up(listed, kernels, phase, setup));
-        add_systems(phase, solids, sim);
+        add_systems(phase, Stress::new(phase, solids, shares), sim);
         add_pair_systems(sim, phase, EulerianPairs(phase))
     }
 }
 
-fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
+/// The share of its stress that every row carries such that a uniform stress is in balance beside held sides at the start; empty where all carry all of it.
+fn shares_of(listed: &[ListedBody], kernels: &[BodyKernel], sim: &SimBuilder<'_>) -> Vec<f64> {
+    let bodies = listed.iter().zip(kernels).map(|(body, of)| {
+        let (plan, repeats) = (sim.body(body.id), &body.repeats[..]);
+        let held = HeldBody { plan, kernel: of.kernel, support: body.support, neighbors: None, repeats };
+        let is_adjoint = of.divergence == Divergence::Adjoint;
+        (body.id, if is_adjoint { balanced_shares(&held) } else { Vec::new() })
+    });
+    all_shares(bodies, sim)
+}
+
+fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
     let rates = System::new(Stage::Gradients, RATES, Rates { phase })
         .on_phases([phase])
         .reads_near::<Position>()
@@ -149,8 +162,8 @@ fn add_systems(phase: PhaseId, solids: SolidBodies, sim: &mut SimBuilder<'_>) {
         .writes::<DeformationGradient>();
     let is_dilated = sim.columns(phase).get(DilatationRate::NAME).is_some();
     sim.add_system(if is_dilated { rates.reads::<DilatationRate>() } else { rates });
-    let state = solids.access();
-    let stress = System::new(Stage::Constitutive, STRESS, Stress::new(phase, solids))
+    let state = stress.access();
+    let stress = System::new(Stage::Constitutive, STRESS, stress)
         .on_phases([phase])
         .reads_near::<Position>()
         .reads_near::<ReferenceVolume>()

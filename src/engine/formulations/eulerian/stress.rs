@@ -12,7 +12,7 @@ use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{AccountKind, Run, Step, StepError};
+use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
     BodyPass, Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows,
     SolidSum, count_rows,
@@ -26,6 +26,8 @@ pub(super) struct Stress {
     phase: PhaseId,
     solids: SolidBodies,
     dilatation: Dilatation,
+    /// Share of its stress that every row carries; empty where all carry all of it.
+    shares: Vec<f64>,
     /// Removed rows that the sums know of, ascending.
     removed: Vec<u32>,
 }
@@ -62,8 +64,13 @@ impl Run for Stress {
 }
 
 impl Stress {
-    pub fn new(phase: PhaseId, solids: SolidBodies) -> Self {
-        Self { phase, solids, dilatation: Dilatation::default(), removed: Vec::new() }
+    pub fn new(phase: PhaseId, solids: SolidBodies, shares: Vec<f64>) -> Self {
+        Self { phase, solids, dilatation: Dilatation::default(), shares, removed: Vec::new() }
+    }
+
+    /// The columns that it touches for its bodies.
+    pub fn access(&self) -> Vec<Access> {
+        self.solids.access()
     }
 
     fn pack(&self, world: &World, packed: &mut EulerianRows) -> Result<(), MissingColumn> {
@@ -153,6 +160,7 @@ impl Stress {
             points,
             volume,
             mass,
+            shares: &self.shares,
             plane: *plane,
             starts: part.dt == 0.0,
         };
@@ -228,12 +236,19 @@ struct StressPass<'a> {
     points: &'a [Point],
     volume: &'a [ReferenceVolume],
     mass: &'a [Mass],
+    shares: &'a [f64],
     plane: bool,
     /// Whether there is no step before.
     starts: bool,
 }
 
 impl StressPass<'_> {
+    /// The share of its stress that a row carries.
+    fn share(&self, row: usize, around: &Surroundings) -> f64 {
+        let is_fitted = around.inverse_moment != Sym3::ZERO;
+        if is_fitted { self.shares.get(row).copied().unwrap_or(1.0) } else { 0.0 }
+    }
+
     fn block(
         &self,
         constitutive: &Constitutive<'_>,
@@ -252,7 +267,7 @@ impl StressPass<'_> {
         }
         block.residual[..n].fill(0.0);
         let around = &*near.around;
-        let share = |k: usize| if around[k].inverse_moment == Sym3::ZERO { 0.0 } else { 1.0 };
+        let share = |k: usize| self.share(first + k, &around[k]);
         let mut sum = SolidSum::default();
         constitutive.stress(&mut rows, block, share, &mut sum, |stress| {
             for (k, out) in stresses.iter_mut().enumerate() {

@@ -4,7 +4,6 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::held::Held;
 use super::internal_force;
 use super::pairs::BondPairs;
 use super::phase::PackedRows;
@@ -107,7 +106,7 @@ impl Formulation for TotalLagrangian {
             hessian: solid.hessian,
             repeats,
         });
-        let first_lists = SetUp { phase, bodies: bodies.collect(), held: Held::of(&ids, sim) };
+        let first_lists = SetUp::of(phase, bodies.collect(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
         let state = solids.access();
         let deformation = Deformation::new(phase, plane, solids);

@@ -1,5 +1,6 @@
 //! The effect of supports on the particles beside them.
 
+use super::balance::{HeldBody, balanced_shares};
 use crate::plugin::SimBuilder;
 use crate::world::BodyId;
 
@@ -14,21 +15,34 @@ pub(in crate::formulations) struct Held {
 
 impl Held {
     /// Those of the bodies of a phase.
-    pub fn of(bodies: &[BodyId], sim: &SimBuilder<'_>) -> Self {
-        let hidden = bodies.iter().map(|id| (*id, sim.body(*id).hidden.clone())).collect();
-        let bodies = || bodies.iter().map(|id| sim.body(*id));
-        if bodies().all(|body| body.carried.is_empty()) {
-            return Self { carried: Vec::new(), hidden };
-        }
-        let mut carried = vec![1.0; bodies().map(|body| body.rows.end).max().unwrap_or(0)];
-        for body in bodies() {
-            body.carried.iter().for_each(|(k, share)| carried[body.rows.start + *k as usize] = *share);
-        }
-        Self { carried, hidden }
+    pub fn of(bodies: &[HeldBody<'_>], sim: &SimBuilder<'_>) -> Self {
+        let hidden = bodies.iter().map(|body| (body.plan.id, body.plan.hidden.clone())).collect();
+        let shares = bodies.iter().map(|body| (body.plan.id, balanced_shares(body)));
+        Self { carried: all_shares(shares, sim), hidden }
     }
 
     /// The particles of a body that no other one sees, by their numbers, ascending.
     pub fn hidden_of(&self, body: BodyId) -> &[u32] {
         self.hidden.iter().find(|(id, _)| *id == body).map_or(&[], |(_, hidden)| hidden)
     }
+}
+
+/// The share of every row of a phase, from those of its bodies that are not 1; empty where all are.
+pub(in crate::formulations) fn all_shares(
+    bodies: impl Iterator<Item = (BodyId, Vec<(u32, f64)>)>,
+    sim: &SimBuilder<'_>,
+) -> Vec<f64> {
+    let (mut all, mut end) = (Vec::new(), 0);
+    for (id, shares) in bodies {
+        let rows = &sim.body(id).rows;
+        end = end.max(rows.end);
+        if !shares.is_empty() {
+            all.resize(rows.end.max(all.len()), 1.0);
+        }
+        shares.iter().for_each(|(k, share)| all[rows.start + *k as usize] = *share);
+    }
+    if !all.is_empty() {
+        all.resize(end, 1.0);
+    }
+    all
 }

@@ -4,6 +4,7 @@
 //! over pairs. The first computes F and, block by block while the rows are in cache, the stress and the corrected stress;
 //! the second computes the force.
 
+mod balance;
 mod bond_sum;
 mod bonds;
 mod cracks;
@@ -28,16 +29,17 @@ mod state_tests;
 mod support;
 mod system;
 
+pub(super) use balance::{HeldBody, balanced_shares};
 pub use bonds::{BondError, Bonds};
 pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;
 pub(super) use frame::{Frame, fill_ghosts, frame_of};
 pub(super) use gather::{CorrectStress, Gather, fit_gradients};
-pub(super) use held::Held;
+pub(super) use held::{Held, all_shares};
 pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};
 pub(super) use internal_force::InternalForce;
 pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
 pub(super) use reach::{Ellipsoid, Ellipsoids};
 pub use rows::Site;
-pub(super) use set_up::BodySetUp;
+pub(super) use set_up::{BodySetUp, held_of};
 pub(super) use spread::fit;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
+use super::balance::HeldBody;
 use super::bonds::{BodyBonds, Bonds};
 use super::cracks::Cracks;
 use super::held::Held;
@@ -14,7 +15,7 @@ use super::rows::Site;
 use super::support::choose_support;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
-use crate::plugin::{Setup, SetupError};
+use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::removal::Leaving;
 use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
@@ -46,11 +47,27 @@ impl BodySetUp {
     }
 }
 
+/// What supports do to the bodies of a phase.
+pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_>) -> Held {
+    let dimension = sim.dimension().count();
+    let held = bodies.iter().map(|body| {
+        let plan = sim.body(body.id);
+        HeldBody {
+            plan,
+            kernel: body.kernel(dimension).kernel,
+            support: plan.support.unwrap_or(body.support),
+            neighbors: body.neighbors,
+            repeats: &body.repeats,
+        }
+    });
+    Held::of(&held.collect::<Vec<_>>(), sim)
+}
+
 /// The bodies of a phase before the first step.
 pub(super) struct SetUp {
-    pub phase: PhaseId,
-    pub bodies: Vec<BodySetUp>,
-    pub held: Held,
+    phase: PhaseId,
+    bodies: Vec<BodySetUp>,
+    held: Held,
 }
 
 /// Columns of the reference configuration, of the whole phase.
@@ -69,6 +86,12 @@ fn missing(error: MissingColumn) -> SetupError {
 }
 
 impl SetUp {
+    /// That of the bodies of a phase.
+    pub fn of(phase: PhaseId, bodies: Vec<BodySetUp>, sim: &SimBuilder<'_>) -> Self {
+        let held = held_of(&bodies, sim);
+        Self { phase, bodies, held }
+    }
+
     /// Makes the packed rows of the phase.
     pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
         self.fill_columns(setup.world)?;

@@ -9,7 +9,7 @@ use super::force::InternalForce;
 use super::phase::UpdatedRows;
 use super::set_up::SetUp;
 use super::system::UpdatedSolids;
-use crate::formulations::total_lagrangian::{BodySetUp, BondPairs, Held};
+use crate::formulations::total_lagrangian::{BodySetUp, BondPairs};
 use crate::kernels::KernelName;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
@@ -114,7 +114,7 @@ impl Formulation for UpdatedLagrangian {
             hessian: solid.hessian,
             repeats,
         });
-        let (first, held) = (first.collect(), Held::of(&ids, sim));
+        let first: Vec<BodySetUp> = first.collect();
         let can_fail = sim.columns(phase).get(Damage::NAME).is_some();
         let rule = |((id, own), solid): (&(BodyId, Self), &SolidBody)| {
             let spacing = sim.body(*id).spacing;
@@ -123,7 +123,7 @@ impl Formulation for UpdatedLagrangian {
         };
         let rules = bodies.iter().zip(solids.iter()).map(rule).collect();
         let system = UpdatedSolids::new(phase, plane, solids, rules);
-        let first_lists = SetUp { phase, bodies: first, held, is_stabilized: system.is_stabilized() };
+        let first_lists = SetUp::of(phase, first, system.is_stabilized(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
         let gradient = System::new(Stage::Constitutive, GRADIENT, system)
             .on_phases([phase])

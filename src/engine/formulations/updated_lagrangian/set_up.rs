@@ -7,9 +7,9 @@ use super::control::Control;
 use super::lists::Lists;
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
-use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows};
+use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows, held_of};
 use crate::linalg::Sym3;
-use crate::plugin::{Setup, SetupError};
+use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::removal::Leaving;
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
@@ -19,14 +19,25 @@ use crate::world::{
 
 /// The bodies of a phase before the first step.
 pub(super) struct SetUp {
-    pub phase: PhaseId,
-    pub bodies: Vec<BodySetUp>,
-    pub held: Held,
+    phase: PhaseId,
+    bodies: Vec<BodySetUp>,
+    held: Held,
     /// Of every body: whether stabilizers act on it.
-    pub is_stabilized: Vec<bool>,
+    is_stabilized: Vec<bool>,
 }
 
 impl SetUp {
+    /// That of the bodies of a phase.
+    pub fn of(
+        phase: PhaseId,
+        bodies: Vec<BodySetUp>,
+        is_stabilized: Vec<bool>,
+        sim: &SimBuilder<'_>,
+    ) -> Self {
+        let held = held_of(&bodies, sim);
+        Self { phase, bodies, held, is_stabilized }
+    }
+
     /// Fills the columns of the reference with those of the start, and makes its lists.
     pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
         self.fill_columns(setup.world).map_err(|error| SetupError::internal(&error))?;
