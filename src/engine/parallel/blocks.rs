@@ -178,11 +178,31 @@ fn divide_and_sum<S: Split, R: BlockSum>(
     }
     let half = count / 2;
     let (left, right) = rows.split(half * BLOCK);
-    let left = || divide_and_sum(per_task, first_row, half, left, body);
-    let right = || divide_and_sum(per_task, first_row + half * BLOCK, count - half, right, body);
-    let (mut sum, next) = if count > per_task { rayon::join(left, right) } else { (left(), right()) };
+    let (mut left, mut right) = (Some(left), Some(right));
+    let (mut sum, mut next) = (R::default(), R::default());
+    let mut left = || {
+        if let Some(rows) = left.take() {
+            sum = divide_and_sum(per_task, first_row, half, rows, body);
+        }
+    };
+    let mut right = || {
+        if let Some(rows) = right.take() {
+            next = divide_and_sum(per_task, first_row + half * BLOCK, count - half, rows, body);
+        }
+    };
+    if count > per_task {
+        join(&mut left, &mut right);
+    } else {
+        left();
+        right();
+    }
     sum.add(&next);
     sum
+}
+
+/// `left` and `right`, on a thread each if there are two. rayon's join has a copy for every loop that calls it, a tenth of the program; this one is compiled once.
+fn join(left: &mut (dyn FnMut() + Send), right: &mut (dyn FnMut() + Send)) {
+    rayon::join(left, right);
 }
 
 /// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the hand-over.
@@ -198,10 +218,19 @@ fn divide<S: Split, R: BlockSum>(
     if sums.len() > per_task {
         let half = sums.len() / 2;
         let (left, right) = rows.split(half * BLOCK);
+        let (mut left, mut right) = (Some(left), Some(right));
         let (left_sums, right_sums) = sums.split_at_mut(half);
-        rayon::join(
-            || divide(per_task, first_row, left, left_sums, body),
-            || divide(per_task, first_row + half * BLOCK, right, right_sums, body),
+        join(
+            &mut || {
+                if let Some(rows) = left.take() {
+                    divide(per_task, first_row, rows, left_sums, body);
+                }
+            },
+            &mut || {
+                if let Some(rows) = right.take() {
+                    divide(per_task, first_row + half * BLOCK, rows, right_sums, body);
+                }
+            },
         );
         return;
     }

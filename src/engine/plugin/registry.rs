@@ -12,7 +12,7 @@ use super::offers::{BodyKind, Offer};
 use super::plan::BodyPlan;
 use super::traits::{Formulation, Plugin, Support};
 use crate::materials::{Material, MaterialModel};
-use crate::scene::{Item, Parameter, Problem, Scene, TypeDoc, parameters, type_docs, unknown};
+use crate::scene::{Described, Item, Parameter, Problem, Scene, TypeDoc, parameters, unknown};
 use crate::world::{BodyId, ColumnSet};
 
 /// What kind of thing a name of a scene stands for.
@@ -204,9 +204,19 @@ impl Registry {
         name: &'static str,
         reference: &'static str,
     ) -> &mut Self {
-        let entry = Entry { name, reference, parameters: parameters::<T>(), docs: type_docs::<T>() };
+        self.enter(kind, (name, reference), &Described::of::<T>(), |item| item.parse::<T>().map(drop))
+    }
+
+    fn enter(
+        &mut self,
+        kind: Kind,
+        (name, reference): (&'static str, &'static str),
+        described: &Described,
+        parser: ParseItem,
+    ) -> &mut Self {
+        let entry = Entry { name, reference, parameters: described.parameters(), docs: described.docs() };
         self.entries.insert((kind, name), entry);
-        self.parsers.insert((kind, name), |item| item.parse::<T>().map(drop));
+        self.parsers.insert((kind, name), parser);
         self
     }
 

@@ -37,7 +37,22 @@ struct Context<'a> {
     incomplete: Cell<bool>,
 }
 
-impl Context<'_> {
+impl<'a> Context<'a> {
+    fn new(text: &'a str, offset: usize, symbols: &'a Symbols) -> Self {
+        let (problems, bad_fields) = Default::default();
+        Self { text, offset, symbols, problems, bad_fields, incomplete: Cell::new(false) }
+    }
+
+    /// What was reported, in the order of the text.
+    fn into_problems(self) -> Vec<Problem> {
+        let mut problems = self.problems.into_inner();
+        problems.sort_by_key(|problem| match &problem.at {
+            super::Place::Span(span) => span.start,
+            _ => 0,
+        });
+        problems
+    }
+
     fn report(&self, problem: Problem) {
         let mut problems = self.problems.borrow_mut();
         if !problems.contains(&problem) {
@@ -62,14 +77,7 @@ pub(super) fn decode<T: DeserializeOwned>(
     unnamed: bool,
     symbols: &Arc<Symbols>,
 ) -> Decoded<T> {
-    let context = Context {
-        text,
-        offset,
-        symbols,
-        problems: RefCell::default(),
-        bad_fields: RefCell::default(),
-        incomplete: Cell::new(false),
-    };
+    let context = Context::new(text, offset, symbols);
     let mut value = None;
     for _ in 0..MAX_PASSES {
         let known = context.bad_fields.borrow().len();
@@ -80,10 +88,5 @@ pub(super) fn decode<T: DeserializeOwned>(
             break;
         }
     }
-    let mut problems = context.problems.into_inner();
-    problems.sort_by_key(|problem| match &problem.at {
-        super::Place::Span(span) => span.start,
-        _ => 0,
-    });
-    Decoded { value: value.filter(|_| !context.incomplete.get()), problems }
+    Decoded { value: value.filter(|_| !context.incomplete.get()), problems: context.into_problems() }
 }

@@ -49,7 +49,7 @@ pub use precision::Precision;
 pub use probe::{Line, Probe, Quantity, RelativeTo, Take};
 pub use problem::{Place, Problem, SceneError};
 pub use record::Record;
-pub use reference::{Parameter, TypeDoc, parameters, schema_markdown, type_docs};
+pub use reference::{Described, Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
 pub use table::Table;

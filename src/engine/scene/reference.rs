@@ -24,8 +24,31 @@ pub struct Parameter {
 
 /// The parameters of a struct, in the order of its fields; none for other types.
 pub fn parameters<T: JsonSchema>() -> Vec<Parameter> {
-    let schema = SchemaGenerator::default().into_root_schema_for::<T>().to_value();
-    fields(&schema, &Definitions(schema.get("$defs")))
+    Described::of::<T>().parameters()
+}
+
+/// A type with its schema, from which both its parameters and its documentation follow: what is generic is compiled once a type.
+pub struct Described {
+    name: String,
+    schema: Value,
+}
+
+impl Described {
+    /// The type `T`.
+    pub fn of<T: JsonSchema>() -> Self {
+        let schema = SchemaGenerator::default().into_root_schema_for::<T>().to_value();
+        Self { name: T::schema_name().into_owned(), schema }
+    }
+
+    /// [`parameters`].
+    pub fn parameters(&self) -> Vec<Parameter> {
+        fields(&self.schema, &Definitions(self.schema.get("$defs")))
+    }
+
+    /// [`type_docs`].
+    pub fn docs(&self) -> Vec<TypeDoc> {
+        docs_of(&self.name, &self.schema)
+    }
 }
 
 /// The documentation of a type as scenes write it.
@@ -43,10 +66,13 @@ pub struct TypeDoc {
 
 /// The documentation of a type, and then of every type that it mentions, each once.
 pub fn type_docs<T: JsonSchema>() -> Vec<TypeDoc> {
-    let schema = SchemaGenerator::default().into_root_schema_for::<T>().to_value();
+    Described::of::<T>().docs()
+}
+
+fn docs_of(name: &str, schema: &Value) -> Vec<TypeDoc> {
     let definitions = Definitions(schema.get("$defs"));
-    let mut docs = vec![type_doc(&T::schema_name(), &schema, &definitions)];
-    let mut waiting = mentioned(&schema);
+    let mut docs = vec![type_doc(name, schema, &definitions)];
+    let mut waiting = mentioned(schema);
     let mut done = Vec::new();
     while !waiting.is_empty() {
         let name = waiting.remove(0);

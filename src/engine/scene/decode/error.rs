@@ -27,6 +27,14 @@ pub(super) enum Error {
 }
 
 impl Error {
+    /// The error with the number of entries that a tuple has, where it is one of its length.
+    pub fn with_found(self, found: usize) -> Self {
+        match self {
+            Self::Length { expected, .. } => Self::Length { found, expected },
+            error => error,
+        }
+    }
+
     /// Reports the error at `node`.
     pub fn report(self, node: &Node, context: &Context) -> Self {
         let head = node.head();

@@ -10,7 +10,7 @@ use super::variant::Variant;
 use crate::scene::Problem;
 use crate::scene::expression::constant;
 use crate::scene::names::unknown;
-use crate::scene::tree::{Kind, Node};
+use crate::scene::tree::{Field, Kind, Node};
 
 /// The name of the newtype by which an `Item` asks for its text and place instead of its value.
 pub(in crate::scene) const ITEM: &str = "$meshless::Item";
@@ -25,6 +25,14 @@ pub(super) struct Value<'a> {
 }
 
 type Outcome<T> = Result<T, Error>;
+
+/// The fields of a struct as they are written.
+struct Fields<'a> {
+    /// Those that the type has, each once.
+    good: Vec<&'a Field>,
+    /// Names that are missing because they are misspelt or their values bad.
+    meant: Vec<&'a str>,
+}
 
 impl<'a> Value<'a> {
     fn of(self, node: &'a Node) -> Self {
@@ -62,8 +70,17 @@ impl<'a> Value<'a> {
         known: &'static [&'static str],
         visitor: V,
     ) -> Outcome<V::Value> {
-        let mut fields = Vec::new();
-        let mut meant = Vec::new();
+        let Fields { good, meant } = self.fields(label, known);
+        match visitor.visit_map(FieldValues { fields: good.iter(), next: None, context: self.context }) {
+            // What is missing because its name is misspelt or its value bad has been reported as that.
+            Err(Error::Missing(field)) if meant.contains(&field) => Err(Error::Reported),
+            result => self.here(result),
+        }
+    }
+
+    /// The fields that the type has, each once, after reporting the others.
+    fn fields(self, label: &str, known: &'static [&'static str]) -> Fields<'a> {
+        let (mut good, mut meant) = (Vec::<&Field>::new(), Vec::new());
         for field in self.node.fields() {
             let name = &field.name;
             let at = name.span.clone();
@@ -71,19 +88,15 @@ impl<'a> Value<'a> {
                 let (message, help) = unknown("field", &name.text, known);
                 self.context.report(Problem::at_span(at, format!("{message} of `{label}`")).helps(help));
                 meant.extend(crate::scene::names::nearest(&name.text, known));
-            } else if fields.iter().any(|other: &&crate::scene::tree::Field| other.name.text == name.text) {
+            } else if good.iter().any(|other| other.name.text == name.text) {
                 self.context.report(Problem::at_span(at, format!("field `{}` is given twice", name.text)));
             } else if self.context.bad_fields.borrow().contains(&at.start) {
                 meant.push(&name.text);
             } else {
-                fields.push(field);
+                good.push(field);
             }
         }
-        match visitor.visit_map(FieldValues { fields: fields.iter(), next: None, context: self.context }) {
-            // What is missing because its name is misspelt or its value bad has been reported as that.
-            Err(Error::Missing(field)) if meant.contains(&field) => Err(Error::Reported),
-            result => self.here(result),
-        }
+        Fields { good, meant }
     }
 
     /// The value of an expression that stands where a number is expected; none if the value is no text.
@@ -114,19 +127,21 @@ impl<'a> Value<'a> {
         let mut rest = entries.iter();
         let result = visitor.visit_seq(Entries { rest: &mut rest, recover, context: self.context });
         let unread = rest.len();
-        let result = result.map_err(|error| match error {
-            Error::Length { expected, .. } => Error::Length { found: entries.len(), expected },
-            error => error,
-        });
-        if result.is_ok() && unread > 0 {
-            let expected = match entries.len() - unread {
-                1 => "1 entry".into(),
-                n => format!("{n} entries"),
-            };
-            return self.here(Err(Error::Length { found: entries.len(), expected }));
-        }
-        self.here(result)
+        self.here(
+            result
+                .map_err(|error| error.with_found(entries.len()))
+                .and_then(|value| if unread == 0 { Ok(value) } else { Err(too_many(entries.len(), unread)) }),
+        )
     }
+}
+
+/// The error of entries that were not read.
+fn too_many(found: usize, unread: usize) -> Error {
+    let expected = match found - unread {
+        1 => "1 entry".into(),
+        n => format!("{n} entries"),
+    };
+    Error::Length { found, expected }
 }
 
 macro_rules! whole_numbers {
@@ -329,8 +344,7 @@ impl<'a> Deserializer<'a> for Value<'a> {
         visitor: V,
     ) -> Outcome<V::Value> {
         if self.name().is_none() {
-            let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
-            return self.wrong(format!("a {name}: one of {}", known.join(", ")));
+            return self.wrong(one_of(name, variants));
         }
         self.here(visitor.visit_enum(Variant { value: self }))
     }
@@ -347,6 +361,12 @@ impl<'a> Deserializer<'a> for Value<'a> {
     whole_numbers! {
         deserialize_i8 deserialize_i16 deserialize_i32 deserialize_u8 deserialize_u16 deserialize_u32 deserialize_u64
     }
+}
+
+/// What is expected where a variant stands.
+fn one_of(name: &str, variants: &[&str]) -> String {
+    let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
+    format!("a {name}: one of {}", known.join(", "))
 }
 
 /// A name as serde reads the keys of fields and variants.
