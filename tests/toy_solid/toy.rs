@@ -79,9 +79,11 @@ impl Formulation for Toy {
         sim.add_system(
             System::new(Stage::Constitutive, "toy_stress", work)
                 .on_phases([phase])
-                .reads::<Position>()
+                .reads_near::<Position>()
+                .reads_near::<ReferencePosition>()
+                .reads_near::<ReferenceVolume>()
+                .reads_near::<Removed>()
                 .reads::<Velocity>()
-                .reads::<Removed>()
                 .touches_all(state),
         );
         sim.add_system(
@@ -145,9 +147,9 @@ type Own<'a> = (&'a mut [Fit], &'a mut [CorrectedStress]);
 impl Rows {
     /// Packs the particles as they are now; removed ones have no volume.
     fn pack(&mut self, view: &PhaseView<'_>) -> Result<(), MissingColumn> {
-        let (x, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
-        let (velocity, removed) = (view.read::<Velocity>()?, view.read::<Removed>()?);
-        let volume = view.read::<ReferenceVolume>()?;
+        let (x, reference) = (view.read_near::<Position>()?, view.read_near::<ReferencePosition>()?);
+        let (velocity, removed) = (view.read::<Velocity>()?, view.read_near::<Removed>()?);
+        let volume = view.read_near::<ReferenceVolume>()?;
         for i in 0..view.len() {
             self.points[i] = Point {
                 reference: reference[i].0,

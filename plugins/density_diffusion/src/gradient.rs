@@ -39,7 +39,7 @@ impl Run for Gradient {
         let cloud = step.resources.get::<FlowCloud>();
         for id in self.bodies.iter() {
             let (view, rows) = step.world.body_view(id);
-            let density = view.read::<Density>()?;
+            let density = view.read_near::<Density>()?;
             let mut gradient = view.write::<DensityGradient>()?;
             let at_rest = cloud.state(id).map_or(0.0, |state| state.density);
             let pass = GradientPass { cloud: &cloud, rows: rows.clone(), density: &density, at_rest };

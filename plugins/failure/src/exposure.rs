@@ -7,9 +7,9 @@ use glam::DVec3;
 use meshless_engine::bytemuck;
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::removal::RemovalRule;
-use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
 use meshless_engine::solids::SolidPhase;
-use meshless_engine::world::{BodyId, BodySet, Damage, Position, Removed};
+use meshless_engine::world::{BodyId, BodySet, Column, Damage, Position, Removed};
 
 use crate::Exposed;
 
@@ -93,5 +93,9 @@ impl RemovalRule for Worn {
         let exposed = view.read::<Exposed>()?;
         out.extend(rows.filter(|&row| exposed[row].0 == 1).map(|row| row as u32));
         Ok(())
+    }
+
+    fn access(&self) -> Vec<Access> {
+        vec![Access { column: Exposed::NAME, mode: Mode::Reads }]
     }
 }

@@ -1,8 +1,8 @@
 //! Failed particles that are taken out of the run.
 
 use meshless_engine::removal::RemovalRule;
-use meshless_engine::schedule::{Step, StepError};
-use meshless_engine::world::{BodyId, Damage};
+use meshless_engine::schedule::{Access, Mode, Step, StepError};
+use meshless_engine::world::{BodyId, Column, Damage};
 
 /// Names the failed particles of some bodies.
 pub(crate) struct Failed {
@@ -18,5 +18,9 @@ impl RemovalRule for Failed {
         let damage = view.read::<Damage>()?;
         out.extend(rows.filter(|&row| damage[row].0 >= 1.0).map(|row| row as u32));
         Ok(())
+    }
+
+    fn access(&self) -> Vec<Access> {
+        vec![Access { column: Damage::NAME, mode: Mode::Reads }]
     }
 }

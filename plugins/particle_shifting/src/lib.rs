@@ -141,7 +141,7 @@ impl Run for Shifting {
             let (view, rows) = step.world.body_view(id);
             let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
             let displacements = Displacements::new(cloud, strength, sound_speed, dt);
-            let old = view.read::<PendingDilation>()?;
+            let old = view.read_near::<PendingDilation>()?;
             for row in rows {
                 shifts[row] = displacements.of(&locals[row], interior.has(row));
                 (moves[row], pending[row]) = (shifts[row].displacement, old[row].0);

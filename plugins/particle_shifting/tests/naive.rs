@@ -102,7 +102,9 @@ impl Plugin for Witness {
             *state.lock().expect("a lock") = State::of(step.world, step.clock.dt, step.ledger);
             Ok(())
         };
-        sim.add_system(System::new(Stage::PostStep, "witness", look).before(ParticleShifting::NAME));
+        sim.add_system(
+            System::new(Stage::PostStep, "witness", look).reads_all().before(ParticleShifting::NAME),
+        );
         Ok(())
     }
 }

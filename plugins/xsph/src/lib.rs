@@ -86,7 +86,7 @@ impl Run for Smoothing {
         for id in self.bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             self.moves.resize(rows.len(), DVec3::ZERO);
-            let velocity = view.read::<Velocity>()?;
+            let velocity = view.read_near::<Velocity>()?;
             let pass = Mean { rows: rows.clone(), velocity: &velocity, factor };
             cloud.for_each_row(rows.start, &mut self.moves, &mut self.sums, &pass);
             displace(step, id, &self.moves, self.gravity, Xsph::NAME)?;

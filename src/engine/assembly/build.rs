@@ -99,7 +99,7 @@ fn start(
     outputs: Outputs,
 ) -> Result<Simulation, Vec<Problem>> {
     let Outputs { output, probes } = outputs;
-    let world = spawn::spawn(&sim);
+    let mut world = spawn::spawn(&sim);
     let mut resources = Resources::with_shared(std::mem::take(&mut sim.shared));
     let held = BodySet::new(sim.held.take());
     for step in std::mem::take(&mut sim.setup) {
@@ -109,6 +109,7 @@ fn start(
     }
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
         .map_err(|e| vec![Problem::new(e.to_string())])?;
+    world.declare(schedule.declared());
     if let Some(output) = output {
         resources.of_mut(output).prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }

@@ -34,7 +34,7 @@ impl Plugin for BodyForce {
         load::require_movable(&selection, sim)?;
         let field = Field::new(self.value, sim)?;
         let law = ForcePerMass { field };
-        load::apply("body_force", law, &selection, sim, |system| system);
+        load::apply("body_force", law, &selection, sim, |system| system.reads::<Mass>());
         Ok(())
     }
 }

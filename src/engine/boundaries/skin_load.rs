@@ -132,11 +132,11 @@ pub(super) fn apply(
     let make = System::new(Stage::Boundary, label, Make(shared));
     sim.add_system(
         make.on_phases(phases.clone())
-            .reads::<Position>()
-            .reads::<Velocity>()
-            .reads::<Mobility>()
-            .reads::<Removed>()
-            .reads::<DeformationGradient>()
+            .reads_near::<Position>()
+            .reads_near::<Velocity>()
+            .reads_near::<Mobility>()
+            .reads_near::<Removed>()
+            .reads_near::<DeformationGradient>()
             .touches("corrected_stress", Mode::Adds),
     );
     let push =

@@ -206,7 +206,7 @@ impl<T: PairTerm> ErasedTerm for T {
         before: Option<&Chain<'_>>,
         go_on: &mut dyn FnMut(&Chain<'_>) -> Result<(), MissingColumn>,
     ) -> Result<(), MissingColumn> {
-        let (of_i, of_j) = (T::ReadI::guards(phase)?, T::ReadJ::guards(phase)?);
+        let (of_i, of_j) = (T::ReadI::guards(phase, Mode::Reads)?, T::ReadJ::guards(phase, Mode::ReadsNear)?);
         let rows = 0..phase.len();
         let bound = Bound {
             term: self,

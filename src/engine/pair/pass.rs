@@ -9,7 +9,9 @@ use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, PhaseId, Position, Velocity};
+use crate::world::{
+    BodyId, Force, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
+};
 
 thread_local! {
     /// The geometry of some rows; kept, so that a step does not allocate.
@@ -54,6 +56,10 @@ pub fn add_pair_systems(
     let system = System::new(Stage::Rates, "pair_terms", pass)
         .on_phases([phase])
         .reads_near::<Position>()
+        .reads_near::<ReferencePosition>()
+        .reads_near::<ReferenceVolume>()
+        .reads_near::<Removed>()
+        .reads_near::<SupportRadius>()
         .adds::<Force>()
         .touches_all(access);
     sim.add_system(if reads.velocity { system.reads_near::<Velocity>() } else { system });

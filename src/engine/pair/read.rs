@@ -24,8 +24,8 @@ pub trait ReadSet: Copy + Send + Sync + 'static {
 
     /// Names of the columns.
     fn access() -> Vec<Access>;
-    /// Borrows the columns.
-    fn guards<'g>(phase: &PhaseView<'g>) -> Result<Self::Guards<'g>, MissingColumn>;
+    /// Borrows the columns, for reading own rows or those of neighbours too.
+    fn guards<'g>(phase: &PhaseView<'g>, mode: Mode) -> Result<Self::Guards<'g>, MissingColumn>;
     /// The borrowed columns as slices of the given rows.
     fn slices<'s>(guards: &'s Self::Guards<'_>, rows: Range<usize>) -> Self::Slices<'s>;
     /// The values of four rows of the slices; `signs` are those of the axes of mirror images.
@@ -112,7 +112,7 @@ impl ReadSet for () {
         Vec::new()
     }
 
-    fn guards<'g>(_: &PhaseView<'g>) -> Result<(), MissingColumn> {
+    fn guards<'g>(_: &PhaseView<'g>, _: Mode) -> Result<(), MissingColumn> {
         Ok(())
     }
 
@@ -158,8 +158,8 @@ macro_rules! read_set {
                 vec![$(Access { column: $name::Column::NAME, mode: Mode::Reads }),+]
             }
 
-            fn guards<'g>(phase: &PhaseView<'g>) -> Result<Self::Guards<'g>, MissingColumn> {
-                Ok(($(phase.read::<$name::Column>()?,)+))
+            fn guards<'g>(phase: &PhaseView<'g>, mode: Mode) -> Result<Self::Guards<'g>, MissingColumn> {
+                Ok(($(phase.read_as::<$name::Column>(mode)?,)+))
             }
 
             fn slices<'s>(guards: &'s Self::Guards<'_>, rows: Range<usize>) -> Self::Slices<'s> {

@@ -144,7 +144,7 @@ pub(super) fn add_system(sim: &mut SimBuilder<'_>, table: &Arc<FieldTable>) -> R
         let mut columns: Vec<_> = conditions.iter().flat_map(|condition| condition.gauge.needs()).collect();
         columns.sort_unstable();
         columns.dedup();
-        let system = System::new(Stage::Record, STOP, Stop(conditions));
+        let system = System::new(Stage::Record, STOP, Stop(conditions)).reads_all();
         let system = columns.iter().fold(system, |system, column| system.touches(column, Mode::Reads));
         sim.add_system(system);
     }

@@ -13,7 +13,7 @@ use crate::notation::quantity;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::scene::Outside;
-use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use crate::schedule::{Access, AccountKind, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
 
 /// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of neighbours are
@@ -30,6 +30,11 @@ pub trait RemovalRule: Send + 'static {
     /// # Errors
     /// A column is missing.
     fn rows(&mut self, step: &Step<'_>, body: BodyId, out: &mut Vec<u32>) -> Result<(), StepError>;
+
+    /// The columns that it reads, besides position and mass.
+    fn access(&self) -> Vec<Access> {
+        Vec::new()
+    }
 }
 
 impl SimBuilder<'_> {
@@ -45,8 +50,10 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
     if let Some(domain) = DomainBox::of_scene(sim).filter(|domain| domain.outside == Outside::Remove) {
         rules.push(Box::new(RemoveOutside::new(domain)));
     }
+    let columns: Vec<Access> = rules.iter().flat_map(|rule| rule.access()).collect();
     sim.add_system(
         System::new(Stage::Neighbors, REMOVAL, Removal { rules, rows: Vec::new() })
+            .touches_all(columns)
             .reads::<Position>()
             .reads::<Mass>()
             .writes::<Removed>()

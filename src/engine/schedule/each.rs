@@ -3,9 +3,8 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use super::system::{Access, Mode};
 use crate::parallel::{BlockSum, Split, sum_over_blocks};
-use crate::world::{Column, MissingColumn, PhaseView};
+use crate::world::{Access, Column, MissingColumn, Mode, PhaseView};
 
 /// One column of a row: `&C` or `&mut C`.
 pub trait RowColumn {

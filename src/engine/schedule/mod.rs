@@ -18,6 +18,8 @@ pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shared, SharedValues};
 pub use stage::Stage;
 pub use step::{Clock, Step, StepError, warn_anew};
-pub use system::{Access, Mode, Run, System};
+pub use system::{Run, System};
+
+pub use crate::world::{Access, Mode};
 pub use trigger::Trigger;
 pub use turn::{Pace, Turn};

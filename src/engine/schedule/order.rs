@@ -9,9 +9,9 @@ use thiserror::Error;
 use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
-use super::system::{Access, Mode, System};
+use super::system::System;
 use super::turn::Pace;
-use crate::world::PhaseId;
+use crate::world::{Access, Declared, Mode, PhaseId};
 
 /// Why the systems cannot be put in order.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -85,11 +85,22 @@ impl Schedule {
             if wanted(system.stage) && step.turn.has(self.paces[k]) {
                 step.ledger.enter(k);
                 let start = Instant::now();
-                system.work.run(step)?;
+                step.world.enter(Some(k));
+                let done = system.work.run(step);
+                step.world.enter(None);
+                if let Some(undeclared) = step.world.undeclared() {
+                    return Err(undeclared.clone().into());
+                }
+                done?;
                 *time += start.elapsed();
             }
         }
         Ok(())
+    }
+
+    /// What every system has declared of the columns, in their order.
+    pub fn declared(&self) -> Vec<Declared> {
+        self.systems.iter().map(System::declared).collect()
     }
 
     /// Label, stage and total time of every system.

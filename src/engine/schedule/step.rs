@@ -8,7 +8,7 @@ use super::limits::TimeStepLimits;
 use super::resources::Resources;
 use super::turn::Turn;
 use crate::notation::{quantity, quantity_to};
-use crate::world::{MissingColumn, World};
+use crate::world::{MissingColumn, Undeclared, World};
 
 /// Where the run is in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,6 +59,9 @@ pub enum StepError {
     /// A system needs a column that the phase does not have.
     #[error(transparent)]
     MissingColumn(#[from] MissingColumn),
+    /// A system touches a column that it has not declared.
+    #[error(transparent)]
+    Undeclared(#[from] Undeclared),
     /// A particle has left the range of what makes sense.
     #[error("{what} at particle {particle} of body `{body}`, step {step}, time {}{detail}", quantity_to(*.time, "s", 6))]
     Unstable {

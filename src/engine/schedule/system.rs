@@ -6,48 +6,7 @@ use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::turn::Pace;
-use crate::world::{BodySet, Column, PhaseId};
-
-/// How a system touches a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// It reads the column.
-    Reads,
-    /// It reads the column in rows of neighbours too.
-    ReadsNear,
-    /// It overwrites or changes the column.
-    Writes,
-    /// It adds to an accumulator; additions commute, and run in the order of the scene.
-    Adds,
-}
-
-impl Mode {
-    /// All modes, in words.
-    pub(super) const VERBS: [(Self, &'static str); 4] = [
-        (Self::Reads, "reads"),
-        (Self::ReadsNear, "reads near"),
-        (Self::Writes, "writes"),
-        (Self::Adds, "adds to"),
-    ];
-}
-
-/// A declared access.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Access {
-    /// Name of the column.
-    pub column: &'static str,
-    /// How it is touched.
-    pub mode: Mode,
-}
-
-impl Access {
-    /// Whether two systems with these accesses need a stated order.
-    pub fn conflicts(&self, other: &Access) -> bool {
-        let reads = |mode| matches!(mode, Mode::Reads | Mode::ReadsNear);
-        let both_add = self.mode == Mode::Adds && other.mode == Mode::Adds;
-        self.column == other.column && !both_add && !(reads(self.mode) && reads(other.mode))
-    }
-}
+use crate::world::{Access, BodySet, Column, Declared, Mode, PhaseId};
 
 /// What a system does. A closure is enough for a system without state of its own.
 pub trait Run: Send {
@@ -88,6 +47,7 @@ pub struct System {
     pub(super) access: Vec<Access>,
     /// Access to rows that are packed from several phases.
     pub(super) packed: Vec<Access>,
+    reads_all: bool,
     pub(super) phases: Option<Vec<PhaseId>>,
     bodies: Option<BodySet>,
     long: bool,
@@ -106,6 +66,7 @@ impl System {
             stage,
             access: Vec::new(),
             packed: Vec::new(),
+            reads_all: false,
             phases: None,
             bodies: None,
             long: false,
@@ -197,6 +158,12 @@ impl System {
         self
     }
 
+    /// Declares that the system may read every column, in any row, as outputs do. It runs where nothing is written, or after what it reads by a stated order.
+    pub fn reads_all(mut self) -> Self {
+        self.reads_all = true;
+        self
+    }
+
     /// Declares access to rows that a formulation packs from columns of several phases, by the name that it gives them: systems that touch them share
     /// rows whatever their phases are.
     pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
@@ -267,6 +234,12 @@ impl System {
     /// Declared access.
     pub fn access(&self) -> &[Access] {
         &self.access
+    }
+
+    /// What it has declared of the columns.
+    pub(super) fn declared(&self) -> Declared {
+        let access = (!self.reads_all).then(|| self.access.clone());
+        Declared { system: self.label.clone(), access }
     }
 
     /// The bodies whose rows alone are touched, if the system does not say which phases it touches.

@@ -26,11 +26,11 @@ impl<'a> SkinColumns<'a> {
         Ok(Self {
             skin,
             first_row: rows.start,
-            position: view.read()?,
-            velocity: view.read()?,
-            mobility: view.read()?,
-            removed: view.read()?,
-            gradient: view.read()?,
+            position: view.read_near()?,
+            velocity: view.read_near()?,
+            mobility: view.read_near()?,
+            removed: view.read_near()?,
+            gradient: view.read_near()?,
         })
     }
 

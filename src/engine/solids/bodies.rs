@@ -55,6 +55,7 @@ pub struct SolidBodies {
     terms: Vec<Arc<FoldedTermOfBodies>>,
     /// Columns of state beside deformation gradient and stress.
     columns: ColumnSet,
+    can_fail: bool,
     /// What the last pass has found in each body.
     found: Vec<SolidSum>,
     sums: Vec<SolidSum>,
@@ -152,7 +153,8 @@ impl SolidBodies {
             columns.add::<HessianResidual>().add::<HessianStiffness>();
         }
         let terms = terms.into_iter().map(|term| term.value).collect();
-        Ok(Self { phase, bodies, terms, columns, found: Vec::new(), sums: Vec::new() })
+        let can_fail = sim.columns(phase).get(Damage::NAME).is_some();
+        Ok(Self { phase, bodies, terms, columns, can_fail, found: Vec::new(), sums: Vec::new() })
     }
 
     /// That all folded terms only look, for formulations that apply none.
@@ -211,11 +213,13 @@ impl SolidBodies {
         !self.terms.is_empty()
     }
 
-    /// The columns that the pass writes: deformation gradient, stress, state.
+    /// The columns of the pass: it writes deformation gradient, stress and state, and reads the damage.
     pub fn access(&self) -> Vec<Access> {
         let writes = |name| Access { column: name, mode: Mode::Writes };
         let always = [DeformationGradient::NAME, PiolaStress::NAME].map(writes);
-        always.into_iter().chain(self.columns.iter().map(|column| writes(column.name))).collect()
+        let state = self.columns.iter().map(|column| writes(column.name));
+        let damage = self.can_fail.then_some(Access { column: Damage::NAME, mode: Mode::Reads });
+        always.into_iter().chain(state).chain(damage).collect()
     }
 
     /// Begins a pass over all bodies.

@@ -33,12 +33,12 @@ impl PairSource for SolidPairs {
         run(&Rows {
             solid: &*solid,
             weight_at: self.weight_at,
-            reference: bytemuck::cast_slice(&view.read::<ReferencePosition>()?),
-            position: bytemuck::cast_slice(&view.read::<Position>()?),
-            velocity: &view.read::<Velocity>()?,
-            volume: &view.read::<ReferenceVolume>()?,
-            removed: &view.read::<Removed>()?,
-            support: &view.read::<SupportRadius>()?,
+            reference: bytemuck::cast_slice(&view.read_near::<ReferencePosition>()?),
+            position: bytemuck::cast_slice(&view.read_near::<Position>()?),
+            velocity: &view.read_near::<Velocity>()?,
+            volume: &view.read_near::<ReferenceVolume>()?,
+            removed: &view.read_near::<Removed>()?,
+            support: &view.read_near::<SupportRadius>()?,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! The world: particles as hecs entities, component columns with symbol and unit, bodies as row ranges.
 
+mod access;
 mod body;
 mod by_row;
 mod column;
@@ -8,6 +9,7 @@ mod registry;
 mod standard;
 mod state;
 
+pub use access::{Access, Declared, Mode, Undeclared};
 pub use body::{Body, BodyId, BodySet};
 pub use by_row::sum_by_row;
 pub use column::{Column, Value};

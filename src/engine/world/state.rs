@@ -5,6 +5,7 @@ use std::ops::Range;
 use hecs::{Archetype, ArchetypeColumn, ArchetypeColumnMut, ColumnBatchType};
 use thiserror::Error;
 
+use super::access::{Declared, Mode, Undeclared, Watch};
 use super::body::{Body, BodyId};
 use super::column::Column;
 use super::registry::{ColumnInfo, ColumnSet};
@@ -41,12 +42,13 @@ pub struct World {
     phases: Vec<Phase>,
     bodies: Vec<Body>,
     dimension: Dimension,
+    watch: Watch,
 }
 
 impl World {
     /// A world without particles.
     pub fn new(dimension: Dimension) -> Self {
-        Self { phases: Vec::new(), bodies: Vec::new(), dimension }
+        Self { phases: Vec::new(), bodies: Vec::new(), dimension, watch: Watch::new(Vec::new()) }
     }
 
     /// Two: plane strain in x-y; three.
@@ -110,7 +112,22 @@ impl World {
     pub fn phase(&self, id: PhaseId) -> PhaseView<'_> {
         let phase = &self.phases[id.0];
         let archetype = phase.ecs.archetypes().nth(phase.archetype).expect("archetypes are never removed");
-        PhaseView { phase, archetype }
+        PhaseView { phase, archetype, watch: &self.watch }
+    }
+
+    /// From now on the accesses of systems are held against what they have declared, in the order of the schedule.
+    pub(crate) fn declare(&mut self, systems: Vec<Declared>) {
+        self.watch = Watch::new(systems);
+    }
+
+    /// The system that runs from now on, if one does.
+    pub(crate) fn enter(&self, system: Option<usize>) {
+        self.watch.enter(system);
+    }
+
+    /// The first access that a system has not declared.
+    pub(crate) fn undeclared(&self) -> Option<&Undeclared> {
+        self.watch.first()
     }
 
     /// The columns of a body's phase and the body's rows.
@@ -140,6 +157,7 @@ impl World {
 pub struct PhaseView<'a> {
     phase: &'a Phase,
     archetype: &'a Archetype,
+    watch: &'a Watch,
 }
 
 impl<'a> PhaseView<'a> {
@@ -168,14 +186,31 @@ impl<'a> PhaseView<'a> {
         self.archetype.has::<T>()
     }
 
-    /// Column `T` for reading. Panics if a system holds it for writing: the schedule excludes that.
+    /// Column `T` for reading rows of the system's own. Panics if a system holds it for writing: the schedule excludes that.
     pub fn read<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
-        self.archetype.get::<&T>().ok_or(MissingColumn { column: T::NAME, phase: self.phase.name })
+        self.read_as(Mode::Reads)
+    }
+
+    /// Column `T` for reading rows of neighbours too, which the system declares by `System::reads_near`.
+    pub fn read_near<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        self.read_as(Mode::ReadsNear)
+    }
+
+    pub(crate) fn read_as<T: Column>(&self, mode: Mode) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        let column = self.archetype.get::<&T>().ok_or(self.missing::<T>())?;
+        self.watch.touches::<T>(mode);
+        Ok(column)
     }
 
     /// Column `T` for writing. Panics if a system holds it already: the schedule excludes that.
     pub fn write<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
-        self.archetype.get::<&mut T>().ok_or(MissingColumn { column: T::NAME, phase: self.phase.name })
+        let column = self.archetype.get::<&mut T>().ok_or(self.missing::<T>())?;
+        self.watch.touches::<T>(Mode::Writes);
+        Ok(column)
+    }
+
+    fn missing<T: Column>(&self) -> MissingColumn {
+        MissingColumn { column: T::NAME, phase: self.phase.name }
     }
 
     /// Calls `f` with the bytes of a column.

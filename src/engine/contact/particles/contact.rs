@@ -58,12 +58,12 @@ impl ParticleContact {
     fn find(&mut self, step: &Step<'_>) -> Result<(), StepError> {
         let ((first, first_rows), (second, second_rows)) =
             (step.world.body_view(self.first.body), step.world.body_view(self.second.body));
-        let (x, y) = (first.read::<Position>()?, second.read::<Position>()?);
+        let (x, y) = (first.read_near::<Position>()?, second.read_near::<Position>()?);
         let own =
             Crowd { position: &x[first_rows.clone()], radius: &self.first.radius, mirror: Map::IDENTITY };
         let other = Crowd { position: &y[second_rows], radius: &self.second.radius, mirror: self.mirror };
         let found = if self.first.body == self.second.body {
-            let reference = first.read::<ReferencePosition>()?;
+            let reference = first.read_near::<ReferencePosition>()?;
             let reference = &reference[first_rows];
             let (radius, mirror, periodic) = (&self.first.radius, self.mirror, self.periodic);
             self.search.of_itself(own, other, |i, j| {

@@ -40,6 +40,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
             .reads_near::<Velocity>()
             .reads_near::<Mobility>()
             .reads_near::<Removed>()
+            .reads::<Mass>()
             .touches("rigid_bodies", Mode::Adds),
     );
     let push = move |step: &mut Step<'_>| step.resources.of(contacts).push(step);

@@ -27,25 +27,25 @@ impl Run for Rates {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
         let view = step.world.phase(self.phase);
-        let position = view.read::<Position>()?;
-        let reference = view.read::<ReferencePosition>()?;
+        let position = view.read_near::<Position>()?;
+        let reference = view.read_near::<ReferencePosition>()?;
         let (place, start): (&[DVec3], &[DVec3]) =
             (bytemuck::cast_slice(&position), bytemuck::cast_slice(&reference));
         let mut deformation = view.write::<DeformationGradient>()?;
         if step.clock.step == 0 && step.clock.dt == 0.0 {
-            let volume = view.read::<ReferenceVolume>()?;
+            let volume = view.read_near::<ReferenceVolume>()?;
             start::fit_gradients(&packed, start, place, bytemuck::cast_slice(&volume), &mut deformation);
         }
         update_lists(&mut packed, place, start, step.world)?;
         if step.clock.dt > 0.0 {
-            let (velocity, volume) = (view.read::<Velocity>()?, view.read::<ReferenceVolume>()?);
+            let (velocity, volume) = (view.read_near::<Velocity>()?, view.read_near::<ReferenceVolume>()?);
             let columns = PointColumns {
                 position: &position,
                 velocity: &velocity,
                 volume: &volume,
                 deformation: &deformation,
             };
-            let removed = view.read::<Removed>()?;
+            let removed = view.read_near::<Removed>()?;
             let gone = (0..removed.len()).filter(|&row| removed[row] != Removed::NO);
             packed.pack(&columns, 0.5 * step.clock.dt, gone);
             packed.lists.leave_out_elsewhere(place, start, &deformation);

@@ -76,10 +76,10 @@ impl Stress {
     fn pack(&self, world: &World, packed: &mut EulerianRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let columns = PointColumns {
-            position: &view.read::<Position>()?,
-            velocity: &view.read::<Velocity>()?,
-            volume: &view.read::<ReferenceVolume>()?,
-            deformation: &view.read()?,
+            position: &view.read_near::<Position>()?,
+            velocity: &view.read_near::<Velocity>()?,
+            volume: &view.read_near::<ReferenceVolume>()?,
+            deformation: &view.read_near()?,
         };
         packed.pack(&columns, 0.0, self.removed.iter().map(|&row| row as usize));
         Ok(())
@@ -171,7 +171,7 @@ impl Stress {
     /// leaves the books, and what the motion up to here, made by the old forces, loses by the new ones in the second kick goes with it.
     fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
-        let removed = view.read::<Removed>()?;
+        let removed = view.read_near::<Removed>()?;
         if count_rows(&removed, |row| *row != Removed::NO) == self.removed.len() {
             return Ok(());
         }

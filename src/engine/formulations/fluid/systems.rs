@@ -5,7 +5,7 @@ use crate::formulations::fluid::cloud::{
     ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, Group, NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
-use crate::formulations::fluid::density::{Continuity, EquationOfState};
+use crate::formulations::fluid::density::{Continuity, DensityShift, EquationOfState};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::{Couples, Spin};
 use crate::formulations::fluid::setup::advice;
@@ -14,8 +14,10 @@ use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
-use crate::schedule::{Mode, Stage, System};
-use crate::world::{Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed};
+use crate::schedule::{Access, Mode, Stage, System};
+use crate::world::{
+    Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
+};
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
 const COMPRESSION: &str = "fluid_compression";
@@ -104,6 +106,8 @@ pub fn add(
 /// Adds what turns compression into density, with its energy in an account, and density into pressure.
 fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) {
     let continuity = Continuity { account, sums: Vec::new() };
+    let is_shifted = sim.columns(fluid).get(DensityShift::NAME).is_some();
+    let shift = is_shifted.then_some(Access { column: DensityShift::NAME, mode: Mode::Reads });
     sim.add_system(
         System::new(Stage::Gradients, "fluid_continuity", continuity)
             .on_phases([fluid])
@@ -111,6 +115,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
             .reads::<DensityRate>()
             .reads::<Mass>()
             .reads::<Removed>()
+            .touches_all(shift)
             .writes::<Density>(),
     );
     let pressure = EquationOfState { mach: Vec::new(), sums: Vec::new() };

@@ -116,6 +116,7 @@ impl Formulation for TotalLagrangian {
             .reads_near::<ReferencePosition>()
             .reads_near::<ReferenceVolume>()
             .reads_near::<Removed>()
+            .reads_near::<SupportRadius>()
             .reads::<Velocity>()
             .reads::<Mass>()
             .touches_all(state);

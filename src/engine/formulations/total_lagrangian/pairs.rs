@@ -57,8 +57,8 @@ impl<R: BondedRows> PairSource for BondPairs<R> {
     ) -> Result<(), StepError> {
         let packed = step.resources.solid_rows::<R>(self.phase);
         let view = step.world.phase(self.phase);
-        let support = view.read::<SupportRadius>()?;
-        let velocity = if reads.velocity { Some(view.read::<Velocity>()?) } else { None };
+        let support = view.read_near::<SupportRadius>()?;
+        let velocity = if reads.velocity { Some(view.read_near::<Velocity>()?) } else { None };
         let Some(BodyKernel { kernel, support: uniform, .. }) =
             packed.kernels().iter().find(|of| of.body == body)
         else {

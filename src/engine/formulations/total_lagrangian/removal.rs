@@ -40,7 +40,7 @@ impl Deformation {
         packed: &mut PackedRows,
     ) -> Result<bool, StepError> {
         let view = step.world.phase(self.phase);
-        let removed = view.read::<Removed>()?;
+        let removed = view.read_near::<Removed>()?;
         if count_rows(&removed, |row| *row != Removed::NO) == self.removed.rows.len() {
             return Ok(false);
         }
@@ -98,12 +98,12 @@ impl Deformation {
     /// Takes the removed particles out of the moment matrices of their neighbours, and off the edges of cracks.
     fn cut(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
-        let reference = view.read::<ReferencePosition>()?;
-        let volume = view.read::<ReferenceVolume>()?;
+        let reference = view.read_near::<ReferencePosition>()?;
+        let volume = view.read_near::<ReferenceVolume>()?;
         let mut volume: Vec<f64> = volume.iter().map(|volume| volume.0).collect();
         self.removed.rows.iter().for_each(|&row| volume[row as usize] = 0.0);
         let dimension = world.dimension().count();
-        let support = view.read::<SupportRadius>()?;
+        let support = view.read_near::<SupportRadius>()?;
         let PackedRows { bonds, ghosts, cracks, stable_step, hessian, .. } = packed;
         hessian.is_stale = true;
         if !self.failed.is_empty() {

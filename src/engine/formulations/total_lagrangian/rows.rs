@@ -40,9 +40,9 @@ pub(super) fn pack(
     removed: &[u32],
     sites: &mut [Site],
 ) -> Result<(), StepError> {
-    let position = view.read::<Position>()?;
-    let reference = view.read::<ReferencePosition>()?;
-    let volume = view.read::<ReferenceVolume>()?;
+    let position = view.read_near::<Position>()?;
+    let reference = view.read_near::<ReferencePosition>()?;
+    let volume = view.read_near::<ReferenceVolume>()?;
     let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
     type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
     for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {

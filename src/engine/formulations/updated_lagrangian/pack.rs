@@ -13,8 +13,8 @@ impl UpdatedRows {
     /// Fills the sites of the reference.
     pub fn pack_reference(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
         let view = world.phase(phase);
-        let position = view.read::<Position>()?;
-        let reference = view.read::<UpdatedReference>()?;
+        let position = view.read_near::<Position>()?;
+        let reference = view.read_near::<UpdatedReference>()?;
         let Self { sites, volume, origin, ghosts, .. } = self;
         let (count, origin) = (view.len(), *origin);
         let (position, reference, volume) = (&position[..], &reference[..], &volume[..]);
@@ -36,8 +36,8 @@ impl UpdatedRows {
             return Ok(());
         }
         let view = world.phase(phase);
-        let position = view.read::<Position>()?;
-        let original = view.read::<ReferencePosition>()?;
+        let position = view.read_near::<Position>()?;
+        let original = view.read_near::<ReferencePosition>()?;
         let Self { pair_sites, control, volume, ghosts, .. } = self;
         let (position, original) = (&position[..], &original[..]);
         let fill = |sites: &mut [Site], origin, volume: &[f64]| {

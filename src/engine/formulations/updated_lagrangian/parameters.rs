@@ -18,7 +18,7 @@ use crate::schedule::{Mode, Stage, System};
 use crate::solids::{SolidBodies, SolidBody, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
-    BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PiolaStress, Position,
+    BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
     ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
@@ -125,25 +125,7 @@ impl Formulation for UpdatedLagrangian {
         let system = UpdatedSolids::new(phase, plane, solids, rules);
         let first_lists = SetUp::of(phase, first, system.is_stabilized(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
-        let gradient = System::new(Stage::Constitutive, GRADIENT, system)
-            .on_phases([phase])
-            .reads_near::<Position>()
-            .reads_near::<ReferencePosition>()
-            .reads_near::<ReferenceVolume>()
-            .writes::<SupportRadius>()
-            .reads_near::<Removed>()
-            .reads::<Velocity>()
-            .reads::<Mass>()
-            .reads_near::<UpdatedReference>()
-            .reads_near::<UpdatedGradient>()
-            .reads_near::<UpdatedVolume>()
-            .writes::<UpdatedReference>()
-            .writes::<UpdatedGradient>()
-            .writes::<UpdatedMetric>()
-            .writes::<UpdatedVolume>()
-            .writes::<DeformationGradient>()
-            .writes::<PiolaStress>();
-        sim.add_system(gradient.touches_all(state));
+        sim.add_system(gradient(phase, system).touches_all(state));
         let force = InternalForce { phase, plane, gravity: sim.gravity() };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
         sim.add_system(
@@ -151,6 +133,29 @@ impl Formulation for UpdatedLagrangian {
         );
         add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
     }
+}
+
+/// The system that makes deformation gradient and stress, and the reference anew where an update is due.
+fn gradient(phase: PhaseId, system: UpdatedSolids) -> System {
+    System::new(Stage::Constitutive, GRADIENT, system)
+        .on_phases([phase])
+        .reads_near::<Position>()
+        .reads_near::<ReferencePosition>()
+        .reads_near::<ReferenceVolume>()
+        .reads_near::<SupportRadius>()
+        .writes::<SupportRadius>()
+        .reads_near::<Removed>()
+        .reads::<Velocity>()
+        .reads::<Mass>()
+        .reads_near::<UpdatedReference>()
+        .reads_near::<UpdatedGradient>()
+        .reads_near::<UpdatedVolume>()
+        .writes::<UpdatedReference>()
+        .writes::<UpdatedGradient>()
+        .writes::<UpdatedMetric>()
+        .writes::<UpdatedVolume>()
+        .writes::<DeformationGradient>()
+        .writes::<PiolaStress>()
 }
 
 impl UpdatedLagrangian {

@@ -43,11 +43,11 @@ impl UpdatedRows {
         let view = world.phase(phase);
         let body = self.kernels[0].body;
         let internal = move |_| RenewError { body, error: BondError::NoStiffness { most: 0 } };
-        let reference = view.read::<UpdatedReference>().map_err(internal)?;
-        let volume = view.read::<UpdatedVolume>().map_err(internal)?;
-        let support = view.read::<SupportRadius>().map_err(internal)?;
+        let reference = view.read_near::<UpdatedReference>().map_err(internal)?;
+        let volume = view.read_near::<UpdatedVolume>().map_err(internal)?;
+        let support = view.read_near::<SupportRadius>().map_err(internal)?;
         let metric = view.read::<UpdatedMetric>().map_err(internal)?;
-        let start = view.read::<ReferenceVolume>().map_err(internal)?;
+        let start = view.read_near::<ReferenceVolume>().map_err(internal)?;
         let metric = &metric[..];
         self.ellipsoids.resize(metric.len(), Ellipsoid::SPHERE);
         for_each_block(&mut self.ellipsoids[..], &mut Vec::new(), &|first, own: &mut [Ellipsoid]| {
@@ -128,9 +128,10 @@ impl UpdatedRows {
     ) -> Result<(), MissingColumn> {
         let view = world.phase(phase);
         self.gradient.clear();
-        self.gradient.extend(view.read::<UpdatedGradient>()?.iter().map(|gradient| gradient.0));
-        let (reference, original) = (view.read::<UpdatedReference>()?, view.read::<ReferencePosition>()?);
-        let start = view.read::<ReferenceVolume>()?;
+        self.gradient.extend(view.read_near::<UpdatedGradient>()?.iter().map(|gradient| gradient.0));
+        let (reference, original) =
+            (view.read_near::<UpdatedReference>()?, view.read_near::<ReferencePosition>()?);
+        let start = view.read_near::<ReferenceVolume>()?;
         let (reference, original) = (bytemuck::cast_slice(&reference), bytemuck::cast_slice(&original));
         self.follows.clear();
         for BodyKernel { body, .. } in &self.kernels {

@@ -95,7 +95,7 @@ impl UpdatedSolids {
         packed.pack(world, self.phase)?;
         packed.has_force = false;
         let mut columns = SolidColumns::of(&view)?;
-        let support = view.read::<SupportRadius>()?;
+        let support = view.read_near::<SupportRadius>()?;
         let UpdatedRows { bonds, ghosts, hessian, kernels, sites, .. } = &mut *packed;
         let support = bytemuck::cast_slice(&support);
         hessian.begin(BondedSites { bonds, ghosts, sites }, kernels, support, self.plane);

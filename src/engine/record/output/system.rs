@@ -25,6 +25,6 @@ impl Run for OutputSystem {
 
 /// The system, which reads the columns of that name.
 pub(super) fn output_system(output: Shared<Output>, columns: &[&'static str]) -> System {
-    let system = System::new(Stage::Record, OUTPUT, OutputSystem(output));
+    let system = System::new(Stage::Record, OUTPUT, OutputSystem(output)).reads_all();
     columns.iter().fold(system, |system, column| system.touches(column, Mode::Reads))
 }

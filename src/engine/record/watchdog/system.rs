@@ -8,8 +8,7 @@ use super::remedies::Remedies;
 use super::wrong_sign::WrongSign;
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
-use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Column, Position};
+use crate::schedule::{Run, Stage, Step, StepError, System};
 
 /// Label of the system that looks for unsound states at the end of every step.
 pub const WATCHDOG: &str = "watchdog";
@@ -47,7 +46,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,
     };
-    sim.add_system(System::new(Stage::Record, WATCHDOG, watchdog).touches(Position::NAME, Mode::Reads));
+    sim.add_system(System::new(Stage::Record, WATCHDOG, watchdog).reads_all());
 }
 
 impl Run for Watchdog {

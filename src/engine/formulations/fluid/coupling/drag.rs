@@ -45,17 +45,22 @@ pub fn add(sim: &mut SimBuilder<'_>, bodies: &BodySet, phase: PhaseId, label: &s
     sim.add_column_to::<CouplingDamping>(bodies);
     sim.add_column_to::<CouplingImpulse>(bodies);
     sim.add_column_to::<CouplingWork>(bodies);
-    sim.add_system(
+    sim.add_system(writes_drag(
         System::new(Stage::Rates, format!("{label}_drag"), Drag { bodies: bodies.clone() })
             .on_phases([phase])
             .reads::<Velocity>()
-            .reads::<CouplingDrag>()
-            .writes::<CouplingMotion>()
-            .writes::<CouplingDamping>()
-            .writes::<CouplingImpulse>()
-            .writes::<CouplingWork>()
             .adds::<Force>(),
-    );
+    ));
+}
+
+/// Declares that a system writes all columns of the friction that follows the body.
+pub fn writes_drag(system: System) -> System {
+    system
+        .writes::<CouplingDrag>()
+        .writes::<CouplingMotion>()
+        .writes::<CouplingDamping>()
+        .writes::<CouplingImpulse>()
+        .writes::<CouplingWork>()
 }
 
 /// The columns of a phase.

@@ -65,19 +65,18 @@ pub fn add_force_on_bodies(
         drag: Vec::new(),
         sums: Vec::new(),
     };
-    sim.add_system(
-        reads_flow(System::new(Stage::FinalIntegrate, label, coupling))
-            .on_phases([phase])
-            .in_long_steps()
-            .writes::<CouplingForce>()
-            .writes::<CouplingFriction>()
-            .writes::<CouplingPressure>()
-            .reads::<Mass>()
-            .reads::<Mobility>()
-            .reads::<Removed>()
-            .adds::<Force>()
-            .adds::<Velocity>(),
-    );
+    let system = reads_flow(System::new(Stage::FinalIntegrate, label, coupling))
+        .on_phases([phase])
+        .in_long_steps()
+        .writes::<CouplingForce>()
+        .writes::<CouplingFriction>()
+        .writes::<CouplingPressure>()
+        .reads::<Mass>()
+        .reads::<Mobility>()
+        .reads::<Removed>()
+        .adds::<Force>()
+        .adds::<Velocity>();
+    sim.add_system(if follows { drag::writes_drag(system) } else { system });
 }
 
 impl FlowCloud {

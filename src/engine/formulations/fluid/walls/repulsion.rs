@@ -75,7 +75,7 @@ impl Repulsion {
         let (range, close) = (self.range, &self.close[..]);
         for surface in &mut self.surfaces {
             let view = step.world.phase(surface.group.phase);
-            let reference = view.read::<ReferencePosition>()?;
+            let reference = view.read_near::<ReferencePosition>()?;
             let reference = &reference[surface.group.rows.clone()];
             surface.wear(cloud);
             let surface = &*surface;

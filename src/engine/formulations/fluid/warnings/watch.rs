@@ -11,7 +11,7 @@ use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{ParticleId, PhaseId, Position, ReferencePosition};
+use crate::world::{ParticleId, PhaseId, Position, ReferencePosition, Removed};
 
 /// Steps between two looks for particles inside of something: what has entered stays for some time.
 const INTERVAL: u64 = 50;
@@ -52,7 +52,8 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
             .reads::<Position>()
             .reads_near::<ReferencePosition>()
-            .reads::<ParticleId>(),
+            .reads::<ParticleId>()
+            .reads::<Removed>(),
     );
 }
 

@@ -75,7 +75,7 @@ impl FrameIndifferent<'_> {
         let Self { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane } = self;
         let mut residual = view.write::<HessianResidual>()?;
         let mut held = view.write::<HessianStiffness>()?;
-        let support = view.read::<SupportRadius>()?;
+        let support = view.read_near::<SupportRadius>()?;
         let damage = view.read::<Damage>().ok();
         let HessianRows { bodies, gradient, slopes, stiffness, pulls, loose, .. } = hessian;
         fill_loose(bonds, ghosts, sites, damage.as_deref(), loose);

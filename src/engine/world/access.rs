@@ -1,0 +1,133 @@
+//! What the running system has declared of the columns, and the first access that it has not.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use thiserror::Error;
+
+use super::column::Column;
+
+/// How a system touches a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// It reads the column.
+    Reads,
+    /// It reads the column in rows of neighbours too.
+    ReadsNear,
+    /// It overwrites or changes the column.
+    Writes,
+    /// It adds to an accumulator; additions commute, and run in the order of the scene.
+    Adds,
+}
+
+impl Mode {
+    /// All modes, in words.
+    pub(crate) const VERBS: [(Self, &'static str); 4] = [
+        (Self::Reads, "reads"),
+        (Self::ReadsNear, "reads near"),
+        (Self::Writes, "writes"),
+        (Self::Adds, "adds to"),
+    ];
+
+    /// Whether what is declared allows what is done: writing and adding are one for a column that is borrowed, and whoever writes may read.
+    fn allows(self, done: Self) -> bool {
+        match done {
+            Self::Reads => true,
+            Self::ReadsNear => self == Self::ReadsNear,
+            Self::Writes | Self::Adds => matches!(self, Self::Writes | Self::Adds),
+        }
+    }
+}
+
+/// A declared access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    /// Name of the column.
+    pub column: &'static str,
+    /// How it is touched.
+    pub mode: Mode,
+}
+
+impl Access {
+    /// Whether two systems with these accesses need a stated order.
+    pub fn conflicts(&self, other: &Access) -> bool {
+        let reads = |mode| matches!(mode, Mode::Reads | Mode::ReadsNear);
+        let both_add = self.mode == Mode::Adds && other.mode == Mode::Adds;
+        self.column == other.column && !both_add && !(reads(self.mode) && reads(other.mode))
+    }
+}
+
+/// What a system has declared of the columns.
+#[derive(Clone, Debug)]
+pub struct Declared {
+    /// Label of the system.
+    pub system: String,
+    /// Its accesses; none where it may read every column, as outputs do.
+    pub access: Option<Vec<Access>>,
+}
+
+/// A system has touched a column in a way that it has not declared.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error(
+    "system `{system}` touches the column `{column}` and has not declared it: add `.{declaration}::<{type_name}>()` to the system"
+)]
+pub struct Undeclared {
+    /// Label of the system.
+    pub system: String,
+    /// Name of the column.
+    pub column: &'static str,
+    /// What declares it.
+    pub declaration: &'static str,
+    /// The Rust type of the column.
+    pub type_name: &'static str,
+}
+
+/// Which system runs, what the systems have declared, and the first access that one has not.
+#[derive(Debug)]
+pub(super) struct Watch {
+    declared: Vec<Declared>,
+    /// Number of the system that runs; beyond the last one where none does.
+    running: AtomicUsize,
+    first: OnceLock<Undeclared>,
+}
+
+impl Watch {
+    const NONE: usize = usize::MAX;
+
+    pub fn new(declared: Vec<Declared>) -> Self {
+        Self { declared, running: AtomicUsize::new(Self::NONE), first: OnceLock::new() }
+    }
+
+    /// System `k` runs from now on, or none.
+    pub fn enter(&self, k: Option<usize>) {
+        self.running.store(k.unwrap_or(Self::NONE), Ordering::Relaxed);
+    }
+
+    pub fn first(&self) -> Option<&Undeclared> {
+        self.first.get()
+    }
+
+    /// Notes the access if the system that runs has not declared it.
+    pub fn touches<T: Column>(&self, done: Mode) {
+        let Some(system) = self.declared.get(self.running.load(Ordering::Relaxed)) else { return };
+        let allowed = match &system.access {
+            Some(access) => access.iter().any(|a| a.column == T::NAME && a.mode.allows(done)),
+            None => matches!(done, Mode::Reads | Mode::ReadsNear),
+        };
+        if !allowed {
+            self.note(system, T::NAME, done, std::any::type_name::<T>());
+        }
+    }
+
+    #[cold]
+    fn note(&self, system: &Declared, column: &'static str, done: Mode, path: &'static str) {
+        let declaration = match done {
+            Mode::Reads => "reads",
+            Mode::ReadsNear => "reads_near",
+            Mode::Writes | Mode::Adds => "writes",
+        };
+        let type_name = path.rsplit("::").next().unwrap_or(path);
+        let system = system.system.clone();
+        let _ = self.first.set(Undeclared { system, column, declaration, type_name });
+    }
+}
