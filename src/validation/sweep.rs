@@ -41,6 +41,9 @@ flows!(
     "water_wheel"
 );
 
+/// Where the scenes are, and beside them the meshes that they name: from any folder.
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes");
+
 /// Plugins of fluids.
 const PLUGINS: &[&str] =
     &["density_diffusion", "particle_shifting", "tensile_control", "xsph", "artificial_viscosity"];
@@ -68,7 +71,7 @@ fn sweep(registry: &Registry, steps: u64) -> Result<Vec<Check>> {
 /// No such flow, a value that cannot be set, or a run that fails.
 pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u64) -> Result<Vec<Check>> {
     let (_, text) = FLOWS.iter().find(|(name, _)| *name == flow).context("no such flow")?;
-    let mut source = Source::new(format!("assets/scenes/{flow}.ron"), *text);
+    let mut source = Source::new(format!("{SCENES}/{flow}.ron"), *text);
     for (path, value) in set {
         source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
     }
