@@ -143,7 +143,14 @@ impl Formulation for Eulerian {
 fn shares_of(listed: &[ListedBody], kernels: &[BodyKernel], sim: &SimBuilder<'_>) -> Vec<f64> {
     let bodies = listed.iter().zip(kernels).map(|(body, of)| {
         let (plan, repeats) = (sim.body(body.id), &body.repeats[..]);
-        let held = HeldBody { plan, kernel: of.kernel, support: body.support, neighbors: None, repeats };
+        let held = HeldBody {
+            plan,
+            kernel: of.kernel,
+            support: body.support,
+            neighbors: None,
+            repeats,
+            stays: true,
+        };
         let is_adjoint = of.divergence == Divergence::Adjoint;
         (body.id, if is_adjoint { balanced_shares(&held) } else { Vec::new() })
     });

@@ -105,12 +105,12 @@ impl Formulation for TotalLagrangian {
             estimate: solid.estimate,
             hessian: solid.hessian,
             repeats,
+            stays: true,
         });
         let first_lists = SetUp::of(phase, bodies.collect(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
         let state = solids.access();
-        let deformation = Deformation::new(phase, plane, solids);
-        let system = System::new(Stage::Constitutive, DEFORMATION, deformation)
+        let system = System::new(Stage::Constitutive, DEFORMATION, Deformation::new(phase, plane, solids))
             .on_phases([phase])
             .reads_near::<Position>()
             .reads_near::<ReferencePosition>()

@@ -35,6 +35,8 @@ pub(in crate::formulations) struct BodySetUp {
     pub estimate: StepEstimate,
     pub hessian: Option<HessianDifference>,
     pub repeats: Vec<Repeat>,
+    /// Whether neighbours and weights are meant to stay those of the start.
+    pub stays: bool,
 }
 
 impl BodySetUp {
@@ -58,6 +60,7 @@ pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_
             support: plan.support.unwrap_or(body.support),
             neighbors: body.neighbors,
             repeats: &body.repeats,
+            stays: body.stays,
         }
     });
     Held::of(&held.collect::<Vec<_>>(), sim)

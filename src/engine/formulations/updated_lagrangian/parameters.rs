@@ -113,6 +113,7 @@ impl Formulation for UpdatedLagrangian {
             estimate: solid.estimate,
             hessian: solid.hessian,
             repeats,
+            stays: matches!(parameters.update, Update::Automatic | Update::Never),
         });
         let first: Vec<BodySetUp> = first.collect();
         let can_fail = sim.columns(phase).get(Damage::NAME).is_some();

@@ -17,6 +17,9 @@ const SHARES: (f64, f64) = (0.0, 2.5);
 /// The shares of all particles of a body that do not carry all of their stress, by their numbers.
 pub(in crate::formulations) fn balanced_shares(body: &HeldBody<'_>) -> Vec<(u32, f64)> {
     let before = &body.plan.carried;
+    if !body.stays {
+        return before.clone();
+    }
     let zone = Zone::of(body);
     if zone.equations.is_empty() {
         return before.clone();
