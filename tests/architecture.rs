@@ -55,19 +55,33 @@ fn dependencies(manifest: &Path) -> Vec<String> {
     names.filter(|name| !name.starts_with('#')).map(str::to_owned).collect()
 }
 
+/// The folders of the engine and of what it stands on.
+const ENGINE: [&str; 2] = ["src/engine", "src/base"];
+
+/// Every source file of the engine and of what it stands on.
+fn engine_sources() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for folder in ENGINE {
+        collect_sources(&root().join(folder), &mut files);
+    }
+    files
+}
+
 fn name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 #[test]
 fn the_engine_depends_on_no_plugin_and_on_neither_the_viewer_nor_the_command_line() {
-    let engine = dependencies(&root().join("src/engine/Cargo.toml"));
-    assert!(engine.contains(&"hecs".to_owned()), "the list is read wrongly: {engine:?}");
-    for plugin in plugins() {
-        assert!(!engine.contains(&name(&plugin)), "the engine depends on {}", name(&plugin));
-    }
-    for other in ["rerun", "clap", "indicatif", "ctrlc", "anyhow", "meshless", "meshless_validation"] {
-        assert!(!engine.contains(&other.to_owned()), "the engine depends on {other}");
+    for folder in ENGINE {
+        let own = dependencies(&root().join(folder).join("Cargo.toml"));
+        assert!(own.contains(&"glam".to_owned()), "the list is read wrongly: {own:?}");
+        for plugin in plugins() {
+            assert!(!own.contains(&name(&plugin)), "{folder} depends on {}", name(&plugin));
+        }
+        for other in ["rerun", "clap", "indicatif", "ctrlc", "anyhow", "meshless", "meshless_validation"] {
+            assert!(!own.contains(&other.to_owned()), "{folder} depends on {other}");
+        }
     }
 }
 
@@ -200,9 +214,7 @@ fn arguments(signature: &str) -> usize {
 fn functions_of_the_engine_are_short_and_have_few_arguments() {
     let read_rightly = functions("fn f(&self, a: u8, b: &dyn Fn(u8) -> u8) -> u8 {\n    a\n}\n");
     assert_eq!(read_rightly, [("f".to_owned(), 3, 2)]);
-    let mut files = Vec::new();
-    collect_sources(&root().join("src/engine"), &mut files);
-    for path in &files {
+    for path in &engine_sources() {
         let file = shown(path);
         let Some(text) = without_tests(path) else { continue };
         for (name, length, arguments) in functions(&text) {
@@ -215,9 +227,7 @@ fn functions_of_the_engine_are_short_and_have_few_arguments() {
 /// Systems run one after another and find what they share among the resources.
 #[test]
 fn systems_share_without_locks() {
-    let mut files = Vec::new();
-    collect_sources(&root().join("src/engine"), &mut files);
-    for path in &files {
+    for path in &engine_sources() {
         let Some(text) = without_tests(path) else { continue };
         for lock in ["Mutex", "RwLock"] {
             assert!(!text.contains(lock), "{} has a {lock}", shown(path));
@@ -357,25 +367,26 @@ fn words_after<'t>(text: &'t str, path: &str) -> Vec<&'t str> {
 
 #[test]
 fn imports_of_the_engine_go_down_the_list_of_modules() {
-    let engine = root().join("src/engine");
     let rank = |module: &str| LAYERS.iter().position(|layer| *layer == module);
-    for line in read(&engine.join("lib.rs")).lines() {
-        if let Some(module) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) {
-            assert!(rank(module).is_some(), "module `{module}` has no place in the list");
-        }
-    }
-    let mut files = Vec::new();
-    collect_sources(&engine, &mut files);
     let mut imports = 0;
-    for path in &files {
-        let inside = path.strip_prefix(&engine).expect("a file of the engine");
-        let first = inside.iter().next().expect("a name").to_string_lossy().into_owned();
-        let Some(own) = rank(first.trim_end_matches(".rs")) else { continue };
-        let Some(text) = without_tests(path) else { continue };
-        for other in words_after(&text, "crate::").into_iter().filter_map(rank) {
-            imports += 1;
-            let (own_name, name) = (LAYERS[own], LAYERS[other]);
-            assert!(own <= other, "{}: `{own_name}` is below `{name}` and imports it", shown(path));
+    for folder in ENGINE.map(|folder| root().join(folder)) {
+        for line in read(&folder.join("lib.rs")).lines() {
+            if let Some(module) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) {
+                assert!(rank(module).is_some(), "module `{module}` has no place in the list");
+            }
+        }
+        let mut files = Vec::new();
+        collect_sources(&folder, &mut files);
+        for path in &files {
+            let inside = path.strip_prefix(&folder).expect("a file of the folder");
+            let first = inside.iter().next().expect("a name").to_string_lossy().into_owned();
+            let Some(own) = rank(first.trim_end_matches(".rs")) else { continue };
+            let Some(text) = without_tests(path) else { continue };
+            for other in words_after(&text, "crate::").into_iter().filter_map(rank) {
+                imports += 1;
+                let (own_name, name) = (LAYERS[own], LAYERS[other]);
+                assert!(own <= other, "{}: `{own_name}` is below `{name}` and imports it", shown(path));
+            }
         }
     }
     assert!(imports > 500, "only {imports} imports are found");

@@ -11,35 +11,27 @@ extern crate self as meshless_engine;
 
 pub use bytemuck;
 pub use glam;
+#[doc(inline)]
+pub use meshless_base::{correction, kernels, linalg, neighbors, notation, parallel, scene, shapes, space};
 pub use schemars;
 pub use serde;
 
 pub mod assembly;
 pub mod boundaries;
 pub mod contact;
-pub mod correction;
 pub mod fields;
-mod files;
 pub mod formulations;
 pub mod integrate;
 pub mod invariants;
-pub mod kernels;
-pub mod linalg;
 pub mod materials;
-pub mod neighbors;
-pub mod notation;
 pub mod pair;
-pub mod parallel;
 pub mod plugin;
 pub mod record;
 pub mod removal;
 pub mod rigid;
-pub mod scene;
 pub mod schedule;
-pub mod shapes;
 pub mod simulation;
 mod skins;
 pub mod solids;
-pub mod space;
 pub mod symmetry;
 pub mod world;

@@ -68,6 +68,7 @@ impl PairTerm for OffCracks<Ganzenmueller2015<HourglassGradient>> {
     type ReadJ = (HourglassGradient, HourglassModulus, Damage);
 
     const READS_VELOCITY: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(
@@ -86,6 +87,7 @@ impl<F: Column<Value = DMat3>> PairTerm for OffCracks<Viscous<F>> {
     type ReadJ = (F, Damage);
 
     const READS_KERNEL: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(
@@ -104,6 +106,7 @@ impl PairTerm for OffCracks<Stiffness> {
     type ReadJ = (DeformationGradient, HourglassModulus, Damage);
 
     const READS_VELOCITY: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

@@ -25,6 +25,7 @@ impl<F: Column<Value = DMat3>> PairTerm for Ganzenmueller2015<F> {
     type ReadJ = (F, HourglassModulus);
 
     const READS_VELOCITY: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

@@ -22,6 +22,7 @@ impl PairTerm for Stiffness {
     type ReadJ = (DeformationGradient, HourglassModulus);
 
     const READS_VELOCITY: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

@@ -41,6 +41,7 @@ impl<F: Column<Value = DMat3>> PairTerm for Viscous<F> {
     type ReadJ = (F,);
 
     const READS_KERNEL: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

@@ -18,6 +18,8 @@ use crate::world::BodyId;
 struct Friction {
     /// Whether it asks which bodies take pair terms.
     asks: bool,
+    /// Whether it takes the pair vectors of a reference.
+    of_solids: bool,
 }
 
 struct Slowing;
@@ -32,13 +34,32 @@ impl PairTerm for Slowing {
     }
 }
 
+/// The same along reference pair vectors.
+struct SlowingSolids;
+
+impl PairTerm for SlowingSolids {
+    type ReadI = ();
+    type ReadJ = ();
+
+    const NEEDS_REFERENCE: bool = true;
+
+    #[inline(always)]
+    fn pair<A: Arithmetic>(&self, pair: &Pair<A>, (): (), (): (), rates: &mut Rates<A>) {
+        Slowing.pair(pair, (), (), rates);
+    }
+}
+
 impl Plugin for Friction {
     const NAME: &'static str = "friction_between";
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let bodies = if self.asks { sim.scope_offering(Offer::PairTerms)? } else { sim.scope().clone() };
-        sim.add_pair_term(bodies, "friction_between", Slowing);
+        if self.of_solids {
+            sim.add_pair_term(bodies, "friction_between", SlowingSolids);
+        } else {
+            sim.add_pair_term(bodies, "friction_between", Slowing);
+        }
         Ok(())
     }
 }
@@ -86,4 +107,11 @@ fn a_term_that_a_formulation_does_not_take_is_an_error_at_the_plugin() {
     let error = simulation(BALL, "friction_between()").err().expect("an error");
     let wanted = "body `ball` was given a pair term, which bodies with the formulation `Rigid` do not take";
     assert!(error.contains(wanted) && error.contains("test.ron:10:23"), "{error}");
+}
+
+#[test]
+fn a_term_that_needs_a_reference_is_an_error_on_a_fluid() {
+    let error = simulation("", "friction_between(of_solids: true)").err().expect("an error");
+    let wanted = "body `water`, a fluid, has no reference for the pair term `friction_between`";
+    assert!(error.contains(wanted), "{error}");
 }

@@ -48,7 +48,10 @@ impl<T: PairTerm> RowTerm for Bound<'_, T> {
     }
 
     fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut TermSums) {
-        run_blocks_on(plane, OneBlock { bound: self, pairs, sums });
+        // Blocks are of fluids, which are not given such a term.
+        if !T::NEEDS_REFERENCE {
+            run_blocks_on(plane, OneBlock { bound: self, pairs, sums });
+        }
     }
 }
 
@@ -90,11 +93,20 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
         let Extras { reference, mirrors, supports, .. } = self.batch.extras();
-        match (reference, mirrors || supports) {
-            (false, false) => self.add::<A, true, true>(a),
-            (true, false) => self.add::<A, false, true>(a),
-            (false, true) => self.add::<A, true, false>(a),
-            (true, true) => self.add::<A, false, false>(a),
+        let alike = !(mirrors || supports);
+        if T::NEEDS_REFERENCE {
+            if alike {
+                self.add::<A, false, true>(a)
+            } else {
+                self.add::<A, false, false>(a)
+            }
+            return;
+        }
+        match (reference, alike) {
+            (false, true) => self.add::<A, true, true>(a),
+            (true, true) => self.add::<A, false, true>(a),
+            (false, false) => self.add::<A, true, false>(a),
+            (true, false) => self.add::<A, false, false>(a),
         }
     }
 }
@@ -174,6 +186,8 @@ pub(super) trait ErasedTerm: Send + Sync {
     fn reads(&self) -> PairReads;
     /// Whether it gives density rates.
     fn changes_density(&self) -> bool;
+    /// Whether it is for bodies with reference pair vectors alone.
+    fn needs_reference(&self) -> bool;
     /// Borrows the columns, adds the term to the chain and goes on with it.
     fn bind(
         &self,
@@ -198,6 +212,10 @@ impl<T: PairTerm> ErasedTerm for T {
 
     fn changes_density(&self) -> bool {
         T::CHANGES_DENSITY
+    }
+
+    fn needs_reference(&self) -> bool {
+        T::NEEDS_REFERENCE
     }
 
     fn bind(

@@ -10,7 +10,7 @@ use super::bound::{Chain, RowsOut, bind_all};
 use super::term::{PairReads, PairTermOfBodies};
 use super::work;
 use crate::parallel::{BlockSum, EIGHT, Split};
-use crate::plugin::{ForBodies, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Shared, Step, StepError};
 use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId};
@@ -64,6 +64,15 @@ impl PhaseTerms {
                 let name = &sim.body(id).name;
                 let message = format!("body `{name}` has {} pair terms, more than {MAX_TERMS}", terms.len());
                 return Err(SetupError::parameter("", message, "remove plugins that add pair terms"));
+            }
+            let without = terms.iter().map(|&k| &own[k].value).find(|own| own.term.needs_reference());
+            if sim.body(id).kind == BodyKind::Fluid
+                && let Some(PairTermOfBodies { account, .. }) = without.map(|own| &**own)
+            {
+                let name = &sim.body(id).name;
+                let message =
+                    format!("body `{name}`, a fluid, has no reference for the pair term `{account}`");
+                return Err(SetupError::parameter("", message, "give the term to solids alone"));
             }
             if !terms.is_empty() {
                 bodies.push(BodyTerms { id, terms, forces: Vec::new() });

@@ -147,6 +147,9 @@ pub trait PairTerm: Send + Sync + 'static {
     const READS_KERNEL: bool = true;
     /// Whether it reads [`Pair::v_ij`]. A term that does not saves the velocities of every pair by saying so.
     const READS_VELOCITY: bool = true;
+    /// Whether it is for bodies with reference pair vectors alone, which solids have and fluids do not. Its loops over fluids are then not compiled, and a fluid that is given the term is an error
+    /// of the scene.
+    const NEEDS_REFERENCE: bool = false;
     /// Whether the term gives density rates.
     const CHANGES_DENSITY: bool = false;
 

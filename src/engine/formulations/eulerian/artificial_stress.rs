@@ -73,6 +73,7 @@ impl PairTerm for Repulsion {
     type ReadJ = (TensileStress,);
 
     const READS_VELOCITY: bool = false;
+    const NEEDS_REFERENCE: bool = true;
 
     #[inline(always)]
     fn pair<A: Arithmetic>(

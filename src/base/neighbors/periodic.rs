@@ -83,7 +83,7 @@ impl Periodic {
 }
 
 /// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer without a call.
-pub(crate) const SHIFT: f64 = 6755399441055744.0;
+pub const SHIFT: f64 = 6755399441055744.0;
 
 #[inline(always)]
 fn nearest_integer(x: f64) -> f64 {

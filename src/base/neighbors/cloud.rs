@@ -85,7 +85,7 @@ impl<'a> Cloud<'a> {
 }
 
 /// Smallest box around positions, m; an inverted box where there are none.
-pub(crate) fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
+pub fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
     let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
     positions
         .par_iter()

@@ -51,7 +51,7 @@ impl NeighborList {
     }
 
     /// Becomes the list of sets of rows of `other`: what any of a set has for a neighbour, ascending.
-    pub(crate) fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self) {
+    pub fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self) {
         self.offsets.clear();
         self.offsets.push(0);
         self.indices.clear();
@@ -78,7 +78,7 @@ impl NeighborList {
     }
 
     /// Gives every neighbour another number.
-    pub(crate) fn renumber(&mut self, number: impl Fn(u32) -> u32) {
+    pub fn renumber(&mut self, number: impl Fn(u32) -> u32) {
         self.indices.iter_mut().for_each(|j| *j = number(*j));
     }
 

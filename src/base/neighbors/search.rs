@@ -92,7 +92,7 @@ impl NeighborSearch {
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
-    pub(crate) fn of_others(
+    pub fn of_others(
         &mut self,
         (positions, groups): (&[DVec3], &[u32]),
         skin: f64,
@@ -111,12 +111,7 @@ impl NeighborSearch {
     ///
     /// # Errors
     /// See [`NeighborError`].
-    pub(crate) fn sort(
-        &mut self,
-        sources: Cloud<'_>,
-        skin: f64,
-        periodic: &Periodic,
-    ) -> Result<(), NeighborError> {
+    pub fn sort(&mut self, sources: Cloud<'_>, skin: f64, periodic: &Periodic) -> Result<(), NeighborError> {
         let wanted = Wanted { same_set: true, skin, groups: None, periodic, halves: None };
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
@@ -126,7 +121,7 @@ impl NeighborSearch {
     ///
     /// # Errors
     /// See [`NeighborError`].
-    pub(crate) fn of_boxes(
+    pub fn of_boxes(
         &mut self,
         (centers, halves, groups): (&[DVec3], &[DVec3], &[u32]),
         skin: f64,

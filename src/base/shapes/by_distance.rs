@@ -11,7 +11,7 @@ use super::surface::{Surface, SurfacePoint};
 const DIFFERENCE: f64 = 1e-7;
 
 /// A region whose surface is known by its distance alone.
-pub(crate) struct ByDistance(pub Box<dyn Region>);
+pub struct ByDistance(pub Box<dyn Region>);
 
 impl Region for ByDistance {
     fn distance(&self, point: DVec3) -> f64 {

@@ -10,7 +10,7 @@ const FEW: usize = 8192;
 
 /// Particles bucket by bucket; those of a bucket in the order of their rows. Memory is kept from one sorting to the next.
 #[derive(Debug, Default)]
-pub(crate) struct Buckets {
+pub struct Buckets {
     keys: Vec<u32>,
     /// Particles of bucket b are `starts[b]..starts[b + 1]`; one entry more is scratch.
     starts: Vec<u32>,

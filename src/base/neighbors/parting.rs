@@ -15,7 +15,7 @@ const CELLS_OF_TASK: usize = 64;
 
 /// The cells, and where their particles were.
 #[derive(Debug, Default)]
-pub(crate) struct Parting {
+pub struct Parting {
     counts: [usize; 3],
     length: f64,
     cells: Buckets,
@@ -27,7 +27,7 @@ pub(crate) struct Parting {
 
 /// How far particles have moved against each other, m.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Parted {
+pub struct Parted {
     /// Those that were nearer than the length of a cell, at most.
     pub near: f64,
     /// Any two, at most.

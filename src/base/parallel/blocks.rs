@@ -72,6 +72,7 @@ impl<S: Split> Split for Option<S> {
 
 /// Makes a struct of slices over the same rows a [`Split`]: `split_by_rows!(Rows { a, b } and { c })` cuts the fields a and b, each of which may also be empty, and
 /// hands c to both halves.
+#[macro_export]
 macro_rules! split_by_rows {
     ($name:ident { $($field:ident),+ } $(and { $($same:ident),+ })?) => {
         impl $crate::parallel::Split for $name<'_> {
@@ -94,8 +95,6 @@ macro_rules! split_by_rows {
         }
     };
 }
-pub(crate) use split_by_rows;
-
 /// What a block contributes to a reduction over all rows.
 pub trait BlockSum: Copy + Default + Send {
     /// Adds the contribution of the next block.

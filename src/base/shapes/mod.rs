@@ -32,7 +32,7 @@ mod tiling;
 mod transform;
 mod voronoi;
 
-pub(crate) use by_distance::ByDistance;
+pub use by_distance::ByDistance;
 pub use concentric::Rings;
 pub use error::{FillError, FillErrorKind};
 pub use facets::{Facets, directed_area};

@@ -13,7 +13,6 @@ mod plane;
 mod vector;
 
 pub use arithmetic::{Arithmetic, FourLanes};
-pub(crate) use blocks::split_by_rows;
 pub use blocks::{
     BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
     sum_over_blocks,
@@ -27,3 +26,5 @@ pub use path::{HotLoop, PathError, have_same_bits, instruction_path, run_hot, ta
 pub use picked::Picked;
 pub use plane::run_hot_on;
 pub use vector::{Matrix, Vector};
+
+pub use crate::split_by_rows;
