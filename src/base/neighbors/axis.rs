@@ -4,10 +4,17 @@ use std::ops::Range;
 
 use super::periodic::SHIFT;
 
-/// Cells along one axis.
+/// Share by which a cell is longer than half of the radius: more than round-off where positions are below 10^8 radii, so that the length of a cell hangs on the radius alone.
+const ROOM: f64 = 1e-6;
+
+/// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which particles share a cell, and the order of cells, do not hang on
+/// which particles there are.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Axis {
+    /// Start of a period, m; zero where there is none.
     origin: f64,
+    /// Number of the first cell, counted from the origin.
+    first: i64,
     /// Cells per metre.
     inverse_cell: f64,
     /// 1 / length on a periodic axis, else zero.
@@ -24,23 +31,27 @@ impl Axis {
     pub fn round_off(min: f64, max: f64, radius: f64, period: Option<(f64, f64)>) -> f64 {
         let reach = match period {
             Some((start, length)) => (min - start).abs().max((max - start).abs()) + length,
-            None => max - min + radius,
+            None => min.abs().max(max.abs()) + radius,
         };
         8.0 * f64::EPSILON * reach
     }
 
     /// Cells of half of `radius`, of somewhat more on a periodic axis: between two coordinates, or in a period of that start and length, m.
     pub fn new((min, max): (f64, f64), radius: f64, period: Option<(f64, f64)>, round_off: f64) -> Self {
-        let (origin, length) = period.unwrap_or((min, max - min));
+        let mut cell = 0.5 * radius * (1.0 + ROOM);
         // Rounding of the cell number must not put two particles within the radius farther apart than cells are looked at.
-        let cell = 0.5 * (radius * (1.0 + 1e-9) + round_off);
-        let (cells, inverse_cell, inverse_period) = if period.is_some() {
-            let cells = (length / cell).floor().max(1.0);
-            (cells as i64, cells / length, 1.0 / length)
-        } else {
-            ((length / cell).floor() as i64 + 1, 1.0 / cell, 0.0)
+        while cell < 0.5 * (radius + round_off) {
+            cell *= 2.0;
+        }
+        let Some((origin, length)) = period else {
+            let inverse_cell = 1.0 / cell;
+            let first = whole(min * inverse_cell);
+            let cells = whole(max * inverse_cell).saturating_sub(first).saturating_add(1).max(1);
+            return Self { first, inverse_cell, round_off, cells, buckets: 1, ..Self::default() };
         };
-        Self { origin, inverse_cell, inverse_period, round_off, cells, buckets: 1 }
+        let cells = (length / cell).floor().max(1.0);
+        let (inverse_cell, inverse_period) = (cells / length, 1.0 / length);
+        Self { origin, first: 0, inverse_cell, inverse_period, round_off, cells: cells as i64, buckets: 1 }
     }
 
     /// Whether cells are buckets, side by side.
@@ -51,7 +62,7 @@ impl Axis {
     /// A coordinate in cells, on an axis that is not periodic.
     #[inline(always)]
     pub fn place(&self, x: f64) -> f64 {
-        (x - self.origin) * self.inverse_cell
+        x * self.inverse_cell - self.first as f64
     }
 
     /// A length in cells, round-off included.
@@ -63,8 +74,19 @@ impl Axis {
     /// Bucket of a coordinate: that of the last cell for those beyond.
     #[inline(always)]
     pub fn bucket_of(&self, x: f64) -> i64 {
-        let cell = self.cell(x).clamp(0, self.cells - 1);
+        let cell = self.cell_of(x);
         if self.cells == self.buckets { cell } else { cell % self.buckets }
+    }
+
+    /// Whether several cells share a bucket.
+    pub fn is_folded(&self) -> bool {
+        self.cells != self.buckets
+    }
+
+    /// Cell of a coordinate: the last one for those beyond.
+    #[inline(always)]
+    pub fn cell_of(&self, x: f64) -> i64 {
+        self.cell(x).clamp(0, self.cells - 1)
     }
 
     /// Cell of a coordinate; outside 0..cells for one outside the box of a bounded axis.
@@ -74,7 +96,8 @@ impl Axis {
             let turns = (x - self.origin) * self.inverse_period;
             (((turns - turns.floor()) * self.cells as f64) as i64).min(self.cells - 1)
         } else {
-            whole(self.place(x))
+            // Whole numbers first: rounding must not depend on which cell is the first.
+            whole(x * self.inverse_cell).saturating_sub(self.first)
         }
     }
 

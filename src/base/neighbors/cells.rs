@@ -1,6 +1,6 @@
 //! Positions sorted into cells, for what wants particles that are near each other together.
 
-use glam::{BVec3, DVec3};
+use glam::DVec3;
 
 use super::{Buckets, Periodic, bounds};
 
@@ -12,8 +12,8 @@ pub struct Cells {
     pub length: f64,
 }
 
-/// Sorts positions into cells of at least that length, m, but not into more cells than there are particles: drops that fly far apart have larger ones. Whole numbers of cells
-/// fill periodic axes.
+/// Sorts positions into cells of at least that length, m, or of twice, four times that, so that there are not more cells than particles: drops that fly far apart have larger ones. A cell has its middle
+/// at the origin, whatever its length; whole numbers of cells fill periodic axes.
 pub fn sort_into_cells(
     cells: &mut Buckets,
     positions: &[DVec3],
@@ -21,10 +21,16 @@ pub fn sort_into_cells(
     periodic: &Periodic,
 ) -> Cells {
     let ((low, high), wraps) = (bounds(positions), periodic.axes());
-    let lengths = DVec3::select(BVec3::from_array(wraps), periodic.lengths(), high - low).max(DVec3::ZERO);
+    let number = |x: f64, length: f64| (x / length + 0.5).floor() as i64;
     let counts = loop {
-        let along = |a: usize| (lengths[a] / length).floor() as usize + usize::from(!wraps[a]);
-        let counts = [0, 1, 2].map(|a| along(a).max(1));
+        let counts = [0, 1, 2].map(|a| {
+            let last = if wraps[a] {
+                (periodic.lengths()[a] / length) as i64 - 1
+            } else {
+                number(high[a], length).saturating_sub(number(low[a], length))
+            };
+            last.max(0) as usize + 1
+        });
         let product = counts.iter().fold(1_usize, |product, &n| product.saturating_mul(n));
         if product <= positions.len() + 64 {
             break counts;
@@ -32,14 +38,17 @@ pub fn sort_into_cells(
         length *= 2.0;
     };
     let [nx, ny, nz] = counts;
-    let origin = DVec3::select(BVec3::from_array(wraps), periodic.min(), low);
-    let cell = DVec3::from_array(
-        [0, 1, 2].map(|a| if wraps[a] { counts[a] as f64 / lengths[a] } else { 1.0 / length }),
-    );
+    let first = [0, 1, 2].map(|a| if wraps[a] { 0 } else { number(low[a], length) });
+    let place = |x: DVec3, a: usize| {
+        if wraps[a] {
+            ((x[a] - periodic.min()[a]) * (counts[a] as f64 / periodic.lengths()[a])) as usize
+        } else {
+            number(x[a], length).saturating_sub(first[a]).max(0) as usize
+        }
+    };
     let key = |x: DVec3| {
         let x = if periodic.any() { periodic.wrap(x) } else { x };
-        let at = (x - origin) * cell;
-        let [i, j, k] = [(at.x, nx), (at.y, ny), (at.z, nz)].map(|(at, n)| (at as usize).min(n - 1));
+        let [i, j, k] = [(0, nx), (1, ny), (2, nz)].map(|(a, n)| place(x, a).min(n - 1));
         ((k * ny + j) * nx + i) as u32
     };
     cells.sort(positions, nx * ny * nz, key);

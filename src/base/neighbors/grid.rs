@@ -2,7 +2,7 @@
 //!
 //! A cell is half as long as the largest pair radius. Cells map to buckets, at most about four times as many as particles: one to one where
 //! the grid is small enough, and folded onto themselves like a torus where a few particles span a huge box. Folding brings candidates
-//! that the distance test rejects, never loses one.
+//! that the distance test rejects, never loses one, and leaves the order of neighbours as it is.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -24,6 +24,8 @@ pub(super) struct Grid {
     coordinates: [Vec<f64>; 3],
     /// Support radii; empty where not asked for.
     pub supports: Vec<f64>,
+    /// Cells of all sources by z, y, x, in the order of rows; empty where no bucket holds several cells.
+    cells: Vec<[i64; 3]>,
 }
 
 /// Sorted particles one after another.
@@ -68,6 +70,11 @@ impl Grid {
             ((z.bucket_of(p.z) * y.buckets + y.bucket_of(p.y)) * x.buckets + x.bucket_of(p.x)) as u32
         };
         self.buckets.sort(sources.positions, (x.buckets * y.buckets * z.buckets) as usize, key);
+        self.cells.clear();
+        if self.axes.iter().any(Axis::is_folded) {
+            self.cells
+                .extend(sources.positions.iter().map(|p| [z.cell_of(p.z), y.cell_of(p.y), x.cell_of(p.x)]));
+        }
 
         let rows = &mut self.buckets.rows;
         for (a, coordinate) in self.coordinates.iter_mut().enumerate() {
@@ -97,6 +104,14 @@ impl Grid {
     pub fn coordinates(&self) -> [&[f64]; 3] {
         let [x, y, z] = &self.coordinates;
         [x, y, z]
+    }
+
+    /// Puts sources that were found into the order of cells and, in a cell, of rows, which they have already unless buckets hold several cells.
+    #[inline(never)]
+    pub fn order(&self, found: &mut [u32]) {
+        if !self.cells.is_empty() {
+            found.sort_unstable_by_key(|&row| (self.cells[row as usize], row));
+        }
     }
 
     /// Finds ranges that hold all sources within the radius, m, of `position`, each once.

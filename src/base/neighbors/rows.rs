@@ -173,8 +173,8 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
             }
             let row = &mut found[start..used];
             match order {
-                Order::Cells => {}
-                Order::Groups(ends) if !is_mixed(row, ends) => {}
+                Order::Cells => grid.order(row),
+                Order::Groups(ends) if !is_mixed(row, ends) => grid.order(row),
                 Order::Groups(_) | Order::Rows => row.sort_unstable(),
             }
             ends.push(used);

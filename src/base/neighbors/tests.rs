@@ -181,6 +181,30 @@ fn same_bits_on_any_number_of_threads() {
     assert!(lists[0] == lists[1] && lists[0] == lists[2]);
 }
 
+/// The corners of cells are whole multiples of their length, and neighbours are in the order of cells also where these share buckets.
+#[test]
+fn the_order_of_neighbours_does_not_hang_on_who_else_is_there() {
+    let near = random_cloud(5, 400, 3);
+    let rows_with = |others: &[DVec3]| {
+        let all: Vec<DVec3> = near.iter().chain(others).copied().collect();
+        let (mut list, mut search) = (NeighborList::default(), NeighborSearch::default());
+        let cloud = Cloud::uniform(&all, 0.3);
+        search
+            .of_first((near.len(), &[all.len() as u32]), cloud, 0.0, &Periodic::NONE, &mut list)
+            .expect("a list");
+        (0..near.len()).map(|i| list.row(i).to_vec()).collect::<Vec<_>>()
+    };
+    let alone = rows_with(&[]);
+    assert!(alone.iter().any(|row| !row.is_sorted()), "rows are in the order of cells");
+    for far in [0.05, 0.77, 31.3, 4e3, 1e7] {
+        assert_eq!(
+            rows_with(&[DVec3::splat(-1.0 - far), DVec3::new(2.0 * far + 2.0, 2.0, 2.0)]),
+            alone,
+            "{far}"
+        );
+    }
+}
+
 #[test]
 fn rebuilding_reuses_memory_and_forgets_the_past() {
     let mut search = NeighborSearch::default();

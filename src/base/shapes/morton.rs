@@ -5,6 +5,8 @@ use rayon::prelude::*;
 
 /// Bits of a key for each axis.
 const BITS: u32 = 21;
+/// Cells on either side of the place that they are counted from.
+const HALF: f64 = (1 << (BITS - 1)) as f64;
 
 /// Order along a Morton (Z-order) curve, with memory that is kept.
 #[derive(Debug, Default)]
@@ -14,19 +16,20 @@ pub struct MortonSort {
 }
 
 impl MortonSort {
-    /// The order of `points` along the curve through cells of side `cell` \[m\]: element n is the index of the point that comes
-    /// n-th. Points of one cell keep their order. Where 2^21 cells a side do not reach, the cells are taken larger.
-    pub fn order(&mut self, points: &[DVec3], cell: f64) -> &[u32] {
-        let first = points.first().copied().unwrap_or_default();
-        let (min, max) =
-            points.iter().fold((first, first), |(min, max), &point| (min.min(point), max.max(point)));
-        let largest = ((1u64 << BITS) - 2) as f64;
-        let cell = cell.max((max - min).max_element() / largest);
-        // Points of a lattice lie half a cell away from the walls of the cells, where round-off cannot move them across.
-        let index = |x: f64| ((x / cell + 0.5) as u64).min((1 << BITS) - 1);
+    /// The order of `points` along the curve through cells of side `cell` \[m\] that are counted from the place `around` \[m\]: element n is the index of the point that comes
+    /// n-th. Points of one cell keep their order. Where 2^20 cells on either side do not reach, their side is doubled until they do.
+    pub fn order(&mut self, points: &[DVec3], around: DVec3, mut cell: f64) -> &[u32] {
+        let farthest = points
+            .iter()
+            .fold(0.0_f64, |farthest, &point| farthest.max((point - around).abs().max_element()));
+        while farthest / cell >= HALF - 1.0 {
+            cell *= 2.0;
+        }
+        // Points of a lattice that starts at `around` lie half a cell away from the walls of the cells, where round-off cannot move them across.
+        let index = |x: f64| (x / cell + (HALF + 0.5)) as u64;
         let key = |point: DVec3| {
-            let from_min = point - min;
-            spread(index(from_min.x)) | spread(index(from_min.y)) << 1 | spread(index(from_min.z)) << 2
+            let from = point - around;
+            spread(index(from.x)) | spread(index(from.y)) << 1 | spread(index(from.z)) << 2
         };
         self.keys.clear();
         self.keys.par_extend(points.par_iter().enumerate().map(|(n, &point)| (key(point), n as u32)));
@@ -37,10 +40,12 @@ impl MortonSort {
     }
 }
 
-/// [`MortonSort::order`] for once.
+/// [`MortonSort::order`] for once, with cells that are counted from the corner of the points.
 pub fn morton_order(points: &[DVec3], cell: f64) -> Vec<u32> {
+    let first = points.first().copied().unwrap_or_default();
+    let corner = points.iter().fold(first, |corner, &point| corner.min(point));
     let mut sort = MortonSort::default();
-    sort.order(points, cell);
+    sort.order(points, corner, cell);
     sort.order
 }
 

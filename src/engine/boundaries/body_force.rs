@@ -30,7 +30,7 @@ impl Plugin for BodyForce {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let selection = sim.select(&self.on, "on")?;
+        let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
         let field = Field::new(self.value, sim)?;
         let law = ForcePerMass { field };

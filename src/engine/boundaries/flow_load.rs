@@ -9,7 +9,7 @@ use super::part::Part;
 use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{Mass, PhaseId};
+use crate::world::{Mass, ParticleId, PhaseId};
 
 /// Adds the system that tells what a load does to fluids, where anything bounds them.
 pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut SimBuilder<'_>) {
@@ -25,7 +25,9 @@ pub(super) fn add(label: &str, law: &Arc<dyn LoadLaw>, parts: &[Part], sim: &mut
     let accelerations = vec![Vec::new(); parts.len()];
     let load = FlowLoad { law: Arc::clone(law), parts, accelerations };
     let system = System::new(Stage::Gradients, format!("{label}_of_flow"), load);
-    sim.add_system(system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds).reads::<Mass>());
+    sim.add_system(
+        system.on_phases(phases).touches_packed(FLOW_LOADS, Mode::Adds).reads::<Mass>().reads::<ParticleId>(),
+    );
 }
 
 struct FlowLoad {
@@ -38,7 +40,8 @@ struct FlowLoad {
 
 impl Run for FlowLoad {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        for ((k, part), accelerations) in self.parts.iter().zip(&mut self.accelerations) {
+        for ((k, part), accelerations) in self.parts.iter_mut().zip(&mut self.accelerations) {
+            part.follow(step.world, accelerations)?;
             if accelerations.is_empty() || !self.law.is_constant() {
                 self.law.forces(*k, part, step, accelerations)?;
                 let mass = step.world.phase(step.world.body(part.body).phase).read::<Mass>()?;

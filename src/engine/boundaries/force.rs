@@ -27,7 +27,7 @@ impl Plugin for Force {
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let selection = sim.select(&self.on, "on")?;
+        let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
         let field = Field::new(self.value, sim)?;
         let share = 1.0 / selection.len() as f64;

@@ -12,7 +12,7 @@ use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
-use crate::world::{BodyId, Force, Removed, Velocity};
+use crate::world::{BodyId, Force, ParticleId, Removed, Velocity};
 
 /// What gives the force on every particle of a part.
 pub(super) trait LoadLaw: Send + Sync + 'static {
@@ -29,16 +29,16 @@ pub(super) struct DeadLoad {
     pub name: &'static str,
     /// Traction, acceleration or force.
     pub field: Field,
-    /// Area, mass or share of every particle of every part.
+    /// Area, mass or share of every particle of every part, in the order of the start.
     pub shares: Vec<Vec<f64>>,
 }
 
 impl LoadLaw for DeadLoad {
     fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {
         self.field.values(&part.points, step.clock.end(), self.name, out)?;
-        let rows = (&mut out[..], &self.shares[k][..]);
-        sum_over_blocks(rows, &|_, (out, shares): (&mut [DVec3], &[f64])| {
-            out.iter_mut().zip(shares).for_each(|(force, share)| *force *= *share);
+        let shares = &self.shares[k];
+        sum_over_blocks(&mut out[..], &|first, out: &mut [DVec3]| {
+            out.iter_mut().zip(first..).for_each(|(force, n)| *force *= shares[part.number(n)]);
         });
         Ok(())
     }
@@ -63,7 +63,7 @@ pub(super) fn apply(
     flow_load::add(label, &law, &parts, sim);
     let load = Load { label, law, parts, forces, next: Vec::new() };
     let system = System::new(Stage::External, label, load).on_phases(phases).by_body();
-    let system = system.reads::<Velocity>().reads::<Removed>().adds::<Force>();
+    let system = system.reads::<Velocity>().reads::<Removed>().reads::<ParticleId>().adds::<Force>();
     sim.add_system(declare(system));
 }
 
@@ -85,7 +85,7 @@ struct Load {
     label: &'static str,
     law: Arc<dyn LoadLaw>,
     parts: Vec<Part>,
-    /// Forces at the end of the last step; empty before the first.
+    /// Forces at the end of the last step, in the order of rows; empty before the first.
     forces: Vec<Vec<DVec3>>,
     next: Vec<DVec3>,
 }
@@ -93,10 +93,11 @@ struct Load {
 impl Run for Load {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let account = step.ledger.account(self.label, AccountKind::Supplied);
-        for (k, (part, last)) in self.parts.iter().zip(&mut self.forces).enumerate() {
+        for (k, (part, last)) in self.parts.iter_mut().zip(&mut self.forces).enumerate() {
             if !step.turn.is_due(step.world, part.body) {
                 continue;
             }
+            part.follow(step.world, last)?;
             let first = last.is_empty();
             let changes = first || !self.law.is_constant();
             if changes {
@@ -136,8 +137,13 @@ impl Run for Load {
         if self.law.is_constant() {
             return Vec::new();
         }
-        let components = self.forces.iter().flatten().flat_map(|force| force.to_array());
-        components.flat_map(f64::to_le_bytes).collect()
+        let mut components = Vec::new();
+        for (part, forces) in self.parts.iter().zip(&self.forces) {
+            let mut at_start = vec![DVec3::ZERO; forces.len()];
+            forces.iter().enumerate().for_each(|(n, force)| at_start[part.number(n)] = *force);
+            components.extend(at_start.into_iter().flat_map(|force| force.to_array()));
+        }
+        components.into_iter().flat_map(f64::to_le_bytes).collect()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {

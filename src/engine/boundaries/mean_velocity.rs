@@ -66,7 +66,7 @@ impl MeanVelocity {
         for (k, name) in self.bodies.iter().enumerate() {
             let field = format!("bodies[{k}]");
             let select = Select { body: Some(name.clone()), ..Select::default() };
-            let found = sim.select(&select, &field).map_err(|error| match error {
+            let found = sim.select_at_start(&select, &field).map_err(|error| match error {
                 SetupError::Parameter { message, help, .. } => {
                     SetupError::Parameter { field: field.clone(), message, help }
                 }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::plugin::{Selection, SimBuilder};
-use crate::world::{BodyId, PhaseId};
+use crate::plugin::{BodyKind, Selection, SimBuilder};
+use crate::world::{BodyId, MissingColumn, PhaseId, World};
 
 /// Selected particles of one body.
 #[derive(Clone, Debug)]
@@ -14,6 +14,41 @@ pub(super) struct Part {
     pub rows: Vec<u32>,
     /// Reference position of each, m.
     pub points: Vec<DVec3>,
+    /// Rows at the start, ascending, of a fluid, which is sorted at times; empty for others.
+    at_start: Vec<u32>,
+    /// Which of these each row holds.
+    numbers: Vec<u32>,
+}
+
+impl Part {
+    /// Number of the particle in the `n`-th row among those that were selected at the start.
+    #[inline]
+    pub fn number(&self, n: usize) -> usize {
+        self.numbers.get(n).map_or(n, |&k| k as usize)
+    }
+
+    /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into their order; says whether there was anything to do.
+    ///
+    /// # Errors
+    /// The phase has no particle ids.
+    pub fn follow(&mut self, world: &World, along: &mut [DVec3]) -> Result<bool, MissingColumn> {
+        let stood = self.numbers.iter().map(|&k| self.at_start[k as usize]);
+        if world.are_in(self.body, self.rows.iter().copied().zip(stood))? {
+            return Ok(false);
+        }
+        let places = world.places_now(self.body, &self.at_start)?;
+        let reorder = |values: &mut [DVec3]| {
+            let mut at_start = vec![DVec3::ZERO; self.numbers.len()];
+            values.iter().zip(&self.numbers).for_each(|(value, &k)| at_start[k as usize] = *value);
+            values.iter_mut().zip(&places).for_each(|(value, &(_, k))| *value = at_start[k as usize]);
+        };
+        reorder(&mut self.points);
+        reorder(along);
+        for (n, (row, k)) in places.into_iter().enumerate() {
+            (self.rows[n], self.numbers[n]) = (row, k);
+        }
+        Ok(true)
+    }
 }
 
 /// The parts of a selection.
@@ -21,7 +56,9 @@ pub(super) fn parts_of(selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Part>
     let part = |(id, rows): &(BodyId, Vec<u32>)| {
         let body = sim.body(*id);
         let points = rows.iter().map(|&row| body.sites[row as usize - body.rows.start].position).collect();
-        Part { body: *id, rows: rows.clone(), points }
+        let at_start = if body.kind == BodyKind::Fluid { rows.clone() } else { Vec::new() };
+        let numbers = (0..at_start.len() as u32).collect();
+        Part { body: *id, rows: rows.clone(), points, at_start, numbers }
     };
     selection.parts.iter().map(part).collect()
 }

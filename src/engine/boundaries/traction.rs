@@ -37,7 +37,7 @@ impl Plugin for Traction {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         check_area(self.area)?;
         let field = Field::new(self.value, sim)?;
-        let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
+        let selection = sim.select_at_start(&Select { surface: None, ..self.on.clone() }, "on")?;
         load::require_movable(&selection, sim)?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || Kind::Traction(field.clone());

@@ -205,14 +205,15 @@ impl<'s> SimBuilder<'s> {
     }
 
     /// The rows that a selection means; `field` is its name among the parameters, for errors. The bodies keep the order of
-    /// their rows through the run: fluids among them are not sorted.
+    /// their rows through the run: fluids among them are not sorted, which makes them slower.
     pub fn select(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
         let selection = self.select_at_start(select, field)?;
         self.held.borrow_mut().extend(selection.parts.iter().map(|(body, _)| *body));
         Ok(selection)
     }
 
-    /// The rows that a selection means until the first step, for what is done once.
+    /// The rows that a selection means until the first step: for what is done once, or finds them again
+    /// by [`World::rows_now`](crate::world::World::rows_now).
     pub fn select_at_start(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
         selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
     }

@@ -6,6 +6,7 @@ mod by_row;
 mod column;
 mod permute;
 mod registry;
+mod rows_now;
 mod standard;
 mod state;
 

@@ -21,6 +21,7 @@ impl ParticleGauge {
         let mut total = vec![0.0; width];
         let mut count = 0_u32;
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let (Some(&first), Some(&last)) = (rows.first(), rows.last()) else { continue };
             let values = self.field.read(world, resources, *body, first as usize..last as usize + 1)?;
             let removed = world.body_view(*body).0.read::<Removed>()?;

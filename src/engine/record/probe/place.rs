@@ -91,7 +91,8 @@ pub(super) fn gauge_at(
     if on.surface.is_some() {
         return surface(place, on, field, sim);
     }
-    let selection = sim.select(on, &format!("{}on", place.path)).map_err(|error| at_probe(place.k, error))?;
+    let selection =
+        sim.select_at_start(on, &format!("{}on", place.path)).map_err(|error| at_probe(place.k, error))?;
     let field = field(&BodySet::new(selection.parts.iter().map(|(id, _)| *id)), true)?;
     match place.take {
         Take::Mean | Take::Sum => {

@@ -187,7 +187,7 @@ fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<Energ
 }
 
 fn select(k: usize, on: &Select, sim: &SimBuilder<'_>) -> Result<Selection, Vec<Problem>> {
-    sim.select(on, "on").map_err(|error| at_probe(k, error))
+    sim.select_at_start(on, "on").map_err(|error| at_probe(k, error))
 }
 
 /// The problems of a selection, at the place of the probe.

@@ -74,6 +74,7 @@ impl Measure for Extremal {
         let width = self.field.width();
         let mut extremum = Extremum::new(self.take);
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let (Some(&first), Some(&last)) = (rows.first(), rows.last()) else { continue };
             let values = self.field.read(world, resources, *body, first as usize..last as usize + 1)?;
             let (view, _) = world.body_view(*body);

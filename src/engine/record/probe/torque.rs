@@ -20,6 +20,7 @@ impl TorqueGauge {
     pub(super) fn read(&self, world: &World) -> Result<Vec<f64>, MissingColumn> {
         let (mut mass, mut moment, mut force, mut torque) = (0.0, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let (view, _) = world.body_view(*body);
             let (x, m, f) = (view.read::<Position>()?, view.read::<Mass>()?, view.read::<Force>()?);
             for row in rows.iter().map(|&row| row as usize) {

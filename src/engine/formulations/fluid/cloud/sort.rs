@@ -1,6 +1,6 @@
 //! Sorting of fluid particles along a space-filling curve: neighbours in space stay neighbours in memory while the fluid mixes.
 //!
-//! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId) tells who is who. A body some of whose
+//! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId) tells who is who. A body whose
 //! particles a selection holds by their rows keeps its order.
 
 use glam::DVec3;
@@ -26,7 +26,7 @@ impl Sorter {
         let free = |group: &&Group| group.fluid().is_some() && !group.held;
         for group in cloud.groups.iter().filter(free) {
             let cell = world.body(group.body).spacing;
-            let order = self.curve.order(&positions[group.cloud.clone()], cell);
+            let order = self.curve.order(&positions[group.cloud.clone()], DVec3::ZERO, cell);
             world.phase(group.phase).permute(group.rows.clone(), order, &mut self.scratch);
         }
         cloud.groups.iter().any(|group| free(&group))

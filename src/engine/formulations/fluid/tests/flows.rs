@@ -2,9 +2,14 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{column, double, simulation};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{column, double, simulation, simulation_with};
 use crate::formulations::fluid::FlowCloud;
 use crate::kernels::{Kernel, KernelName};
+use crate::plugin::{Plugin, Registry, SetupError, SimBuilder};
+use crate::scene::Select;
 use crate::simulation::Simulation;
 use crate::world::{Density, Force, Mass, ParticleId, Position, Pressure, ReferenceVolume, Velocity};
 
@@ -244,11 +249,31 @@ fn a_dam_break_keeps_its_energy_in_the_books() {
     assert!(ledger.relative_error().abs() < 2e-3, "{}", ledger.relative_error());
 }
 
+/// Holds the water by its rows, and does nothing.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+struct Hold {}
+
+impl Plugin for Hold {
+    const NAME: &'static str = "hold";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        sim.select(&Select { body: Some("water".to_owned()), ..Select::default() }, "").map(|_| ())
+    }
+}
+
+/// Also under a load on some of them that varies in place and time.
 #[test]
 fn sorted_particles_move_as_those_that_keep_their_rows() {
-    let positions = |condition: &str| {
-        let text = dam(2, "").replace("conditions: [", &format!("conditions: [{condition}"));
-        let mut sim = double(&text);
+    let part = r#"Select(body: "water", within: Box(min: (0.1, 0.1), max: (0.3, 0.3)))"#;
+    let force = format!(r#"Force(on: {part}, value: ("400*x", "200*t"))"#);
+    let positions = |plugins: &str| {
+        let text = dam(2, "").replace("conditions: [", &format!("conditions: [{force}, "));
+        let text = text.replacen("(dimension", &format!("(precision: Double, {plugins}dimension"), 1);
+        let mut registry = Registry::standard();
+        registry.plugin::<Hold>();
+        let mut sim = simulation_with(&registry, &text);
         run(&mut sim, 300);
         let ids: Vec<u64> = column::<ParticleId>(&sim, 0).iter().map(|id| id.0).collect();
         let mut rows: Vec<usize> = (0..ids.len()).collect();
@@ -258,8 +283,7 @@ fn sorted_particles_move_as_those_that_keep_their_rows() {
     };
     let (as_made, sorted) = positions("");
     assert!(!as_made);
-    let (as_made, held) =
-        positions(r#"Force(on: Select(body: "water", nearest: (0, 0)), value: ("0", "0")),"#);
+    let (as_made, held) = positions("plugins: [hold()], ");
     assert!(as_made);
     let farthest = sorted.iter().zip(&held).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     assert!(farthest < 1e-6 * 0.04, "{farthest}");

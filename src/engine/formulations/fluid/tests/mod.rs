@@ -29,9 +29,12 @@ use crate::simulation::Simulation;
 use crate::world::{BodyId, Column};
 
 pub fn simulation(text: &str) -> Simulation {
-    let registry = Registry::standard();
+    simulation_with(&Registry::standard(), text)
+}
+
+pub fn simulation_with(registry: &Registry, text: &str) -> Simulation {
     let built =
-        parse(Source::new("test.ron", text)).and_then(|(scene, source)| build(&scene, &source, &registry));
+        parse(Source::new("test.ron", text)).and_then(|(scene, source)| build(&scene, &source, registry));
     match built {
         Ok(simulation) => simulation,
         Err(error) => panic!("{error}"),

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::column;
 use super::repulsion::{SPACING, WALL, rain};
 use crate::simulation::Simulation;
-use crate::world::{BodyId, Position, Removed, Velocity};
+use crate::world::{BodyId, ParticleId, Position, Removed, Velocity};
 
 /// Takes the particles of the floor out that `is_gone` names.
 fn dig(sim: &Simulation, is_gone: impl Fn(DVec3) -> bool) {
@@ -29,8 +29,12 @@ fn fluid_fills_what_is_worn() {
         dig(&sim, |x| x.x > 0.06 && x.x < 0.22 && x.z.abs() < 0.1 && x.y > -DEPTH);
         let mut lowest = [f64::INFINITY; 4];
         sim.run(|sim| {
-            for (lowest, x) in lowest.iter_mut().zip(column::<Position>(sim, 0)) {
-                *lowest = lowest.min(x.0.y);
+            let ids = column::<ParticleId>(sim, 0);
+            let first = ids.iter().map(|id| id.0).min().unwrap_or_default();
+            for (id, x) in ids.iter().zip(column::<Position>(sim, 0)) {
+                if let Some(lowest) = lowest.get_mut((id.0 - first) as usize) {
+                    *lowest = lowest.min(x.0.y);
+                }
             }
             sim.clock().time < 0.08
         })

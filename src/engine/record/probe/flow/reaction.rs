@@ -32,6 +32,7 @@ impl Measure for ReactionGauge {
         let (mut force, mut viscous, mut torque) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
         let cloud = resources.try_get::<FlowCloud>();
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let Some(forces) = cloud.as_ref().and_then(|cloud| cloud.forces_on(*body)) else { continue };
             let (view, all) = world.body_view(*body);
             let position = view.read::<Position>()?;

@@ -24,6 +24,7 @@ impl Measure for RemovedVolume {
     fn read(&self, world: &World, _: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let mut sum = 0.0;
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let (view, _) = world.body_view(*body);
             let (removed, volume) = (view.read::<Removed>()?, view.read::<ReferenceVolume>()?);
             let (removed, volume) = (&removed[..], &volume[..]);

@@ -75,6 +75,7 @@ impl Measure for Roughness {
     fn read(&self, world: &World, _: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let mut heights = vec![f64::NEG_INFINITY; self.along.iter().map(|(.., count)| count).product()];
         for (body, rows) in &self.selection.parts {
+            let rows = world.rows_now(*body, rows)?;
             let (view, _) = world.body_view(*body);
             let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
             let there = rows.iter().map(|&row| row as usize).filter(|&row| removed[row] == Removed::NO);
