@@ -23,15 +23,22 @@ impl BlockSum for ContactEnergy {
     }
 }
 
-/// Books the contacts of all pairs: each body has half.
-pub(in crate::contact) fn book(step: &mut Step<'_>, energies: &[((BodyId, BodyId), ContactEnergy)]) {
+/// Books the contacts of all pairs: each body has half. `stored` has a place for each body, J.
+pub(in crate::contact) fn book(
+    step: &mut Step<'_>,
+    energies: &[((BodyId, BodyId), ContactEnergy)],
+    stored: &mut [(BodyId, f64)],
+) {
     let contact = step.ledger.account("contact", AccountKind::Stored);
     let damping = step.ledger.account("contact_damping", AccountKind::Dissipated);
     let friction = step.ledger.account("friction", AccountKind::Dissipated);
     let bodies = || energies.iter().flat_map(|((a, b), energies)| [(*a, energies), (*b, energies)]);
-    for (body, _) in bodies() {
-        let stored =
-            bodies().filter(|(other, _)| *other == body).map(|(_, energies)| 0.5 * energies.stored).sum();
+    stored.iter_mut().for_each(|(_, stored)| *stored = 0.0);
+    for (body, energies) in bodies() {
+        let own = stored.iter_mut().find(|(other, _)| *other == body);
+        own.into_iter().for_each(|(_, stored)| *stored += 0.5 * energies.stored);
+    }
+    for &(body, stored) in &*stored {
         step.ledger.set(contact, body, stored);
     }
     for (body, energies) in bodies() {

@@ -22,7 +22,8 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
     let warm = |body: BodyId| Some((body, sim.body(body).specific_heat().filter(|_| heats)?));
     let contacts = Contacts {
         specific_heats: bodies.iter().filter_map(warm).collect(),
-        bodies: bodies.iter().map(|body| (body, MotionBounds::NONE)).collect(),
+        bodies: bodies.iter().map(|body| InContact::of(body, &touching)).collect(),
+        stored: bodies.iter().map(|body| (body, 0.0)).collect(),
         energies: Vec::with_capacity(touching.len()),
         touching,
     };
@@ -50,23 +51,39 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
 
 /// The contacts of the scene, which two systems share.
 struct Contacts {
-    bodies: Vec<(BodyId, MotionBounds)>,
+    bodies: Vec<InContact>,
+    /// Energy of the springs that each holds, J.
+    stored: Vec<(BodyId, f64)>,
     /// Bodies that friction may warm, with their specific heat, J/(kg K).
     specific_heats: Vec<(BodyId, f64)>,
     touching: Vec<Touching>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
 }
 
+/// A body that touches others.
+struct InContact {
+    body: BodyId,
+    /// Whether the shapes of particles of it that touch follow their deformation.
+    deform: bool,
+    motion: MotionBounds,
+}
+
+impl InContact {
+    fn of(body: BodyId, touching: &[Touching]) -> Self {
+        let mut particles = touching.iter().flat_map(Touching::particles);
+        let deform = particles.any(|particles| particles.deform && particles.body == body);
+        Self { body, deform, motion: MotionBounds::NONE }
+    }
+}
+
 impl Contacts {
     fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        for (body, motion) in &mut self.bodies {
-            let mut particles = self.touching.iter().flat_map(Touching::particles);
-            let deform = particles.any(|particles| particles.deform && particles.body == *body);
-            *motion = MotionBounds::of(*body, deform, step)?;
+        for InContact { body, deform, motion } in &mut self.bodies {
+            *motion = MotionBounds::of(*body, *deform, step)?;
         }
         let motion_of = |body: BodyId| {
-            let known = self.bodies.iter().find(|(id, _)| *id == body);
-            known.map_or(MotionBounds::NONE, |entry| entry.1)
+            let known = self.bodies.iter().find(|known| known.body == body);
+            known.map_or(MotionBounds::NONE, |known| known.motion)
         };
         if let Some(mut bodies) = step.resources.try_get_mut::<RigidBodies>() {
             bodies.iter_mut().for_each(|body| body.contact_stiffness = Wrench::default());
@@ -87,7 +104,7 @@ impl Contacts {
             let energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
             self.energies.push(((first, second), energies));
         }
-        energy::book(step, &self.energies);
+        energy::book(step, &self.energies, &mut self.stored);
         self.add_couples(step);
         Ok(())
     }
