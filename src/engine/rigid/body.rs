@@ -105,7 +105,12 @@ impl RigidBody {
 
     /// Largest speed of any of its points, m/s.
     pub fn largest_speed(&self) -> f64 {
-        self.state.velocity.length() + self.state.angular_velocity.length() * self.reach
+        self.largest_speed_in(DVec3::ZERO)
+    }
+
+    /// The same in a frame of that velocity, m/s.
+    pub fn largest_speed_in(&self, frame: DVec3) -> f64 {
+        (self.state.velocity - frame).length() + self.state.angular_velocity.length() * self.reach
     }
 
     /// How much a force at `place` along `direction` speeds up that point along it, 1/kg.

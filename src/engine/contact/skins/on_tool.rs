@@ -98,7 +98,7 @@ impl SkinOnTool {
         let skin = Arc::clone(&self.patch.skin);
         let columns = SkinColumns::new(&skin, step.world)?;
         let view = columns.view();
-        let speeds = [motion[0].speed, motion[1].speed];
+        let speeds = MotionBounds::speeds(motion);
         if self.near.is_old(speeds, dt) {
             self.near.find(&skin, &view, tool);
             self.patch.select(self.near.facets.iter().copied());

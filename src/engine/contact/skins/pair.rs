@@ -70,7 +70,7 @@ impl SkinPair {
         let skins = [0, 1].map(|k| Arc::clone(&self.patches[k].skin));
         let first = SkinColumns::new(&skins[0], step.world)?;
         let second = SkinColumns::new(&skins[1], step.world)?;
-        let speed = motion[0].speed + motion[1].speed;
+        let speed: f64 = MotionBounds::speeds(motion).iter().sum();
         self.keeps_reference = skins.iter().all(|skin| time_step::keeps_reference(step, skin.body));
         let (energies, stiffness) = self.act([first.view(), second.view()], speed, dt).map_err(failed)?;
         let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);

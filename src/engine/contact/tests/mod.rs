@@ -7,6 +7,7 @@ mod impacts;
 mod laws;
 mod loaded;
 mod long;
+mod moving_frame;
 mod particles;
 mod rigid;
 mod rolling;

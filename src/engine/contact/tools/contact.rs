@@ -49,7 +49,7 @@ impl SurfaceContact {
     /// Finds the nodes that touch, and adds what their springs do to the rigid bodies.
     pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
         let mut bodies = step.resources.get_mut::<RigidBodies>();
-        let (speed, dt) = (motion[0].speed + motion[1].speed, step.clock.dt);
+        let (speed, dt) = (MotionBounds::speeds(motion).iter().sum::<f64>(), step.clock.dt);
         let Self { interaction, sides, nearby, contacts, contact_nodes, .. } = self;
         let of_particles = sides.nodes.particles().is_some();
         (self.near, self.together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
@@ -85,7 +85,7 @@ impl SurfaceContact {
     ) -> Result<ContactEnergy, StepError> {
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
-        let speed = motion[0].speed + motion[1].speed;
+        let speed = MotionBounds::speeds(motion).iter().sum::<f64>();
         let dt = step.clock.dt;
         let Self { interaction, sides, contacts, gravity, contact_nodes, near, together, .. } = self;
         let of_particles = sides.nodes.particles();
