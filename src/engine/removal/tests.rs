@@ -127,3 +127,22 @@ fn a_particle_whose_neighbours_have_gone_flies_on() {
     let v = view.read::<Velocity>().unwrap();
     assert_eq!(v.iter().filter(|v| (v.0.x - 2.0).abs() < 1e-11).count(), 4);
 }
+
+#[test]
+fn bodies_of_every_formulation_leave_particle_by_particle() {
+    for formulation in
+        ["TotalLagrangian", "UpdatedLagrangian", "UpdatedLagrangian(update: Every(3))", "Eulerian"]
+    {
+        let text = format!(
+            r#"(dimension: Two, {DOMAIN} materials: {{"rubber": NeoHookean(density: 1000.0, young: 1.0e5, poisson: 0.3)}},
+                bodies: [(name: "block", material: "rubber", shape: Box(min: (0.0, 0.0), max: (0.08, 0.08)), spacing: 0.01, formulation: {formulation}, velocity: (2.0, 0.3))],
+                time: (end: 0.1))"#
+        );
+        let (scene, source) = parse(Source::new("block.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.run(|_| true).unwrap_or_else(|error| panic!("{formulation}: {error}"));
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let removed = view.read::<Removed>().expect("a column");
+        assert!(removed[rows].iter().all(|removed| *removed != Removed::NO), "{formulation}");
+    }
+}
