@@ -80,6 +80,11 @@ impl Expression {
         self.program.ops.iter().any(|op| matches!(op, Op::Variable(3)))
     }
 
+    /// Whether the value differs from place to place.
+    pub fn depends_on_place(&self) -> bool {
+        self.program.ops.iter().any(|op| matches!(op, Op::Variable(0..=2)))
+    }
+
     /// Compiles a text that may use these names.
     pub(super) fn with_symbols(text: &str, symbols: &Symbols) -> Result<Self, ExpressionError> {
         Ok(Self { text: text.to_owned(), program: Arc::new(compile::compile(text, symbols)?) })

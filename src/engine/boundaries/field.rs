@@ -63,6 +63,11 @@ impl Field {
         self.components.iter().flatten().any(Expression::depends_on_time)
     }
 
+    /// Whether the values differ from place to place.
+    pub fn depends_on_place(&self) -> bool {
+        self.components.iter().flatten().any(Expression::depends_on_place)
+    }
+
     /// The value at one place.
     pub fn at(&self, point: DVec3, t: f64) -> DVec3 {
         let component = |axis: usize| self.components[axis].as_ref().map_or(0.0, |f| f.eval(point, t));

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::field::Field;
 use super::part::{Part, parts_of, phases_of};
-use super::rigid_part::split_rigid;
+use super::rigid_part::{require_one_motion, split_rigid};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, MotionOfPlace, Prescription, Selection, SetupError, SimBuilder};
 use crate::rigid::{Drive, DrivenBody};
@@ -46,6 +46,7 @@ pub(super) fn prescribe(
     let (selection, rigid) = split_rigid(selection, sim)?;
     let least_difference = 1e-6 * sim.scene().time.end;
     for body in rigid {
+        require_one_motion(name, &field, body, sim)?;
         let motion = Motion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
         let stated = prescription(&motion);
         sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });

@@ -1,5 +1,9 @@
 //! Rigid bodies in a selection: a support or a prescribed motion acts on the whole body.
 
+use glam::DVec3;
+
+use super::field::Field;
+use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::world::BodyId;
 
@@ -27,4 +31,44 @@ pub(super) fn split_rigid(
         }
     }
     Ok((particles, rigid))
+}
+
+/// Times of a run and places of a body at which a prescribed motion is looked at.
+const TIMES: u32 = 64;
+const PLACES: usize = 64;
+/// Difference of two values, over the larger one, up to which they are the same.
+const ROUNDING: f64 = 1e-9;
+
+/// An error where the value of the condition of that name differs between places of a rigid body: all of it moves with the value at its centre.
+pub(super) fn require_one_motion(
+    name: &str,
+    field: &Field,
+    id: BodyId,
+    sim: &SimBuilder<'_>,
+) -> Result<(), SetupError> {
+    if !field.depends_on_place() {
+        return Ok(());
+    }
+    let (body, end) = (sim.body(id), sim.scene().time.end);
+    let Some(first) = body.sites.first().map(|site| site.position) else { return Ok(()) };
+    let apart = body.sites.len().div_ceil(PLACES);
+    for t in (0..=TIMES).map(|k| end * f64::from(k) / f64::from(TIMES)) {
+        let value = field.at(first, t);
+        let differs = |other: &DVec3| {
+            let other = field.at(*other, t);
+            value.distance(other) > ROUNDING * value.length().max(other.length())
+        };
+        if let Some(other) = body.sites.iter().step_by(apart).map(|site| site.position).find(differs) {
+            let message = format!(
+                "rigid body `{}` moves as a whole, and the value of `{name}` is one at {} and another at {}, at {}",
+                body.name,
+                place(first),
+                place(other),
+                quantity(t, "s")
+            );
+            let help = "give the motion of its centre as a function of t alone, and its rotation by `Turn`: a swing about another point is both";
+            return Err(SetupError::parameter("value", message, help));
+        }
+    }
+    Ok(())
 }

@@ -23,7 +23,8 @@ use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocit
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rigid {
-    /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation.
+    /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation, along one axis or more: what
+    /// is to roll then needs `Free`.
     pub rotation: Option<Rotation>,
     /// Angular velocity at the start, about its centre \[rad/s\].
     pub spin: Vec3,
@@ -66,6 +67,9 @@ impl Formulation for Rigid {
                 .iter()
                 .filter(|halved| halved.body == id)
                 .try_for_each(|halved| constraint.holds(halved, sim))?;
+            if parameters.rotation.is_none() {
+                warn_of_held_rotation(id, &constraint, sim);
+            }
             spins.push(parameters.spin.0);
             all.0.push(parameters.body(id, constraint, sim)?);
         }
@@ -77,6 +81,23 @@ impl Formulation for Rigid {
         });
         systems::add(sim, ids);
         Ok(())
+    }
+}
+
+/// Warns of a body that cannot roll because a condition holds or drives it along some of its axes, and nothing is said of its rotation.
+fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuilder<'_>) {
+    let free = constraint.free_axes();
+    let moves = (0..sim.dimension().count()).any(|axis| free[axis] > 0.0);
+    let name = sim.body(id).name.clone();
+    let rubs = |(_, contact): (usize, Contact)| {
+        let (one, other) = &contact.between;
+        contact.friction > 0.0 && [one, other].contains(&&name)
+    };
+    if constraint.is_held_from_turning() && moves && sim.scene().contact_pairs().any(rubs) {
+        sim.warn(format!(
+            "rigid body `{name}` does not turn, so that friction cannot make it roll: a condition holds or drives it along some axes; \
+             `formulation: Rigid(rotation: Free)` lets it turn, `Rigid(rotation: Held)` says that it shall not"
+        ));
     }
 }
 

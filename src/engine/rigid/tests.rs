@@ -1,4 +1,4 @@
-//! Shapes of rigid bodies.
+//! Shapes and prescribed motion of rigid bodies.
 
 use crate::assembly::build;
 use crate::plugin::Registry;
@@ -39,4 +39,62 @@ fn a_rigid_body_that_touches_needs_a_surface_such_as_a_polygon() {
         error.contains("the parts of the union touch each other") && error.contains("`Polygon`"),
         "{error}"
     );
+}
+
+/// A plate, and a second one beside it, with these conditions.
+fn plates(conditions: &str) -> Result<Simulation, SceneError> {
+    let text = format!(
+        r#"(dimension: Two, materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+            bodies: [
+                (name: "left", material: "wood", shape: Box(min: (-0.3, 0.0), max: (-0.1, 0.1)), spacing: 0.01, formulation: Rigid()),
+                (name: "right", material: "wood", shape: Box(min: (0.1, 0.0), max: (0.3, 0.1)), spacing: 0.01, formulation: Rigid()),
+            ],
+            conditions: [{conditions}], time: (end: 0.1))"#
+    );
+    let (scene, source) = parse(Source::new("plates.ron", text))?;
+    build(&scene, &source, &Registry::standard())
+}
+
+#[test]
+fn a_motion_that_differs_within_a_rigid_body_is_an_error() {
+    let turns = [
+        r#"Displacement(on: Select(body: "left"), value: ("x*(cos(2*t)-1)-y*sin(2*t)", "x*sin(2*t)+y*(cos(2*t)-1)"))"#,
+        r#"Velocity(on: Select(body: "left"), value: (None, "2*x*step(t - 0.05)"))"#,
+    ];
+    for turn in turns {
+        let error = plates(turn).err().expect("an error").to_string();
+        assert!(error.contains("`left` moves as a whole") && error.contains("`Turn`"), "{error}");
+    }
+}
+
+#[test]
+fn a_motion_may_differ_from_rigid_body_to_rigid_body() {
+    let mut sim = plates(r#"Velocity(on: Select(), value: ("-2*sign(x)", 0.0))"#)
+        .unwrap_or_else(|error| panic!("{error}"));
+    sim.run(|_| true).expect("a run");
+    let bodies = sim.resources().get::<RigidBodies>();
+    let places: Vec<f64> = bodies.iter().map(|body| body.state.center.x).collect();
+    assert!((places[0] - 0.0).abs() < 1e-12 && (places[1] - 0.0).abs() < 1e-12, "{places:?}");
+}
+
+#[test]
+fn a_body_that_friction_cannot_make_roll_is_warned_of() {
+    let warned = |rotation: &str, friction: f64, axes: &str| {
+        let text = format!(
+            r#"(dimension: Three, gravity: (2, -10, 0), materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "roller", material: "wood", shape: Cylinder(from: (0, 0.1, 0), to: (0, 0.1, 0.2), radius: 0.1), spacing: 0.05, formulation: Rigid({rotation})),
+                    (name: "floor", material: "wood", shape: HalfSpace(point: (0, 0, 0), normal: (0, 1, 0)), spacing: 0.05, formulation: Rigid()),
+                ],
+                conditions: [Fix(on: Select(body: "floor")), Fix(on: Select(body: "roller"), axes: [{axes}])],
+                contacts: [(between: ("roller", "floor"), friction: {friction:?})], time: (end: 0.1))"#
+        );
+        let (scene, source) =
+            parse(Source::new("roller.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+        let sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|error| panic!("{error}"));
+        sim.warnings().iter().any(|text| text.contains("`roller` does not turn"))
+    };
+    assert!(warned("", 0.3, "Z"));
+    assert!(!warned("rotation: Free", 0.3, "Z") && !warned("rotation: Held", 0.3, "Z"));
+    assert!(!warned("", 0.0, "Z") && !warned("", 0.3, "X, Y, Z"));
 }

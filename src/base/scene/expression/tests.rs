@@ -58,6 +58,8 @@ fn knows_what_it_depends_on() {
     assert!(!of("0*x").is_constant());
     assert!(of("t").depends_on_time());
     assert!(!of("x+y").depends_on_time());
+    assert!(of("x+y").depends_on_place() && of("2*z").depends_on_place());
+    assert!(!of("2*t").depends_on_place());
     assert!(Expression::constant(3.0).is_constant());
 }
 
