@@ -27,7 +27,7 @@ pub enum Shape {
         radius: f64,
     },
     /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes, selects, is a tool (a
-    /// `Rigid` body whose motion is prescribed), but fills no body.
+    /// `Rigid` body whose motion is prescribed), but fills no body, and fluids do not see it.
     HalfSpace {
         /// A point of the plane \[m\].
         point: Vec3,

@@ -42,7 +42,8 @@ pub fn sinking(
 ) {
     let Some(bodies) = setup.resources.try_get::<RigidBodies>() else { return };
     let fluids = cloud.groups.iter().filter_map(|group| group.fluid());
-    let lightest = fluids.map(|state| state.density).fold(f64::INFINITY, f64::min);
+    // What is lighter than one of them floats on it.
+    let densest = fluids.map(|state| state.density).fold(0.0, f64::max);
     for body in bodies.iter() {
         let falls = (0..3).any(|axis| gravity[axis] != 0.0 && !body.is_driven_along(axis));
         let (view, rows) = setup.world.body_view(body.id);
@@ -60,7 +61,7 @@ pub fn sinking(
                 || (other == name && one != name && !is_free(one))
         });
         let held = walls.is_empty() || rests;
-        if falls && density > lightest && !held {
+        if falls && density > densest && !held {
             let wall = name_of(&walls[0]);
             setup.warnings.push(format!(
                 "the rigid body `{name}` is denser than the fluid, and no contact holds it off a wall: it will fall through; add \

@@ -4,6 +4,7 @@ use super::simulation;
 use crate::assembly::build;
 use crate::formulations::fluid::FlowCloud;
 use crate::plugin::Registry;
+use crate::rigid::RigidBodies;
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 
@@ -355,4 +356,79 @@ fn a_wall_with_a_thin_baffle_is_warned_of() {
     let seen = |baffle: &str| warning(&tank(baffle), "thinner than the kernel support").is_some();
     assert!(seen("0.52"), "two layers");
     assert!(!seen("0.56"), "four layers");
+}
+
+#[test]
+fn a_fluid_that_falls_through_a_half_space_is_warned_of() {
+    let pool = |floor: &str| {
+        let text = format!(
+            r#"(dimension: Two, gravity: (0.0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "stone": NeoHookean(density: 2000.0, young: 1.0e6, poisson: 0.3)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.2, 0.2)), spacing: 0.02, formulation: Fluid()),
+                    (name: "floor", material: "stone", shape: {floor}, spacing: 0.02, formulation: Rigid()),
+                ],
+                conditions: [Fix(on: Select(body: "floor"))], time: (end: 0.1))"#
+        );
+        let mut sim = simulation(&text);
+        sim.run(|_| true).expect("a run");
+        warning(&sim, "fluids do not see a half-space").map(str::to_owned)
+    };
+    let text = pool("HalfSpace(point: (0, 0), normal: (0, 1))").expect("a warning");
+    assert!(text.contains("`water` falls into `floor`"), "{text}");
+    // Free fall by a whole spacing, from half of it above to half of it below, takes 64 ms; the weight of the water above presses the corners out a little before.
+    let time = text.split(" and ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
+    let time: f64 = time.parse().expect("a time");
+    assert!((50.0..70.0).contains(&time), "{text}");
+    assert_eq!(pool("Box(min: (-0.5, -0.1), max: (0.7, 0.0))"), None);
+}
+
+#[test]
+fn a_light_body_that_water_holds_down_is_warned_of() {
+    let ball = |bottom: f64, density: f64| {
+        let center = bottom + 0.06;
+        let block = format!(
+            r#"(name: "block", material: "cork", shape: Sphere(center: (0.3, {center:?}), radius: 0.06), spacing: 0.02, lattice: Concentric, formulation: Rigid()),"#
+        );
+        let hole = format!(
+            "Difference(Box(min: (0, 0), max: (0.6, 0.3)), Sphere(center: (0.3, {center:?}), radius: 0.06))"
+        );
+        let contact = r#"contacts: [(between: ("block", "tank"), restitution: 0.2, law: Penalty(factor: 0.1))], time: (end: 0.3)"#;
+        let cork =
+            format!(r#""cork": NeoHookean(density: {density:?}, young: 1.0e6, poisson: 0.3), "block""#);
+        let text = tank("", &block, contact)
+            .replace("Box(min: (0, 0), max: (0.6, 0.2))", &hole)
+            .replace(
+                "formulation: Fluid()",
+                "lattice: Relaxed(seed: 1, iterations: 30), formulation: Fluid()",
+            )
+            .replace("sound_speed: 20.0", "sound_speed: 20.0, viscosity: 1.0")
+            .replacen(r#""block": Neo"#, &format!("{cork}: Neo"), 1);
+        let mut sim = simulation(&text);
+        sim.run(|_| true).expect("a run");
+        let rose =
+            sim.resources().get::<RigidBodies>().iter().next().expect("a body").state.center.y - center;
+        (warning(&sim, "lighter than the fluid").is_some(), rose)
+    };
+    // On the floor no particle of the water fits below it: it stays, which is wrong, and is told.
+    let (told, rose) = ball(0.0, 500.0);
+    assert!(told && rose < 0.01, "{rose}");
+    // With water below it comes up; a heavy one stays below with good reason.
+    let (told, rose) = ball(0.06, 500.0);
+    assert!(!told && rose > 0.03, "{rose}");
+    assert!(!ball(0.0, 2000.0).0);
+}
+
+#[test]
+fn a_body_between_the_densities_of_two_fluids_floats_on_the_denser_one() {
+    let oil = r#"(name: "oil", material: "oil", shape: Box(min: (0, 0.2), max: (0.6, 0.3)), spacing: 0.02, formulation: Fluid()),
+        (name: "block", material: "wood", shape: Box(min: (0.2, 0.36), max: (0.4, 0.44)), spacing: 0.02, formulation: Rigid()),"#;
+    let told = |density: f64| {
+        let text = tank("", oil, "time: (end: 1.0)").replacen(
+            r#""block": Neo"#,
+            &format!(r#""oil": Fluid(density: 700.0, sound_speed: 20.0), "wood": NeoHookean(density: {density:?}, young: 1.0e6, poisson: 0.3), "block": Neo"#),
+            1,
+        );
+        warning(&simulation(&text), "no contact holds it off a wall").is_some()
+    };
+    assert!(!told(850.0) && told(1100.0));
 }

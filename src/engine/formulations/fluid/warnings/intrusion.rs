@@ -15,7 +15,7 @@ use crate::shapes::Region;
 use crate::world::{BodyId, ParticleId, ReferencePosition};
 
 /// Depth below the surface of a body at which a fluid particle is inside, over the spacing of the fluid.
-const DEPTH: f64 = 0.5;
+pub const DEPTH: f64 = 0.5;
 /// Distance of the nearest particle of a body beyond which a fluid particle is outside of it, over the spacing of the body; the middle of a
 /// cube is 0.87 away.
 const NEAREST: f64 = 0.9;

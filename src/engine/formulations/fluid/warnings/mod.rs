@@ -1,5 +1,9 @@
 //! What a flow must not do, looked at in the course of the run.
 
+mod half_space;
+
+mod held_down;
+
 mod intrusion;
 
 mod passing;

@@ -4,6 +4,8 @@ use super::compression::Compression;
 use super::filling::Filling;
 use super::fit;
 use super::friction::Friction;
+use super::half_space;
+use super::held_down::HeldDown;
 use super::intrusion::Intrusion;
 use super::passing::Passing;
 use super::unevenness::Unevenness;
@@ -11,7 +13,7 @@ use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{ParticleId, PhaseId, Position, ReferencePosition, Removed};
+use crate::world::{ParticleId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed};
 
 /// Steps between two looks for particles inside of something: what has entered stays for some time.
 const INTERVAL: u64 = 50;
@@ -19,6 +21,11 @@ const INTERVAL: u64 = 50;
 struct FlowWatch {
     intrusion: Intrusion,
     passing: Passing,
+    /// Whether the user has been told of a half-space that a fluid falls into.
+    is_through: bool,
+    held_down: HeldDown,
+    /// Spacing of the fluid, m.
+    spacing: f64,
     compression: Compression,
     filling: Filling,
     unevenness: Unevenness,
@@ -37,6 +44,9 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
         passing: Passing::new(sim),
+        is_through: false,
+        held_down: HeldDown::new(sim.gravity(), spacing),
+        spacing,
         compression: Compression::default(),
         filling: Filling::default(),
         unevenness: Unevenness::default(),
@@ -52,6 +62,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
             .reads::<Position>()
             .reads_near::<ReferencePosition>()
+            .reads::<ReferenceVolume>()
             .reads::<ParticleId>()
             .reads::<Removed>(),
     );
@@ -68,8 +79,10 @@ impl Run for FlowWatch {
         if is_frame || step.clock.step.is_multiple_of(INTERVAL) {
             self.intrusion.look(&cloud, step)?;
             self.passing.look(step)?;
+            half_space::look(&mut self.is_through, &cloud, self.spacing, step);
         }
         if is_frame {
+            self.held_down.look(&cloud, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
@@ -79,11 +92,16 @@ impl Run for FlowWatch {
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        postcard::to_stdvec(&(told, &self.compression, &self.filling, self.frames)).unwrap_or_default()
+        let bodies = (self.is_through, &self.held_down.seen);
+        postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
+            .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, compression, filling, frames)) = postcard::from_bytes(state) else { return false };
+        let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
+            return false;
+        };
+        (self.is_through, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);

@@ -1,0 +1,86 @@
+//! Light rigid bodies that the flow presses against what they touch.
+//!
+//! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there: what it does to the rest of the body presses the two together. A heavy body rests on
+//! the wall in any case; one that is lighter than the fluid would come up.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::formulations::fluid::cloud::FlowCloud;
+use crate::notation::quantity;
+use crate::rigid::{RigidBodies, RigidBody};
+use crate::schedule::{Step, StepError};
+use crate::world::{BodyId, ReferenceVolume};
+
+/// Frames in sequence in which a body is held down before it is told of: what falls onto a body presses it down for a moment.
+const FRAMES: u32 = 3;
+/// Way from one frame to the next, over the spacing of the fluid, up to which a body stays where it is.
+const STILL: f64 = 0.05;
+
+/// What the last frames have shown of a body.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Seen {
+    body: u32,
+    place: DVec3,
+    frames: u32,
+}
+
+/// Looks for light bodies that stay below.
+pub struct HeldDown {
+    /// Acceleration of gravity, m/s2.
+    gravity: DVec3,
+    /// Spacing of the fluid, m.
+    spacing: f64,
+    pub seen: Vec<Seen>,
+}
+
+impl HeldDown {
+    /// Under this gravity, m/s2, in a fluid of this spacing, m.
+    pub fn new(gravity: DVec3, spacing: f64) -> Self {
+        Self { gravity, spacing, seen: Vec::new() }
+    }
+
+    /// Looks at all rigid bodies that are free along gravity.
+    pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) -> Result<(), StepError> {
+        let Self { gravity, spacing, .. } = *self;
+        let Some(bodies) = step.resources.try_get::<RigidBodies>() else { return Ok(()) };
+        if gravity == DVec3::ZERO {
+            return Ok(());
+        }
+        let lightest = cloud.groups.iter().filter_map(|group| group.fluid());
+        let lightest = lightest.map(|state| state.density).fold(f64::INFINITY, f64::min);
+        let falls =
+            |body: &&RigidBody| (0..3).all(|axis| gravity[axis] == 0.0 || !body.is_driven_along(axis));
+        for body in bodies.iter().filter(falls) {
+            let (view, rows) = step.world.body_view(body.id);
+            let volume = view.read::<ReferenceVolume>()?[rows].iter().map(|volume| volume.0).sum::<f64>();
+            let number = body.id.0 as u32;
+            let before = self.seen.iter().find(|seen| seen.body == number).cloned();
+            let moved = before.as_ref().map_or(f64::INFINITY, |seen| seen.place.distance(body.state.center));
+            let is_still = moved < STILL * spacing;
+            let is_light = body.mass < lightest * volume;
+            let Some(down) = is_light.then(|| force_on(cloud, body.id).dot(gravity.normalize())) else {
+                continue;
+            };
+            let held = is_still && down > 0.0;
+            let frames = if held { before.map_or(0, |seen| seen.frames) + 1 } else { 0 };
+            self.seen.retain(|seen| seen.body != number);
+            self.seen.push(Seen { body: number, place: body.state.center, frames });
+            if frames == FRAMES {
+                step.warnings.push(format!(
+                    "the rigid body `{}` is lighter than the fluid, which presses it down with {} at {}: no particle of the fluid fits between it and what it \
+                     touches, so that its pressure is missing there; start the body two spacings of the fluid away from it, or use smaller spacings",
+                    step.world.body(body.id).name,
+                    quantity(down, "N"),
+                    quantity(step.clock.time, "s")
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Force of the fluids on a body, N.
+fn force_on(cloud: &FlowCloud, body: BodyId) -> DVec3 {
+    cloud.forces_on(body).unwrap_or_default().iter().map(|(force, _)| *force).sum()
+}
