@@ -24,11 +24,11 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
             }
         });
     }
-    let thin = sim.bodies.iter().zip(&held).filter_map(|(body, held)| of_body(body, held));
+    let thin = sim.bodies.iter().zip(&held).filter_map(|(body, held)| of_body(body, held, sides_are_placed));
     thin.collect::<Vec<_>>().into_iter().for_each(|warning| sim.warn(warning));
 }
 
-fn of_body(body: &BodyPlan, held: &[bool]) -> Option<String> {
+fn of_body(body: &BodyPlan, held: &[bool], sides_are_placed: bool) -> Option<String> {
     let reach = body.support.filter(|_| body.offers(Offer::PairControl))?;
     let of = |is_held: bool| -> Vec<_> {
         let own = body.sites.iter().zip(held).filter(|(_, held)| **held == is_held);
@@ -43,8 +43,10 @@ fn of_body(body: &BodyPlan, held: &[bool]) -> Option<String> {
     NeighborSearch::default().between(targets, sources, 0.0, &Periodic::NONE, &mut list).ok()?;
     let is_thin = (0..inside.len()).all(|row| !list.row(row).is_empty());
     is_thin.then(|| {
+        // Beside a fluid a side that is held stays in its lattice.
+        let or_side = if sides_are_placed { ", or hold its side by `face`" } else { "" };
         format!(
-            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it, or hold its side by `face`",
+            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it{or_side}",
             body.name,
             quantity((reach / body.spacing).ceil() * body.spacing, "m")
         )
