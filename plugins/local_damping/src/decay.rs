@@ -1,6 +1,7 @@
 //! The decay itself: v' = -rate v along the axes that are free, with the lost energy booked.
 
 use meshless_engine::parallel::{BlockSum, sum_over_blocks};
+use meshless_engine::rigid::RigidBodies;
 use meshless_engine::schedule::{AccountKind, Clock, Run, Step, StepError};
 use meshless_engine::world::{BodyId, BodySet, Mass, Mobility, Velocity};
 
@@ -61,9 +62,24 @@ pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepErro
     Ok(())
 }
 
-/// Opens the account of the plugin, so that it is there from the first step on even if nothing is damped yet.
-pub fn open_account(step: &mut Step<'_>) {
+/// Opens the account of the plugin, so that it is there from the first step on even if nothing is damped yet, and names what it does not damp.
+pub fn open_account(step: &mut Step<'_>, bodies: &BodySet) {
     step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+    if step.clock.step > 1 {
+        return;
+    }
+    let Some(rigid) = step.resources.try_get::<RigidBodies>() else { return };
+    for body in
+        rigid.iter().filter(|body| bodies.contains(body.id) && (0..3).all(|axis| !body.is_driven_along(axis)))
+    {
+        let text = format!(
+            "`local_damping` does not act on rigid body `{}`, which goes on moving: its contacts take its energy with a `restitution` below 1",
+            step.world.body(body.id).name
+        );
+        if !step.warnings.contains(&text) {
+            step.warnings.push(text);
+        }
+    }
 }
 
 /// Decay at a constant rate.
@@ -78,7 +94,7 @@ pub struct Decay {
 
 impl Run for Decay {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        open_account(step);
+        open_account(step, &self.bodies);
         let time = self.window.share(&step.clock);
         if time > 0.0 && self.rate > 0.0 {
             // Exact for any rate: no limit of the time step follows from the damping.

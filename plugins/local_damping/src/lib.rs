@@ -24,7 +24,7 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<LocalDamping>();
 }
 
-/// Takes energy out of the motion of every particle that is free to move.
+/// Takes energy out of the motion of every particle that is free to move, but not out of that of rigid bodies.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LocalDamping {

@@ -54,7 +54,7 @@ impl Relaxation {
 
 impl Run for Relaxation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        open_account(step);
+        open_account(step, &self.bodies);
         let mut motion = Motion::default();
         for body in self.bodies.iter() {
             motion.add(&look(step, body)?);

@@ -173,3 +173,22 @@ fn the_scene_beside_the_plugin_comes_to_rest() {
         sim.clock().time
     );
 }
+
+#[test]
+fn rigid_bodies_that_go_on_moving_are_named() {
+    let text = r#"(dimension: Two, gravity: (0.0, -10.0), materials: {"rubber": NeoHookean(density: 1000.0, young: 1e6, poisson: 0.3)},
+        bodies: [
+            (name: "block", material: "rubber", shape: Box(min: (0, 0), max: (0.2, 0.1)), spacing: 0.02, formulation: TotalLagrangian),
+            (name: "weight", material: "rubber", shape: Box(min: (0, 0.1), max: (0.2, 0.2)), spacing: 0.02, formulation: Rigid()),
+            (name: "floor", material: "rubber", shape: Box(min: (0, -0.1), max: (0.2, 0.0)), spacing: 0.02, formulation: Rigid()),
+        ],
+        conditions: [Fix(on: Select(body: "floor"))],
+        contacts: [(between: ("block", "weight")), (between: ("block", "floor"))],
+        plugins: [local_damping(rate: 100.0)], time: (end: 0.001))"#;
+    let mut sim = simulation(text);
+    sim.run(|_| true).expect("a run");
+    let named = |name: &str| {
+        sim.warnings().iter().any(|text| text.contains(&format!("does not act on rigid body `{name}`")))
+    };
+    assert!(named("weight") && !named("floor"), "{:?}", sim.warnings());
+}
