@@ -187,6 +187,13 @@ fn metal_that_a_side_draws_along_its_normal_alone_is_warned_of() {
         ("Eulerian()", rubber, drawn, 0),
         ("TotalLagrangian", metal, drawn, 0),
         ("UpdatedLagrangian()", metal, drawn, 0),
+        ("UpdatedLagrangian(update: Every(1))", metal, drawn, 1),
+        ("UpdatedLagrangian(update: Adaptive(change: 0.5))", metal, drawn, 1),
+        ("UpdatedLagrangian(update: Every(1))", rubber, drawn, 0),
+        ("TotalLagrangian, lattice: Hexagonal", metal, drawn, 1),
+        ("TotalLagrangian, lattice: Relaxed()", metal, drawn, 1),
+        ("TotalLagrangian, lattice: Relaxed()", rubber, drawn, 0),
+        ("TotalLagrangian, lattice: BodyFitted()", metal, drawn, 0),
         ("TotalLagrangian", metal, in_lattice, 1),
     ] {
         let text = format!(

@@ -152,7 +152,7 @@ fn shares_of(listed: &[ListedBody], kernels: &[BodyKernel], sim: &SimBuilder<'_>
             stays: true,
         };
         let is_adjoint = of.divergence == Divergence::Adjoint;
-        (body.id, if is_adjoint { balanced_shares(&held) } else { Vec::new() })
+        (body.id, if is_adjoint { balanced_shares(&held).shares } else { Vec::new() })
     });
     all_shares(bodies, sim)
 }

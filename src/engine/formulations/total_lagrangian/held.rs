@@ -1,6 +1,6 @@
 //! The effect of supports on the particles beside them.
 
-use super::balance::{HeldBody, balanced_shares};
+use super::balance::{HeldBody, balanced_shares, warning};
 use crate::plugin::SimBuilder;
 use crate::world::BodyId;
 
@@ -11,14 +11,22 @@ pub(in crate::formulations) struct Held {
     pub carried: Vec<f64>,
     /// The particles of every body that no other one sees, by their numbers, ascending.
     hidden: Vec<(BodyId, Vec<u32>)>,
+    /// What is to be told of bodies that are drawn unevenly.
+    pub warnings: Vec<String>,
 }
 
 impl Held {
     /// Those of the bodies of a phase.
     pub fn of(bodies: &[HeldBody<'_>], sim: &SimBuilder<'_>) -> Self {
         let hidden = bodies.iter().map(|body| (body.plan.id, body.plan.hidden.clone())).collect();
-        let shares = bodies.iter().map(|body| (body.plan.id, balanced_shares(body)));
-        Self { carried: all_shares(shares, sim), hidden }
+        let mut warnings = Vec::new();
+        let shares = bodies.iter().map(|body| {
+            let balanced = balanced_shares(body);
+            warnings.extend(warning(body, balanced.imbalance));
+            (body.plan.id, balanced.shares)
+        });
+        let carried = all_shares(shares, sim);
+        Self { carried, hidden, warnings }
     }
 
     /// The particles of a body that no other one sees, by their numbers, ascending.

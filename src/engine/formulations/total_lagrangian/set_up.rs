@@ -97,6 +97,7 @@ impl SetUp {
 
     /// Makes the packed rows of the phase.
     pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+        setup.warnings.extend(self.held.warnings.iter().cloned());
         self.fill_columns(setup.world)?;
         let phase = self.phase;
         let view = setup.world.phase(self.phase);

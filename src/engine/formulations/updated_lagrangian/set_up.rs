@@ -40,6 +40,7 @@ impl SetUp {
 
     /// Fills the columns of the reference with those of the start, and makes its lists.
     pub fn run(self, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+        setup.warnings.extend(self.held.warnings.iter().cloned());
         self.fill_columns(setup.world).map_err(|error| SetupError::internal(&error))?;
         let phase = self.phase;
         let estimates: Vec<StepEstimate> = self.bodies.iter().map(|body| body.estimate).collect();

@@ -1,52 +1,60 @@
 //! The shares that balance a uniform stress.
 
+use super::alike::{Kinds, Surroundings};
 use super::body::HeldBody;
-use super::equations::Equations;
-use super::lattice::Lattice;
-use super::least_squares;
+use super::equations::{Equations, Unknown};
+use super::lattices::Lattices;
+use super::least_squares::LeastSquares;
 use super::zone::Zone;
 
 /// Weight of the change of a share on the side against the part of b that is left, which is of the order of 1 where nothing is in balance. It grows with the fourth power of the distance from the side over the support radius, as
 /// the shares of layers farther in need hardly change.
 const DAMPING: f64 = 0.005;
-/// How often it is doubled where shares are not within [`SHARES`].
-const DOUBLINGS: usize = 5;
-/// The least and the greatest share.
-const SHARES: (f64, f64) = (0.0, 2.5);
+/// The least and the greatest share: every particle resists.
+const SHARES: (f64, f64) = (0.1, 2.5);
 
-/// The shares of all particles of a body that do not carry all of their stress, by their numbers.
-pub(in crate::formulations) fn balanced_shares(body: &HeldBody<'_>) -> Vec<(u32, f64)> {
+/// The balance of a uniform stress beside the sides of a body.
+pub(in crate::formulations) struct Balanced {
+    /// The shares of all particles that do not carry all of their stress, by their numbers.
+    pub shares: Vec<(u32, f64)>,
+    /// How far a uniform stress is from balance beside them: the root mean square of the forces on the particles, over that on the area of one.
+    pub imbalance: f64,
+}
+
+/// The shares of the particles of a body.
+pub(in crate::formulations) fn balanced_shares(body: &HeldBody<'_>) -> Balanced {
     let before = &body.plan.carried;
-    if !body.stays {
-        return before.clone();
-    }
-    let zone = Zone::of(body);
-    if zone.equations.is_empty() {
-        return before.clone();
-    }
-    let places = |k: u32| body.plan.sites[k as usize].position;
-    let now = Lattice::new(body, &zone.seen, &places, body.repeats);
-    let goes_on = Lattice::new(body, &zone.seen, &|k| zone.place_before[k as usize], &zone.repeats);
-    let (Some(now), Some(goes_on)) = (now, goes_on) else { return before.clone() };
+    find(body).unwrap_or_else(|| Balanced { shares: before.clone(), imbalance: 0.0 })
+}
+
+/// None where there is nothing to find, or where neighbours cannot be.
+fn find(body: &HeldBody<'_>) -> Option<Balanced> {
+    body.plan.sides.first()?;
+    let before = &body.plan.carried;
     let mut shares = vec![1.0; body.plan.sites.len()];
     before.iter().for_each(|(k, share)| shares[*k as usize] = *share);
-    let start = shares.clone();
-    let equations = Equations::of(body, &zone, (&now, &goes_on), &start);
-    let mut damping: Vec<f64> =
-        zone.unknown.iter().map(|(_, depth)| DAMPING * (1.0 + (depth / body.support).powi(4))).collect();
-    for _ in 0..=DOUBLINGS {
-        let change = least_squares::solve(&equations.rows, &equations.rest, &damping);
-        for ((k, _), change) in zone.unknown.iter().zip(change) {
-            shares[*k as usize] = start[*k as usize] + change;
-        }
-        if zone.unknown.iter().all(|(k, _)| (SHARES.0..=SHARES.1).contains(&shares[*k as usize])) {
-            break;
-        }
-        damping.iter_mut().for_each(|damping| *damping *= 2.0);
+    let zone = Zone::of(body, &shares);
+    let lists = Surroundings::of(body, &zone)?;
+    let kinds = Kinds::of(&zone, &lists);
+    let lattices = Lattices::of(body, &zone, &kinds)?;
+    let equations = Equations::of(body, &zone, &kinds, &lattices, &shares);
+    if !body.stays {
+        let imbalance = equations.imbalance(&vec![0.0; equations.unknown.len()]);
+        return Some(Balanced { shares: before.clone(), imbalance });
     }
-    zone.unknown
-        .iter()
-        .map(|(k, _)| *k as usize)
-        .for_each(|k| shares[k] = shares[k].clamp(SHARES.0, SHARES.1));
-    (0..).zip(shares).filter(|(_, share)| *share != 1.0).collect()
+    let damping = |own: &Unknown| DAMPING * (1.0 + (own.depth / body.support).powi(4));
+    let bounds = |own: &Unknown| (own.weight * (SHARES.0 - own.start), own.weight * (SHARES.1 - own.start));
+    let unknown = &equations.unknown;
+    let problem = LeastSquares {
+        a: &equations.rows,
+        b: &equations.rest,
+        damping: &unknown.iter().map(damping).collect::<Vec<_>>(),
+        bounds: &unknown.iter().map(bounds).collect::<Vec<_>>(),
+    };
+    let solution = problem.solve();
+    for (k, change) in equations.changes(&zone, &kinds, &solution) {
+        shares[k as usize] += change;
+    }
+    let imbalance = equations.imbalance(&solution);
+    Some(Balanced { shares: (0..).zip(shares).filter(|(_, share)| *share != 1.0).collect(), imbalance })
 }

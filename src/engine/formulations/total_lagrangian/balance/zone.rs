@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::alike::{Kinds, length_label, mix};
 use super::body::HeldBody;
 use crate::plugin::HeldSide;
 use crate::symmetry::Repeat;
@@ -17,63 +18,97 @@ const BESIDE: f64 = 0.6;
 /// Of the unit normals of two sides, the product from which on they are one direction.
 const SAME: f64 = 0.99;
 
-/// Where stresses are to balance, and what that depends on; particles by their numbers in the body.
+/// Where stresses are to balance, and what that depends on.
 pub(super) struct Zone {
-    /// Particles, ascending, with the direction along which a stress is to balance.
+    /// Particles of which something is asked, by their numbers in the body, ascending.
+    pub asked: Vec<u32>,
+    /// Places in `asked`, ascending, with the direction along which a stress is to balance.
     pub equations: Vec<(u32, DVec3)>,
-    /// Particles whose shares may change, ascending, with their distances from the nearest side, m.
+    /// Places in `asked` of the particles whose shares may change, ascending, with their distances from the nearest side, m.
     pub unknown: Vec<(u32, f64)>,
-    /// Particles on which b depends, ascending.
+    /// Particles on which b depends, by their numbers in the body, ascending.
     pub seen: Vec<u32>,
-    /// Where all particles have been in the lattice, m.
-    pub place_before: Vec<DVec3>,
-    /// What the lattice goes on by: the mirror images behind the sides, too.
-    pub repeats: Vec<Repeat>,
+    /// What tells each of `asked` from others, apart from its neighbours: its distances from the sides, and what is asked of it.
+    pub labels: Vec<u64>,
+    /// Place in `asked` of every particle of the body, if it is there.
+    at: Vec<Option<u32>>,
 }
 
 impl Zone {
-    pub fn of(body: &HeldBody<'_>) -> Self {
+    /// The zone of a body of which some particles carry less than all of their stress at the start.
+    pub fn of(body: &HeldBody<'_>, start: &[f64]) -> Self {
         let plan = body.plan;
-        let mut place_before: Vec<DVec3> = plan.sites.iter().map(|site| site.position).collect();
-        for &(k, way) in plan.sides.iter().flat_map(|side| &side.moved) {
-            place_before[k as usize] -= way;
-        }
         let sides: Vec<SideBox<'_>> = plan.sides.iter().filter_map(|side| SideBox::of(body, side)).collect();
-        let mut repeats = body.repeats.to_vec();
-        for (axis, at) in sides.iter().map(|own| own.side.plane) {
-            // Two conditions may hold one side.
-            let is_known = |repeat: &Repeat| matches!(repeat, Repeat::Mirror { axis: a, at: b } if *a == axis && *b == at);
-            if !repeats.iter().any(is_known) {
-                repeats.push(Repeat::Mirror { axis, at });
-            }
+        let mut zone = Self {
+            asked: Vec::new(),
+            equations: Vec::new(),
+            unknown: Vec::new(),
+            seen: Vec::new(),
+            labels: Vec::new(),
+            at: vec![None; plan.sites.len()],
+        };
+        if sides.is_empty() {
+            return zone;
         }
-        let (equations, unknown, seen) = Default::default();
-        let mut zone = Self { equations, unknown, seen, place_before, repeats };
-        let is_seen = |k: u32| plan.hidden.binary_search(&k).is_err();
-        for (k, site) in (0..).zip(&plan.sites).filter(|(k, _)| is_seen(*k)) {
-            zone.add(k, site.position, &sides);
+        let is_hidden = |k: u32| plan.hidden.binary_search(&k).is_ok();
+        for (k, site) in (0..).zip(&plan.sites) {
+            if !sides.iter().any(|side| side.sees(site.position)) || is_hidden(k) {
+                continue;
+            }
+            zone.seen.push(k);
+            if sides.iter().any(|side| side.acts_on(site.position)) {
+                zone.at[k as usize] = Some(zone.asked.len() as u32);
+                let own = mix(site.volume.to_bits()) ^ start[k as usize].to_bits();
+                let label = zone.add(k, site.position, own, &sides, plan.spacing);
+                zone.asked.push(k);
+                zone.labels.push(label);
+            }
         }
         zone
     }
 
-    /// Adds a particle that is near one of the sides.
-    fn add(&mut self, k: u32, x: DVec3, sides: &[SideBox<'_>]) {
-        if !sides.iter().any(|side| side.sees(x)) {
-            return;
+    /// Depth from a side, m, up to which the balance of the particles beside it depends on others: no farther than the next side or symmetry plane along its normal.
+    pub fn depth_beside(&self, body: &HeldBody<'_>, side: &HeldSide) -> f64 {
+        let (axis, at) = side.plane;
+        let mirrors = body.repeats.iter().filter_map(|repeat| match repeat {
+            Repeat::Mirror { axis, at } => Some((*axis, *at)),
+            Repeat::Period { .. } => None,
+        });
+        let others = body.plan.sides.iter().map(|other| other.plane).chain(mirrors);
+        let others = others.filter(|other| other.0 == axis);
+        let distances = others.map(|other| (other.1 - at).abs()).filter(|distance| *distance > 0.0);
+        distances.fold((DEPTH + ACTS + SEEN) * body.support, f64::min)
+    }
+
+    /// Kind of a particle of the body, if something is asked of it.
+    pub fn kind(&self, kinds: &Kinds, number: u32) -> Option<u32> {
+        self.at[number as usize].map(|at| kinds.of[at as usize])
+    }
+
+    /// Adds what is asked of a particle that one of the sides sees; returns its label.
+    fn add(&mut self, k: u32, x: DVec3, own: u64, sides: &[SideBox<'_>], spacing: f64) -> u64 {
+        let at = self.asked.len() as u32;
+        let mut label = own;
+        let mut tell = |what: u64| label = label.wrapping_add(mix(what));
+        for side in sides.iter().filter(|side| side.sees(x)) {
+            let (axis, plane) = side.side.plane;
+            tell(length_label((x[axis] - plane).abs(), spacing));
         }
-        self.seen.push(k);
         let near = sides.iter().filter(|side| side.is_near(x)).map(|side| side.distance(x));
         if let Some(depth) = near.min_by(f64::total_cmp) {
-            self.unknown.push((k, depth));
+            self.unknown.push((at, depth));
+            tell(!length_label(depth, spacing));
         }
         let first = self.equations.len();
         for normal in sides.iter().filter(|side| side.acts_on(x)).map(|side| side.side.normal) {
             let is_held = sides.iter().any(|side| side.holds(k, normal));
             let is_known = self.equations[first..].iter().any(|own| own.1.dot(normal).abs() > SAME);
             if !is_held && !is_known {
-                self.equations.push((k, normal));
+                self.equations.push((at, normal));
             }
+            tell(1 + u64::from(is_held));
         }
+        label
     }
 }
 

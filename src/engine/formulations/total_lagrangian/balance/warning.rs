@@ -1,0 +1,34 @@
+//! The warning of sides beside which a uniform stress is not in balance.
+
+use super::body::HeldBody;
+use crate::plugin::HeldSide;
+
+/// Imbalance from which on plastic strain is off by more than a tenth: the table in docs/solids.md.
+const UNEVEN: f64 = 0.01;
+
+/// What to tell of a body with that imbalance beside its sides, if its metal strains unevenly.
+pub(in crate::formulations) fn warning(body: &HeldBody<'_>, imbalance: f64) -> Option<String> {
+    let plan = body.plan;
+    let flows = || plan.solid_law().is_ok_and(|law| law.initial_yield_stress().is_some_and(f64::is_finite));
+    let side = plan.sides.first().filter(|_| imbalance > UNEVEN && flows())?;
+    let (name, face) = (&plan.name, face(side));
+    let beside = format!("the side `{face}` of body `{name}` is held or drawn along its normal alone");
+    let off = format!("the forces of a uniform stress are off balance by {:.1} %", 100.0 * imbalance);
+    Some(if body.stays {
+        format!(
+            "{beside}, and its particles do not lie in layers along it: {off} beside such sides, and plastic strain is off by 10 to 50 %; \
+             use `lattice: Regular` or `BodyFitted()`"
+        )
+    } else {
+        format!(
+            "{beside}, and its particles carry all of their stress, as `update: Every` or `Adaptive` changes their neighbours: {off} beside such sides, \
+             and plastic strain is off by 20 to 60 %; `update: Automatic` or `Never` draws the body evenly"
+        )
+    })
+}
+
+/// The name of a side in scenes.
+fn face(side: &HeldSide) -> String {
+    let axis = side.plane.0;
+    format!("{}{}", if side.normal[axis] < 0.0 { "Min" } else { "Max" }, ["X", "Y", "Z"][axis])
+}
