@@ -3,6 +3,8 @@
 //!
 //! The formulation is a parameter: [`Specimen::new`] takes whatever makes a simulation whose first body is the specimen, irregular as a rule.
 
+#[cfg(test)]
+mod drawn_tests;
 mod momenta;
 mod specimen;
 #[cfg(test)]
