@@ -21,6 +21,7 @@ impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
 }
 
 /// Runs the plane or the solid version on the best instruction path of this processor.
+#[inline]
 pub fn run_hot_in<L: PlaneOrSolid>(plane: bool, hot: L) {
     if plane { run_hot(Axes::<L, 2>(hot)) } else { run_hot(Axes::<L, 3>(hot)) }
 }

@@ -63,6 +63,7 @@ impl<L: BlockLoop> HotLoop for Wide<L> {
 }
 
 /// Runs a loop over blocks on the best path of this processor, with vectors of the plane or of space.
+#[inline]
 pub fn run_blocks_on<L: BlockLoop>(plane: bool, hot: L) -> L::Output {
     if plane { run_wide(InPlane(Wide(hot))) } else { run_wide(Wide(hot)) }
 }

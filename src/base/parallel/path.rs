@@ -40,6 +40,8 @@ mod paths {
 
     use super::{HotLoop, Portable};
 
+    // Inlined, a loop is compiled beside its caller: without that the compiler puts all hot loops of a crate into one unit, which one core then compiles alone.
+
     /// A path that this processor has.
     #[derive(Clone, Copy)]
     pub enum Path {
@@ -74,6 +76,7 @@ mod paths {
             }
         }
 
+        #[inline]
         pub fn run<L: HotLoop>(self, hot: L) -> L::Output {
             match self {
                 Self::Baseline => hot.run(Portable),
@@ -82,6 +85,7 @@ mod paths {
             }
         }
 
+        #[inline]
         pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
             match self {
                 Self::V4(v4) => v4.vectorize(WithV3(hot, *v4)),
@@ -108,10 +112,12 @@ mod paths {
             std::env::consts::ARCH
         }
 
+        #[inline]
         pub fn run<L: HotLoop>(self, hot: L) -> L::Output {
             hot.run(Portable)
         }
 
+        #[inline]
         pub fn run_wide<L: HotLoop>(self, hot: L) -> L::Output {
             hot.run(Portable)
         }
@@ -135,11 +141,13 @@ fn names() -> String {
 }
 
 /// Runs a hot loop over rows on the instruction path of this program. AVX-512 is left out: what gathers and transposes is no faster with it.
+#[inline]
 pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
     path().run(hot)
 }
 
 /// Runs a hot loop over blocks on the instruction path of this program.
+#[inline]
 pub(super) fn run_wide<L: HotLoop>(hot: L) -> L::Output {
     path().run_wide(hot)
 }

@@ -74,6 +74,7 @@ impl<L: HotLoop> HotLoop for InPlane<L> {
 }
 
 /// Runs a hot loop on the best path of this processor, with vectors of the plane or of space.
+#[inline]
 pub fn run_hot_on<L: HotLoop>(plane: bool, hot: L) -> L::Output {
     if plane { run_hot(InPlane(hot)) } else { run_hot(hot) }
 }
