@@ -62,9 +62,13 @@ pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepErro
     Ok(())
 }
 
-/// Opens the account of the plugin, so that it is there from the first step on even if nothing is damped yet, and names what it does not damp.
-pub fn open_account(step: &mut Step<'_>, bodies: &BodySet) {
+/// Opens the account of the plugin, so that it is there from the first step on even if nothing is damped yet.
+pub fn open_account(step: &mut Step<'_>) {
     step.ledger.account(ACCOUNT, AccountKind::Dissipated);
+}
+
+/// Names, in the first step, the rigid bodies that are free to move and not damped.
+pub fn name_undamped(step: &mut Step<'_>, bodies: &BodySet) {
     if step.clock.step > 1 {
         return;
     }
@@ -94,7 +98,8 @@ pub struct Decay {
 
 impl Run for Decay {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        open_account(step, &self.bodies);
+        open_account(step);
+        name_undamped(step, &self.bodies);
         let time = self.window.share(&step.clock);
         if time > 0.0 && self.rate > 0.0 {
             // Exact for any rate: no limit of the time step follows from the damping.

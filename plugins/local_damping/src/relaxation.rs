@@ -8,7 +8,7 @@
 use meshless_engine::schedule::{AccountKind, Run, Step, StepError};
 use meshless_engine::world::BodySet;
 
-use crate::decay::{Window, damp, open_account};
+use crate::decay::{Window, damp, name_undamped, open_account};
 use crate::stiffness::{Motion, look};
 use meshless_engine::parallel::BlockSum;
 
@@ -54,7 +54,8 @@ impl Relaxation {
 
 impl Run for Relaxation {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        open_account(step, &self.bodies);
+        open_account(step);
+        name_undamped(step, &self.bodies);
         let mut motion = Motion::default();
         for body in self.bodies.iter() {
             motion.add(&look(step, body)?);
