@@ -3,7 +3,7 @@
 use super::body::HeldBody;
 use crate::plugin::HeldSide;
 
-/// Imbalance from which on plastic strain is off by more than a tenth: the table in docs/solids.md.
+/// Imbalance from which on plastic strain may be off by more than a tenth; it was chosen by the table of lattices in docs/solids.md.
 const UNEVEN: f64 = 0.01;
 
 /// What to tell of a body with that imbalance beside its sides, if its metal strains unevenly.
@@ -16,7 +16,7 @@ pub(in crate::formulations) fn warning(body: &HeldBody<'_>, imbalance: f64) -> O
     let off = format!("the forces of a uniform stress are off balance by {:.1} %", 100.0 * imbalance);
     Some(if body.stays {
         format!(
-            "{beside}, and its particles do not lie in layers along it: {off} beside such sides, and plastic strain is off by 10 to 50 %; \
+            "{beside}, and its particles do not lie in layers along it: {off} beside such sides, and plastic strain is off by 5 to 50 %; \
              use `lattice: Regular` or `BodyFitted()`"
         )
     } else {
