@@ -10,6 +10,7 @@ use super::constitutive::{Constitutive, MAX_TERMS, SolidBlock, SolidColumns, Sol
 use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
+use super::losses::TakenUp;
 use super::pair_control::{self, PairControl};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
@@ -216,7 +217,7 @@ impl SolidBodies {
     /// The columns of the pass: it writes deformation gradient, stress and state, and reads the damage.
     pub fn access(&self) -> Vec<Access> {
         let writes = |name| Access { column: name, mode: Mode::Writes };
-        let always = [DeformationGradient::NAME, PiolaStress::NAME].map(writes);
+        let always = [DeformationGradient::NAME, PiolaStress::NAME, TakenUp::NAME].map(writes);
         let state = self.columns.iter().map(|column| writes(column.name));
         let damage = self.can_fail.then_some(Access { column: Damage::NAME, mode: Mode::Reads });
         always.into_iter().chain(state).chain(damage).collect()

@@ -22,7 +22,7 @@ use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, S
 use crate::removal::Leaving;
 use crate::scene::{Contact, Dimension};
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{SolidBodies, require_support};
+use crate::solids::{SolidBodies, TakenUp, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -96,7 +96,7 @@ impl Formulation for Eulerian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>();
+        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<TakenUp>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -14,8 +14,8 @@ use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Access, AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, Constitutive, CorrectedStress, SolidBlock, SolidBodies, SolidColumns, SolidPart, SolidRows,
-    SolidSum, count_rows,
+    BodyPass, Constitutive, CorrectedStress, Loss, SolidBlock, SolidBodies, SolidColumns, SolidPart,
+    SolidRows, SolidSum, TakenUp, count_rows,
 };
 use crate::world::{
     Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferenceVolume, Removed, Velocity, World,
@@ -30,11 +30,17 @@ pub(super) struct Stress {
     shares: Vec<f64>,
     /// Removed rows that the sums know of, ascending.
     removed: Vec<u32>,
+    /// Whether these are not yet those of the checkpoint that the run goes on from.
+    is_restored: bool,
 }
 
 impl Run for Stress {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
+        if std::mem::take(&mut self.is_restored) {
+            let taken_up = step.world.phase(self.phase).read::<TakenUp>()?;
+            self.removed = TakenUp::rows(&taken_up, Loss::Removed);
+        }
         self.pack(step.world, &mut packed)?;
         self.pass(step.world, &mut packed, SolidPart::of(step))?;
         self.solids.book(step)?;
@@ -51,21 +57,20 @@ impl Run for Stress {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed)).unwrap_or_default()
+        postcard::to_stdvec(&self.solids.stretch_factors()).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((factors, removed)) = postcard::from_bytes::<(Vec<f64>, Vec<u32>)>(state) else {
-            return false;
-        };
-        self.removed = removed;
+        let Ok(factors) = postcard::from_bytes::<Vec<f64>>(state) else { return false };
+        self.is_restored = true;
         self.solids.restore_stretch_factors(&factors)
     }
 }
 
 impl Stress {
     pub fn new(phase: PhaseId, solids: SolidBodies, shares: Vec<f64>) -> Self {
-        Self { phase, solids, dilatation: Dilatation::default(), shares, removed: Vec::new() }
+        let dilatation = Dilatation::default();
+        Self { phase, solids, dilatation, shares, removed: Vec::new(), is_restored: false }
     }
 
     /// The columns that it touches for its bodies.
@@ -179,6 +184,7 @@ impl Stress {
         let before = self.forces(step.world, packed)?;
         self.removed.clear();
         self.removed.extend((0..removed.len() as u32).filter(|&row| removed[row as usize] != Removed::NO));
+        TakenUp::write(&mut view.write::<TakenUp>()?, Loss::Removed, &self.removed);
         self.pack(step.world, packed)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;

@@ -2,7 +2,8 @@
 
 use super::fields::fields;
 use crate::formulations::fluid::cloud::{
-    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, Group, NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
+    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, Group, ListPosition, NEIGHBORS, Neighbors,
+    REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{Continuity, DensityShift, EquationOfState};
@@ -16,7 +17,7 @@ use crate::plugin::{BodyKind, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::schedule::{Access, Mode, Stage, System};
 use crate::world::{
-    Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
+    BodySet, Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
 };
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
@@ -62,6 +63,8 @@ pub fn add(
     let terms = PhaseTerms::take(sim, fluid)?;
     advice::undamped_density(terms.as_ref(), groups, sim);
     let account = terms.as_ref().and_then(|terms| terms.of_density.clone());
+    let bodies = BodySet::new(groups.iter().map(|group| group.body));
+    sim.add_column_to::<ListPosition>(&bodies);
     // Sorting permutes all columns.
     let columns: Vec<&'static str> = sim.columns(fluid).iter().map(|column| column.name).collect();
     watch::add(phases.clone(), sim.body(groups[0].body).spacing, sim);

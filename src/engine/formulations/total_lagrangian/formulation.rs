@@ -16,7 +16,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
-use crate::solids::SolidBodies;
+use crate::solids::{SolidBodies, TakenUp};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
@@ -72,7 +72,7 @@ impl Formulation for TotalLagrangian {
     }
 
     fn columns(columns: &mut ColumnSet) {
-        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>();
+        columns.add::<SupportRadius>().add::<DeformationGradient>().add::<PiolaStress>().add::<TakenUp>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

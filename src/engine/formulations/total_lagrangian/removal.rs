@@ -10,20 +10,28 @@ use super::system::Deformation;
 use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};
-use crate::solids::{SolidPart, count_rows};
+use crate::solids::{Loss, SolidPart, TakenUp, count_rows};
 use crate::world::{
     DeformationGradient, Force, Mass, MissingColumn, ReferencePosition, ReferenceVolume, Removed,
     SupportRadius, World,
 };
 
 impl Deformation {
-    /// Takes what a checkpoint says is removed out of the bonds.
+    /// Takes up the losses that a checkpoint says had been taken up.
     pub(super) fn take_up_restored(
         &mut self,
         world: &World,
         packed: &mut PackedRows,
     ) -> Result<(), StepError> {
-        if std::mem::take(&mut self.removed.restored) {
+        if !std::mem::take(&mut self.is_restored) {
+            return Ok(());
+        }
+        {
+            let taken_up = world.phase(self.phase).read::<TakenUp>()?;
+            self.removed.rows = TakenUp::rows(&taken_up, Loss::Removed);
+            self.failed = TakenUp::rows(&taken_up, Loss::Failed);
+        }
+        if !self.removed.rows.is_empty() {
             self.cut(world, packed)?;
         }
         Ok(())
@@ -110,6 +118,9 @@ impl Deformation {
             self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
             cracks.relist(&self.failed, view.len(), bonds, ghosts);
         }
+        let mut taken_up = view.write::<TakenUp>()?;
+        TakenUp::write(&mut taken_up, Loss::Removed, &self.removed.rows);
+        TakenUp::write(&mut taken_up, Loss::Failed, &self.failed);
         for (law, stable_step) in self.solids.iter().zip(stable_step) {
             let rows = world.body(law.id).rows.clone();
             bonds.correct(rows.clone(), dimension, bytemuck::cast_slice(&reference), &volume, ghosts);

@@ -8,7 +8,7 @@ use super::phase::PackedRows;
 use super::removed::RemovedRows;
 use super::rows::pack;
 use crate::schedule::{Run, Step, StepError};
-use crate::solids::{BodyPass, SolidBodies, SolidColumns, SolidPart};
+use crate::solids::{BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart, TakenUp};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
 
 /// The system.
@@ -19,11 +19,14 @@ pub(super) struct Deformation {
     pub(super) removed: RemovedRows,
     /// Rows that had failed when the step began, and have not been removed; ascending.
     pub(super) failed: Vec<u32>,
+    /// Whether these rows and the bonds are not yet those of the checkpoint that the run goes on from.
+    pub(super) is_restored: bool,
 }
 
 impl Deformation {
     pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies) -> Self {
-        Self { phase, plane, solids, removed: RemovedRows::default(), failed: Vec::new() }
+        let removed = RemovedRows::default();
+        Self { phase, plane, solids, removed, failed: Vec::new(), is_restored: false }
     }
 
     /// Takes up what has failed in the last step.
@@ -34,7 +37,11 @@ impl Deformation {
         let Some(damage) = damage else { return Ok(()) };
         let removed = view.read::<Removed>()?;
         let PackedRows { bonds, ghosts, cracks, .. } = packed;
+        let known = self.failed.len();
         cracks.take_up(&mut self.failed, &damage, &removed, bonds, ghosts);
+        if self.failed.len() != known {
+            TakenUp::write(&mut view.write::<TakenUp>()?, Loss::Failed, &self.failed);
+        }
         Ok(())
     }
 
@@ -108,17 +115,16 @@ impl Run for Deformation {
 
     fn save(&self) -> Vec<u8> {
         let factors = self.solids.stretch_factors();
-        postcard::to_stdvec(&(factors, self.removed.rows(), self.removed.refits().entries(), &self.failed))
-            .unwrap_or_default()
+        postcard::to_stdvec(&(factors, self.removed.refits().entries())).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<u32>, Vec<(u32, glam::DMat3)>, Vec<u32>);
-        let Ok((factors, removed, refits, failed)) = postcard::from_bytes::<Saved>(state) else {
+        type Saved = (Vec<f64>, Vec<(u32, glam::DMat3)>);
+        let Ok((factors, refits)) = postcard::from_bytes::<Saved>(state) else {
             return false;
         };
-        self.removed = RemovedRows::restored(removed, refits);
-        self.failed = failed;
+        self.removed.refits = Refits::restored(refits);
+        self.is_restored = true;
         self.solids.restore_stretch_factors(&factors)
     }
 }

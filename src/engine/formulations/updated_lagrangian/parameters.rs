@@ -15,7 +15,7 @@ use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{SolidBodies, SolidBody, require_support};
+use crate::solids::{SolidBodies, SolidBody, TakenUp, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -88,7 +88,8 @@ impl Formulation for UpdatedLagrangian {
             .add::<UpdatedReference>()
             .add::<UpdatedGradient>()
             .add::<UpdatedMetric>()
-            .add::<UpdatedVolume>();
+            .add::<UpdatedVolume>()
+            .add::<TakenUp>();
     }
 
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {

@@ -16,7 +16,8 @@ use crate::formulations::total_lagrangian::{BondedSites, Ellipsoid, Frame, Frame
 use crate::notation::quantity;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
-    BodyPass, HessianForm, SolidBodies, SolidColumns, SolidPart, StepEstimate, count_rows, fill_rows,
+    BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate, TakenUp, count_rows,
+    fill_rows,
 };
 use crate::world::{
     Damage, DeformationGradient, Force, Mass, MissingColumn, PhaseId, PhaseView, Position, ReferencePosition,
@@ -370,6 +371,17 @@ impl UpdatedSolids {
             *has_lost =
                 now.into_iter().zip(&before).any(|(now, before)| within(now, rows) != within(before, rows));
         }
+        let mut taken_up = view.write::<TakenUp>()?;
+        TakenUp::write(&mut taken_up, Loss::Removed, &self.removed);
+        TakenUp::write(&mut taken_up, Loss::Failed, &self.failed);
+        Ok(())
+    }
+
+    /// Takes the losses that had been taken up from the column that says so, after a restart.
+    fn read_taken_up(&mut self, world: &World) -> Result<(), MissingColumn> {
+        let taken_up = world.phase(self.phase).read::<TakenUp>()?;
+        self.removed = TakenUp::rows(&taken_up, Loss::Removed);
+        self.failed = TakenUp::rows(&taken_up, Loss::Failed);
         Ok(())
     }
 }
@@ -385,6 +397,7 @@ impl Run for UpdatedSolids {
         let resources = step.resources;
         let mut packed = resources.solid_rows_mut::<UpdatedRows>(self.phase);
         if std::mem::take(&mut self.is_stale) {
+            self.read_taken_up(step.world)?;
             let renewed = packed.renew(step.world, self.phase, &self.estimates(), &self.removed);
             renewed.map_err(|error| error.in_step(step.world))?;
             packed.take_gradients(step.world, self.phase, &self.failed)?;
@@ -411,16 +424,14 @@ impl Run for UpdatedSolids {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.removed, &self.failed, &self.keeps))
-            .unwrap_or_default()
+        postcard::to_stdvec(&(self.solids.stretch_factors(), &self.keeps)).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        type Saved = (Vec<f64>, Vec<u32>, Vec<u32>, Vec<bool>);
-        let Ok((factors, removed, failed, keeps)) = postcard::from_bytes::<Saved>(state) else {
+        let Ok((factors, keeps)) = postcard::from_bytes::<(Vec<f64>, Vec<bool>)>(state) else {
             return false;
         };
-        (self.removed, self.failed, self.keeps) = (removed, failed, keeps);
+        self.keeps = keeps;
         self.is_stale = true;
         self.solids.restore_stretch_factors(&factors)
     }

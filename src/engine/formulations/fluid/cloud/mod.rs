@@ -36,7 +36,7 @@ pub use flow_cloud::{FlowCloud, Near};
 pub use group::{FluidState, Group, Role, Surface};
 pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};
-pub use neighbors::{NEIGHBORS, Neighbors};
+pub use neighbors::{ListPosition, NEIGHBORS, Neighbors};
 pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_blocks::RowSums;

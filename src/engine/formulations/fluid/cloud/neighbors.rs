@@ -4,8 +4,16 @@ use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use super::sort::{BUILDS, Sorter};
+use crate::column;
 use crate::neighbors::NeighborError;
+use crate::parallel::sum_over_blocks;
 use crate::schedule::{Run, Step, StepError};
+use crate::world::{MissingColumn, World};
+
+column! {
+    /// Position that the neighbour lists of a flow were built from: sums run in the order of the lists, and the same lists give the same bits.
+    pub struct ListPosition(DVec3) = "list_position", "x_l", "m";
+}
 
 /// Label of the system that keeps the neighbour lists of fluids.
 pub const NEIGHBORS: &str = "fluid_neighbors";
@@ -13,9 +21,9 @@ pub const NEIGHBORS: &str = "fluid_neighbors";
 /// Keeps the lists and the packed rows of the cloud, and sorts the fluids at times.
 #[derive(Default)]
 pub struct Neighbors {
-    /// Positions that the lists of an interrupted run were built from, m.
-    restored: Vec<DVec3>,
-    /// Those that the lists of this run were built from, for the next checkpoint.
+    /// Whether the lists are not yet those of the checkpoint that the run goes on from.
+    is_restored: bool,
+    /// Positions that lists are built from, m.
     built: Vec<DVec3>,
     /// Number of builds since the particles were sorted.
     builds: u64,
@@ -34,6 +42,28 @@ impl FlowCloud {
         near_boundary.make_room(&[&pairs.boundary]);
         Ok(())
     }
+
+    /// Reads the positions that the lists of an interrupted run were built from, m.
+    fn read_list_positions(&self, world: &World, positions: &mut Vec<DVec3>) -> Result<(), MissingColumn> {
+        positions.clear();
+        for group in &self.groups {
+            let column = world.phase(group.phase).read::<ListPosition>()?;
+            positions.extend(column[group.rows.clone()].iter().map(|position| position.0));
+        }
+        Ok(())
+    }
+
+    /// Writes the positions that lists are built from to their columns.
+    fn write_list_positions(&self, world: &World, positions: &[DVec3]) -> Result<(), MissingColumn> {
+        for group in &self.groups {
+            let mut column = world.phase(group.phase).write::<ListPosition>()?;
+            let rows = (&mut column[group.rows.clone()], &positions[group.cloud.clone()]);
+            sum_over_blocks(rows, &|_, (to, from): (&mut [ListPosition], &[DVec3])| {
+                to.iter_mut().zip(from).for_each(|(to, from)| to.0 = *from);
+            });
+        }
+        Ok(())
+    }
 }
 
 impl Run for Neighbors {
@@ -45,9 +75,9 @@ impl Run for Neighbors {
             system: NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
-        if self.restored.len() == cloud.records.len() {
-            // Sums run in the order of the lists, four neighbours at a time: the same lists give the same bits.
-            cloud.build_lists(&std::mem::take(&mut self.restored)).map_err(failed)?;
+        if std::mem::take(&mut self.is_restored) {
+            cloud.read_list_positions(step.world, &mut self.built)?;
+            cloud.build_lists(&self.built).map_err(failed)?;
         }
         let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
         if pairs.are_stale(records, *fluid, moved) {
@@ -57,6 +87,7 @@ impl Run for Neighbors {
                 cloud.pack(step.world)?;
                 cloud.read_positions(&mut self.built);
             }
+            cloud.write_list_positions(step.world, &self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
             self.builds += 1;
         }
@@ -65,20 +96,14 @@ impl Run for Neighbors {
     }
 
     fn save(&self) -> Vec<u8> {
-        let mut bytes = self.builds.to_le_bytes().to_vec();
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.built));
-        bytes
+        self.builds.to_le_bytes().to_vec()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Some((builds, positions)) = state.split_first_chunk() else { return false };
-        let size = size_of::<DVec3>();
-        if !positions.len().is_multiple_of(size) {
-            return false;
-        }
-        self.builds = u64::from_le_bytes(*builds);
-        self.restored = positions.chunks_exact(size).map(bytemuck::pod_read_unaligned).collect();
-        self.built.clone_from(&self.restored);
+        let Ok(builds) = state.try_into() else { return false };
+        self.builds = u64::from_le_bytes(builds);
+        // Before the first step there are no lists.
+        self.is_restored = self.builds > 0;
         true
     }
 }

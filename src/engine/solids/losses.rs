@@ -1,0 +1,49 @@
+//! Losses: particles that have been removed or have failed, as far as the sums of a solid know of them.
+//!
+//! What is lost in a step leaves the sums in the next one. A run that goes on from a checkpoint between the two has to know which losses these sums
+//! had taken up: a column says so, row by row.
+
+use crate::column;
+
+column! {
+    /// What the sums over neighbours have taken up of the losses of a solid: 1 for a particle that has been removed, 2 for one that has failed, 3 for both.
+    pub struct TakenUp(u32) = "losses_taken_up", "-", "1";
+}
+
+/// How a particle is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loss {
+    /// It has been taken out of the run.
+    Removed = 1,
+    /// It has failed.
+    Failed = 2,
+}
+
+impl TakenUp {
+    /// The rows of that loss, ascending.
+    pub fn rows(column: &[Self], loss: Loss) -> Vec<u32> {
+        (0..column.len() as u32).filter(|&row| column[row as usize].0 & loss as u32 != 0).collect()
+    }
+
+    /// Writes down that these rows, and no others, are of that loss.
+    pub fn write(column: &mut [Self], loss: Loss, rows: &[u32]) {
+        column.iter_mut().for_each(|row| row.0 &= !(loss as u32));
+        rows.iter().for_each(|&row| column[row as usize].0 |= loss as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_particle_that_has_failed_and_is_removed_is_of_both() {
+        let mut column = [TakenUp::default(); 4];
+        TakenUp::write(&mut column, Loss::Failed, &[1, 2]);
+        TakenUp::write(&mut column, Loss::Removed, &[2]);
+        assert_eq!(column.map(|row| row.0), [0, 2, 3, 0]);
+        TakenUp::write(&mut column, Loss::Failed, &[1]);
+        assert_eq!(TakenUp::rows(&column, Loss::Failed), [1]);
+        assert_eq!(TakenUp::rows(&column, Loss::Removed), [2]);
+    }
+}
