@@ -304,6 +304,7 @@ const LAYERS: &[&str] = &[
     "correction",
     "kernels",
     "parallel",
+    "ranks",
     "linalg",
     "notation",
 ];

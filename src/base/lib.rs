@@ -10,6 +10,7 @@ pub mod linalg;
 pub mod neighbors;
 pub mod notation;
 pub mod parallel;
+pub mod ranks;
 pub mod scene;
 pub mod shapes;
 pub mod space;

@@ -12,7 +12,9 @@ extern crate self as meshless_engine;
 pub use bytemuck;
 pub use glam;
 #[doc(inline)]
-pub use meshless_base::{correction, kernels, linalg, neighbors, notation, parallel, scene, shapes, space};
+pub use meshless_base::{
+    correction, kernels, linalg, neighbors, notation, parallel, ranks, scene, shapes, space,
+};
 pub use schemars;
 pub use serde;
 

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 
 use crate::notation::{number, quantity};
+use crate::ranks::{self, Cut};
 use crate::record::probe::Probe;
 use crate::record::{Output, StateHash};
 use crate::scene::{self, Scene, Source};
@@ -285,6 +286,12 @@ impl Simulation {
             self.step()?;
         }
         Ok(())
+    }
+
+    /// Divides loops among ranks anew ([`ranks`](crate::ranks)), with the same cut on all of them. Results do not depend on it.
+    pub fn set_cut(&mut self, cut: Cut) {
+        self.world.phases().for_each(|phase| self.world.phase(phase).complete_all());
+        ranks::set_cut(cut);
     }
 
     /// Hash of all columns and of the clock: equal hashes, equal states, bit for bit.

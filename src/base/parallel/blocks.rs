@@ -161,11 +161,11 @@ pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S)
 }
 
 /// Blocks that a task runs in sequence: all of them where there is one thread, which need not be woken, as the caller does it.
-fn blocks_of_task(usual: usize, count: usize) -> usize {
+pub(super) fn blocks_of_task(usual: usize, count: usize) -> usize {
     if rayon::current_num_threads() == 1 { count } else { usual }
 }
 
-fn divide_and_sum<S: Split, R: BlockSum>(
+pub(super) fn divide_and_sum<S: Split, R: BlockSum>(
     per_task: usize,
     first_row: usize,
     count: usize,
@@ -205,7 +205,7 @@ fn join(left: &mut (dyn FnMut() + Send), right: &mut (dyn FnMut() + Send)) {
 }
 
 /// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the hand-over.
-const BLOCKS_PER_TASK: usize = 16;
+pub(super) const BLOCKS_PER_TASK: usize = 16;
 
 fn divide<S: Split, R: BlockSum>(
     per_task: usize,

@@ -1,9 +1,12 @@
 //! The largest of numbers, as a sum over blocks.
 
+use bytemuck::{Pod, Zeroable};
+
 use super::BlockSum;
 
 /// The largest number so far; not a number as soon as one of them is none.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub struct Largest(pub f64);
 
 impl Largest {

@@ -7,6 +7,7 @@ mod eight;
 mod lanes;
 mod largest;
 mod number;
+mod own;
 mod path;
 mod picked;
 mod plane;
@@ -22,6 +23,10 @@ pub use eight::{BlockLoop, EIGHT, EightLanes, Lanes8, run_blocks_on};
 pub use lanes::Lanes4;
 pub use largest::Largest;
 pub use number::Number;
+pub use own::{
+    for_each_own_block, for_each_own_block_in_tasks, own_rows, share_picked, share_rows, share_rows_of,
+    share_wide_rows, sum_over_own_blocks,
+};
 pub use path::{HotLoop, PathError, have_same_bits, instruction_path, run_hot, take_instruction_path};
 pub use picked::Picked;
 pub use plane::run_hot_on;

@@ -5,10 +5,11 @@
 
 use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::fours::FourVectors;
-use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, Position, Velocity};
@@ -62,7 +63,8 @@ pub(crate) fn constrained(mobility: DVec3) -> DVec3 {
 }
 
 /// What a pass learns of a block.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 struct MotionSum {
     /// Power of gravity, W.
     gravity_power: f64,
@@ -137,17 +139,17 @@ impl Run for KickDrift {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
-            let force = view.read::<Force>()?;
-            let mobility = view.read::<Mobility>()?;
-            let mass = view.read::<Mass>()?;
-            let mut velocity = view.write::<Velocity>()?;
-            let mut position = view.write::<Position>()?;
+            let force = view.read_own::<Force>()?;
+            let mobility = view.read_own::<Mobility>()?;
+            let mass = view.read_own::<Mass>()?;
+            let mut velocity = view.write_own::<Velocity>()?;
+            let mut position = view.write_own::<Position>()?;
             let slices = (
                 &mut position[rows.clone()],
                 (&mut velocity[rows.clone()], &force[rows.clone()], &mobility[rows.clone()], &mass[rows]),
             );
             let gravity = self.gravity;
-            let sum = for_each_block(slices, &mut self.sums, &|_, (positions, rows): (_, Rows<'_>)| {
+            let sum = for_each_own_block(slices, &mut self.sums, &|_, (positions, rows): (_, Rows<'_>)| {
                 run_hot(FirstKick { dt, gravity, positions, rows })
             });
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
@@ -208,22 +210,25 @@ impl Run for Kick {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
-            let force = view.read::<Force>()?;
-            let mobility = view.read::<Mobility>()?;
-            let mass = view.read::<Mass>()?;
-            let mut velocity = view.write::<Velocity>()?;
+            let force = view.read_own::<Force>()?;
+            let mobility = view.read_own::<Mobility>()?;
+            let mass = view.read_own::<Mass>()?;
+            let mut velocity = view.write_own::<Velocity>()?;
             let slices = (
                 &mut velocity[rows.clone()],
                 &force[rows.clone()],
                 &mobility[rows.clone()],
                 &mass[rows.clone()],
             );
-            let sum =
-                for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| run_hot(SecondKick { dt, rows }));
+            let sum = for_each_own_block(slices, &mut self.sums, &|_, rows: Rows<'_>| {
+                run_hot(SecondKick { dt, rows })
+            });
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
             step.ledger.set(kinetic, id, 0.5 * sum.twice_kinetic);
             if !sum.twice_kinetic.is_finite() {
-                let broken = velocity[rows].iter().position(|v| !v.0.is_finite()).unwrap_or(0);
+                drop(velocity);
+                let broken =
+                    view.read::<Velocity>()?[rows].iter().position(|v| !v.0.is_finite()).unwrap_or(0);
                 return Err(step.unstable("velocity is not a finite number", id, broken));
             }
             if sum.acceleration_squared > 0.0 {

@@ -1,7 +1,10 @@
 //! The extreme stretches of a body, on which its stable step depends.
 
+use bytemuck::{Pod, Zeroable};
+
 /// Extremes over the particles of a body; one where nothing is stretched.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Stretches {
     /// Smallest principal stretch.
     pub smallest: f64,

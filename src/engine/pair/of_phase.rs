@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::batch::{MAX_ROWS, PairBatch};
@@ -147,7 +148,8 @@ impl PhaseTerms {
         slots.iter_mut().zip(indices.iter()).for_each(|(slot, &k)| *slot = &*self.terms[k].term);
         let terms = &slots[..indices.len()];
         let (view, rows) = step.world.body_view(id);
-        let mut density = if view.has::<DensityRate>() { Some(view.write::<DensityRate>()?) } else { None };
+        let mut density =
+            if view.has::<DensityRate>() { Some(view.write_own::<DensityRate>()?) } else { None };
         forces.resize(rows.len() * terms.len(), DVec3::ZERO);
         let plane = step.world.dimension() == Dimension::Two;
         let (sums, reads) = (&mut self.sums, self.reads);
@@ -208,7 +210,8 @@ impl BoundTerms<'_> {
 }
 
 /// The largest rates of a block.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub(crate) struct Fastest {
     pub(super) damping: f64,
     pub(super) stiffness: f64,

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::batch::PairBatch;
 use super::of_phase::{BoundTerms, Fastest, PhaseTerms, TermRows};
 use super::term::PairReads;
-use crate::parallel::{BlockSum, for_each_block};
+use crate::parallel::{BlockSum, for_each_own_block};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{
@@ -77,7 +77,7 @@ struct PairPass<S> {
 impl<S: PairSource> Run for PairPass<S> {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
-        let mut force = view.write::<Force>()?;
+        let mut force = view.write_own::<Force>()?;
         for &id in &self.bodies {
             let rows = step.world.body(id).rows.clone();
             let (source, terms) = (&self.source, &mut self.terms);
@@ -85,7 +85,7 @@ impl<S: PairSource> Run for PairPass<S> {
             source.with_rows(step, id, terms.reads, &mut |pairs| {
                 let total = &mut force[rows.clone()];
                 fastest = terms.on_body(step, id, total, &mut |terms, written, sums| {
-                    for_each_block(written, sums, &|first, block| {
+                    for_each_own_block(written, sums, &|first, block| {
                         run_block(terms, pairs, rows.start + first, block)
                     })
                 })?;

@@ -4,17 +4,19 @@
 //! is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with the velocity v and the
 //! acceleration a between the two: two sums over the particles give both.
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::of_phase::{BodyTerms, MAX_TERMS};
 use crate::integrate::DRIFT;
-use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, Split, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, Split, for_each_own_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::world::{BodyId, Column, Force, Mobility, PhaseId, Velocity};
 
 /// Power f.v, W, and f.a, W/s, of every term of a body.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 struct Power {
     of_velocity: [f64; MAX_TERMS],
     of_acceleration: [f64; MAX_TERMS],
@@ -175,7 +177,7 @@ impl Run for SecondKick {
         for (BodyTerms { id, terms, forces }, entry) in bodies.iter().zip(powers.iter_mut()) {
             let (view, rows) = step.world.body_view(*id);
             let (velocity, force, mobility) =
-                (view.read::<Velocity>()?, view.read::<Force>()?, view.read::<Mobility>()?);
+                (view.read_own::<Velocity>()?, view.read_own::<Force>()?, view.read_own::<Mobility>()?);
             let read = WorkRows {
                 velocity: &velocity[rows.clone()],
                 force: &force[rows.clone()],
@@ -185,7 +187,7 @@ impl Run for SecondKick {
             };
             entry.id = *id;
             entry.terms.clone_from(terms);
-            entry.power = for_each_block(read, &mut self.sums, &|_, block: WorkRows<'_>| run_hot(block));
+            entry.power = for_each_own_block(read, &mut self.sums, &|_, block: WorkRows<'_>| run_hot(block));
             book(step, &self.accounts, entry, -1.0);
         }
         Ok(())

@@ -16,7 +16,7 @@ use super::refit::Refits;
 use super::stable_step::StepEstimate;
 use super::stretches;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
-use crate::parallel::{Split, for_each_block};
+use crate::parallel::{Split, for_each_block, for_each_own_block};
 use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
 use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
 use crate::world::{
@@ -248,15 +248,24 @@ impl SolidBodies {
         let terms = &terms[..body.terms.len()];
         let constitutive = Constitutive { law: &*body.law, terms, refits, dt, is_short };
         let (mut own, first_row) = (Some(own), rows.start);
-        view.write_bytes_of(body.state.as_slice(), &mut |bytes| {
+        let is_divided = columns.is_divided;
+        let mut of_state = |bytes: [&mut [u8]; MAX_STATE]| {
             let Some(own) = own.take() else { return };
             let (_, state) = StateRows::new(&body.state, bytes).split(rows.start);
             let written = columns.rows(&rows, state.split(rows.len()).0, body.damped);
             let all = (written, own);
-            found.push(for_each_block(all, sums, &|first, (rows, own): (SolidRows<'_>, O)| {
+            let body = |first, (rows, own): (SolidRows<'_>, O)| {
                 SolidBlock::with(first_row + first, |scratch| block(&constitutive, rows, own, scratch))
-            }));
-        });
+            };
+            found.push(match is_divided {
+                true => for_each_own_block(all, sums, &body),
+                false => for_each_block(all, sums, &body),
+            });
+        };
+        match is_divided {
+            true => view.write_own_bytes_of(body.state.as_slice(), &mut of_state),
+            false => view.write_bytes_of(body.state.as_slice(), &mut of_state),
+        }
     }
 
     /// Books what the pass has found; stops where a body has turned inside out.
@@ -327,8 +336,8 @@ impl SolidBodies {
         factor: impl Fn(usize, &dyn SolidLaw, &[DeformationGradient], Option<&[Damage]>) -> f64,
     ) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
-        let gradient = view.read::<DeformationGradient>()?;
-        let damage = view.read::<Damage>().ok();
+        let gradient = view.read_own::<DeformationGradient>()?;
+        let damage = view.read_own::<Damage>().ok();
         for (k, (own, stable_step)) in self.bodies.iter_mut().zip(stable).enumerate() {
             let body = step.world.body(own.id);
             if step.turn.number().is_multiple_of(STRETCH_INTERVAL) {

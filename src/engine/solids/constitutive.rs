@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use bytemuck::{Pod, Zeroable};
 use glam::DMat3;
 
 use super::corrected_stress::{CorrectedStress, CorrectedStressRows};
@@ -19,7 +20,8 @@ use crate::world::{
 pub(super) const MAX_TERMS: usize = 4;
 
 /// What the pass over a body learns of it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub struct SolidSum {
     /// Strain energy, J.
     pub strain: f64,
@@ -85,6 +87,8 @@ pub struct SolidColumns<'a> {
     gradient: Option<hecs::ArchetypeColumnMut<'a, HourglassGradient>>,
     strain: Option<hecs::ArchetypeColumnMut<'a, DampedStrain>>,
     damping: Option<hecs::ArchetypeColumnMut<'a, DampingStress>>,
+    /// Whether the pass is divided among ranks.
+    pub(super) is_divided: bool,
 }
 
 impl<'a> SolidColumns<'a> {
@@ -101,6 +105,24 @@ impl<'a> SolidColumns<'a> {
             gradient: view.write().ok(),
             strain: view.write().ok(),
             damping: view.write().ok(),
+            is_divided: false,
+        })
+    }
+
+    /// Those of a phase whose pass is divided among ranks: each computes its own rows, and the formulation exchanges what it writes beside the columns.
+    ///
+    /// # Errors
+    /// The formulation has not declared deformation gradient and stress.
+    pub fn own(view: &PhaseView<'a>) -> Result<Self, MissingColumn> {
+        Ok(Self {
+            deformation: view.write_own()?,
+            stress: view.write_own()?,
+            modulus: view.write_own().ok(),
+            residual: view.write_own().ok(),
+            gradient: view.write_own().ok(),
+            strain: view.write_own().ok(),
+            damping: view.write_own().ok(),
+            is_divided: true,
         })
     }
 

@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
 use glam::DMat3;
 
 use super::corrected_stress::CorrectedStressRows;
@@ -75,7 +76,8 @@ impl FoldedMemory<'_> {
 split_by_rows!(FoldedMemory { modulus, residual, gradient });
 
 /// What a folded term tells of the energy of a block, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct FoldedEnergy {
     /// Energy that it stores now.
     pub stored: f64,

@@ -4,13 +4,13 @@ use glam::DMat3;
 
 use crate::linalg::smallest_and_largest_stretch;
 use crate::materials::Stretches;
-use crate::parallel::{BlockSum, Largest, sum_over_blocks};
+use crate::parallel::{BlockSum, Largest, sum_over_own_blocks};
 use crate::world::{Damage, DeformationGradient};
 
 /// The extreme stretches of the particles of a body that have not failed: what is left of a failed one may have any shape.
 pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]>) -> Stretches {
     let intact = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
-    sum_over_blocks(gradient, &|first, rows: &[DeformationGradient]| {
+    sum_over_own_blocks(gradient, &|first, rows: &[DeformationGradient]| {
         let rows = rows.iter().zip(first..).filter(|(_, row)| intact(*row));
         rows.fold(Stretches::default(), |mut all, (row, _)| {
             let (smallest, largest) = smallest_and_largest_stretch(row.0);
@@ -30,13 +30,14 @@ pub(super) fn smallest_since(
 ) -> f64 {
     let intact = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
     let rows = (gradient, reference);
-    let most: Largest = sum_over_blocks(rows, &|first, (now, then): (&[DeformationGradient], &[DMat3])| {
-        let rows = now.iter().zip(then).zip(first..).filter(|(_, row)| intact(*row));
-        Largest::of(rows.map(|((now, then), _)| {
-            let (smallest, _) = smallest_and_largest_stretch(now.0 * then.inverse());
-            1.0 / smallest
-        }))
-    });
+    let most: Largest =
+        sum_over_own_blocks(rows, &|first, (now, then): (&[DeformationGradient], &[DMat3])| {
+            let rows = now.iter().zip(then).zip(first..).filter(|(_, row)| intact(*row));
+            Largest::of(rows.map(|((now, then), _)| {
+                let (smallest, _) = smallest_and_largest_stretch(now.0 * then.inverse());
+                1.0 / smallest
+            }))
+        });
     1.0 / most.0.max(1.0)
 }
 

@@ -4,6 +4,7 @@ mod access;
 mod body;
 mod by_row;
 mod column;
+mod own;
 mod permute;
 mod registry;
 mod rows_now;

@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::access::{Declared, Mode, Undeclared, Watch};
 use super::body::{Body, BodyId};
 use super::column::Column;
+use super::own::OwnOnly;
 use super::registry::{ColumnInfo, ColumnSet};
 use crate::scene::Dimension;
 
@@ -25,6 +26,9 @@ pub struct Phase {
     pub len: usize,
     archetype: usize,
     ecs: hecs::World,
+    /// Rows of its bodies, in scene order.
+    bodies: Vec<Range<usize>>,
+    own_only: OwnOnly,
 }
 
 /// A column was asked for that the phase does not have.
@@ -69,12 +73,14 @@ impl World {
             ecs.spawn_column_batch(batch);
         }
         let archetype = if ecs.archetypes().len() > before { before } else { before - 1 };
-        self.phases.push(Phase { name, columns, len, archetype, ecs });
+        let own_only = OwnOnly::of(&columns);
+        self.phases.push(Phase { name, columns, len, archetype, ecs, bodies: Vec::new(), own_only });
         PhaseId(self.phases.len() - 1)
     }
 
     /// Adds a body; its rows must lie in its phase.
     pub fn add_body(&mut self, body: Body) -> BodyId {
+        self.phases[body.phase.0].bodies.push(body.rows.clone());
         self.bodies.push(body);
         BodyId(self.bodies.len() - 1)
     }
@@ -197,6 +203,11 @@ impl<'a> PhaseView<'a> {
     }
 
     pub(crate) fn read_as<T: Column>(&self, mode: Mode) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        self.complete(&ColumnInfo::of::<T>());
+        self.column(mode)
+    }
+
+    pub(super) fn column<T: Column>(&self, mode: Mode) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         let column = self.archetype.get::<&T>().ok_or(self.missing::<T>())?;
         self.watch.touches::<T>(mode);
         Ok(column)
@@ -204,6 +215,11 @@ impl<'a> PhaseView<'a> {
 
     /// Column `T` for writing. Panics if a system holds it already: the schedule excludes that.
     pub fn write<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
+        self.complete(&ColumnInfo::of::<T>());
+        self.column_mut()
+    }
+
+    pub(super) fn column_mut<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
         let column = self.archetype.get::<&mut T>().ok_or(self.missing::<T>())?;
         self.watch.touches::<T>(Mode::Writes);
         Ok(column)
@@ -215,17 +231,44 @@ impl<'a> PhaseView<'a> {
 
     /// Calls `f` with the bytes of a column.
     pub fn read_bytes(&self, column: &ColumnInfo, f: &mut dyn FnMut(&[u8])) {
+        self.complete(column);
         column.read(self.archetype, f);
     }
 
     /// Calls `f` with the writable bytes of a column.
     pub fn write_bytes(&self, column: &ColumnInfo, f: &mut dyn FnMut(&mut [u8])) {
+        self.complete(column);
+        self.write_own_bytes(column, f);
+    }
+
+    /// Calls `f` with the writable bytes of a column, of which it writes rows of this rank.
+    pub(super) fn write_own_bytes(&self, column: &ColumnInfo, f: &mut dyn FnMut(&mut [u8])) {
         column.write(self.archetype, f);
+    }
+
+    /// Rows of the bodies of the phase, in scene order.
+    pub(super) fn body_rows(&self) -> &'a [Range<usize>] {
+        &self.phase.bodies
+    }
+
+    pub(super) fn own_only(&self) -> &'a OwnOnly {
+        &self.phase.own_only
     }
 
     /// Calls `f` with the writable bytes of several columns, at most `N`, in their order; slices that no column takes are
     /// empty. Nothing is called where the phase lacks one of them.
     pub fn write_bytes_of<const N: usize>(&self, columns: &[ColumnInfo], f: &mut dyn FnMut([&mut [u8]; N])) {
+        columns.iter().for_each(|column| self.complete(column));
+        self.borrow_next(columns, 0, std::array::from_fn(|_| Default::default()), f);
+    }
+
+    /// [`PhaseView::write_bytes_of`] for a loop that is divided among ranks.
+    pub(crate) fn write_own_bytes_of<const N: usize>(
+        &self,
+        columns: &[ColumnInfo],
+        f: &mut dyn FnMut([&mut [u8]; N]),
+    ) {
+        columns.iter().for_each(|column| self.mark_own(column.type_id));
         self.borrow_next(columns, 0, std::array::from_fn(|_| Default::default()), f);
     }
 
@@ -238,7 +281,7 @@ impl<'a> PhaseView<'a> {
     ) {
         let Some(column) = columns.get(k) else { return f(held) };
         let mut held = Some(held);
-        self.write_bytes(column, &mut |bytes| {
+        self.write_own_bytes(column, &mut |bytes| {
             if let Some(mut held) = held.take() {
                 held[k] = bytes;
                 self.borrow_next(columns, k + 1, held, f);
@@ -248,6 +291,7 @@ impl<'a> PhaseView<'a> {
 
     /// Appends component `k` of the rows of a column to `out`.
     pub fn component(&self, column: &ColumnInfo, rows: Range<usize>, k: usize, out: &mut Vec<f64>) {
+        self.complete(column);
         column.component(self.archetype, rows, k, out);
     }
 }

@@ -19,7 +19,9 @@ use super::parameters::Divergence;
 use super::rows::EulerianRows;
 use super::stress::corrected;
 use crate::column;
-use crate::parallel::{FourLanes, HotLoop, Lanes4, for_each_block, run_hot_on, split_by_rows};
+use crate::parallel::{
+    FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
+};
 use crate::solids::{CorrectedStress, CorrectedStressRows, FoldedEnergy};
 use crate::symmetry::Map;
 
@@ -113,17 +115,22 @@ pub(super) fn run(
         force: &mut force[rows.clone()],
         stiffness: &mut stiffness[rows.clone()],
         stresses: &mut stresses[rows.clone()],
-        energy,
+        energy: &mut *energy,
     };
     let (divergence, support, offsets) = (kernels[k].divergence, lists.bodies[k].support, &lists.offsets[..]);
-    for_each_block(block, sums, &|first, block: ControlBlock<'_>| {
+    let sum = for_each_own_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
         let pairs = ControlPairs { support, offsets, near, points, carried };
         let pass = ControlPass { control, divergence, pairs, mass, first };
         let mut sum = FoldedEnergy::default();
         run_hot_on(*plane, ControlLoop { pass, block, sum: &mut sum });
         sum
-    })
+    });
+    share_rows(&mut force[rows.clone()]);
+    share_rows(&mut stiffness[rows.clone()]);
+    share_rows(&mut stresses[rows]);
+    share_rows(energy);
+    sum
 }
 
 struct ControlPass<'a> {

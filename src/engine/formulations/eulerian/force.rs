@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::rows::EulerianRows;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -19,23 +19,34 @@ impl Run for InternalForce {
         let view = step.world.phase(self.phase);
         let packed = step.resources.solid_rows::<EulerianRows>(self.phase);
         let mass = view.read::<Mass>()?;
-        let mut force = view.write::<Force>()?;
-        write(&packed, &mass, self.gravity, &mut force);
+        let mut force = view.write_own::<Force>()?;
+        write_own(&packed, &mass, self.gravity, &mut force);
         Ok(())
     }
 }
 
-/// Writes the force of the stresses that are there, and of gravity, N.
-pub(super) fn write(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
-    for_each_block((force, mass), &mut Vec::new(), &|first, (force, mass): (&mut [Force], &[Mass])| {
-        run_hot_in(packed.plane, ForceRows { packed, first, force: &mut *force });
-        for (k, (force, mass)) in force.iter_mut().zip(mass).enumerate() {
-            // Nothing acts on a removed particle, not even gravity.
-            if packed.points[first + k].place.0[3] > 0.0 {
-                force.0 += gravity * mass.0;
+/// Writes the force of the stresses that are there on the particles of all ranks, N, without gravity.
+pub(super) fn write(packed: &EulerianRows, mass: &[Mass], force: &mut [Force]) {
+    write_own(packed, mass, DVec3::ZERO, force);
+    share_rows_of(force, packed.lists.bodies.iter().map(|body| body.rows.clone()));
+}
+
+/// Writes the force of the stresses that are there, and of gravity, on the particles that this rank computes, N.
+fn write_own(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
+    for rows in packed.lists.bodies.iter().map(|body| body.rows.clone()) {
+        let start = rows.start;
+        let of_body = (&mut force[rows.clone()], &mass[rows]);
+        for_each_own_block(of_body, &mut Vec::new(), &|first, (force, mass): (&mut [Force], &[Mass])| {
+            let first = start + first;
+            run_hot_in(packed.plane, ForceRows { packed, first, force: &mut *force });
+            for (k, (force, mass)) in force.iter_mut().zip(mass).enumerate() {
+                // Nothing acts on a removed particle, not even gravity.
+                if packed.points[first + k].place.0[3] > 0.0 {
+                    force.0 += gravity * mass.0;
+                }
             }
-        }
-    });
+        });
+    }
 }
 
 struct ForceRows<'a> {

@@ -12,7 +12,7 @@ use super::start;
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::fit;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{
     DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
@@ -82,7 +82,7 @@ fn advance(
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let rows = body.rows.clone();
         let own: &mut [DMat3] = bytemuck::cast_slice_mut(&mut deformation[rows.clone()]);
-        for_each_block(own, &mut Vec::new(), &|first, deformation: &mut [DMat3]| {
+        for_each_own_block(&mut *own, &mut Vec::new(), &|first, deformation: &mut [DMat3]| {
             let first = rows.start + first;
             let offsets = &lists.offsets[first..=first + deformation.len()];
             let (kernel, support) = (of.kernel, body.support);
@@ -100,6 +100,7 @@ fn advance(
                 deformation,
             });
         });
+        share_rows(own);
     }
 }
 

@@ -198,7 +198,7 @@ impl Stress {
     fn forces(&self, world: &World, packed: &EulerianRows) -> Result<Vec<Force>, MissingColumn> {
         let view = world.phase(self.phase);
         let mut force = vec![Force::default(); view.len()];
-        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, &mut force);
+        force::write(packed, &view.read::<Mass>()?, &mut force);
         Ok(force)
     }
 

@@ -6,11 +6,13 @@
 //!
 //! A particle that fails in a step changes sides at the start of the next one, because within a step the blocks of particles run independently.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::rows::Site;
-use crate::parallel::sum_over_blocks;
+use crate::parallel::{share_picked, sum_over_blocks};
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, Removed};
 
@@ -139,6 +141,22 @@ impl Cracks {
         let holds = |j: usize| marks[j] == Mark::Holds;
         rows.extend(failed.iter().filter(|&&row| neighbors(row).any(holds)));
         rows.sort_unstable();
+    }
+
+    /// Gives all ranks what the pass has found at the edges of a body that each computes.
+    pub fn share_edges(&mut self, body: &Range<usize>) {
+        let EdgeRows { edges, .. } = EdgeRows::of(&mut self.edges, body.start, body.len());
+        if edges.is_empty() {
+            return;
+        }
+        let rows: Vec<u32> = edges.iter().map(|edge| edge.row).collect();
+        let mut stresses: Vec<DMat3> = edges.iter().map(|edge| edge.stress).collect();
+        let mut stiffness: Vec<f64> = edges.iter().map(|edge| edge.stiffness).collect();
+        share_picked(&mut stresses, &rows, body);
+        share_picked(&mut stiffness, &rows, body);
+        for ((edge, stress), stiffness) in edges.iter_mut().zip(stresses).zip(stiffness) {
+            (edge.stress, edge.stiffness) = (stress, stiffness);
+        }
     }
 
     /// A pass has been run: what failed before it is no news any more.

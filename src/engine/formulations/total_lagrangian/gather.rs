@@ -6,7 +6,9 @@ use super::bonds::Bonds;
 use super::rows::Site;
 use super::spread::{Spread, fit};
 use crate::linalg::Sym3;
-use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{
+    BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows,
+};
 use crate::solids::CorrectedStress;
 
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
@@ -44,7 +46,7 @@ impl PlaneOrSolid for Gather<'_> {
     }
 }
 
-/// Fits the displacement gradients of the rows from `first` on.
+/// Fits the displacement gradients of the rows of a body, which begin at `first`.
 pub(in crate::formulations) fn fit_gradients(
     bonds: &Bonds,
     sites: &[Site],
@@ -52,7 +54,7 @@ pub(in crate::formulations) fn fit_gradients(
     first: usize,
     gradient: &mut [DMat3],
 ) {
-    for_each_block(gradient, &mut Vec::new(), &|start, gradient: &mut [DMat3]| {
+    for_each_own_block(&mut *gradient, &mut Vec::new(), &|start, gradient: &mut [DMat3]| {
         let (mut fitted, mut residual) = ([DMat3::ZERO; BLOCK], [0.0; BLOCK]);
         let (mut stretch, mut volume) = ([DVec3::ZERO; BLOCK], [0.0; BLOCK]);
         let gather = Gather {
@@ -68,6 +70,7 @@ pub(in crate::formulations) fn fit_gradients(
         run_hot_in(plane, gather);
         gradient.copy_from_slice(&fitted[..gradient.len()]);
     });
+    share_rows(gradient);
 }
 
 /// Makes A_i = P_i M_i^-1 of a block.

@@ -20,7 +20,7 @@ use super::cracks::Cracks;
 use super::frame::{Frame, frame_of};
 use super::phase::PackedRows;
 use super::rows::Site;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Step, StepError};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
@@ -52,24 +52,39 @@ impl<'a> InternalForce<'a> {
         Self { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
     }
 
-    /// Adds the force on some rows, N.
-    pub fn add(&self, rows: Range<usize>, force: &mut [Force]) {
+    /// Rows of the bodies.
+    fn bodies(&self) -> impl Iterator<Item = Range<usize>> + Clone {
+        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
+        starts.zip(self.frames).map(|(start, frame)| start..frame.end)
+    }
+
+    /// Adds the force on the rows of a body that this rank computes, N.
+    pub fn add_to_own(&self, rows: Range<usize>, force: &mut [Force]) {
         let start = rows.start;
-        for_each_block(&mut force[rows], &mut Vec::new(), &|first, force: &mut [Force]| {
+        for_each_own_block(&mut force[rows], &mut Vec::new(), &|first, force: &mut [Force]| {
             run_hot_in(self.plane, ForceRows { pass: self, first: start + first, force, adds: true });
         });
     }
 
-    /// Writes the force on every particle: gravity plus internal force, N.
-    pub fn run(&self, force: &mut [Force]) {
-        for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
-            run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force, adds: false });
-            let Self { bonds, ghosts, cracks, sites, .. } = *self;
-            for &row in cracks.rows_of_block(first, force.len()) {
-                let row = row as usize;
-                force[row - first].0 -= cracks.force_across(row, bonds, ghosts, sites);
-            }
-        });
+    /// Writes the force on the particles that this rank computes: gravity plus internal force, N.
+    pub fn write_own(&self, force: &mut [Force]) {
+        for body in self.bodies() {
+            let start = body.start;
+            for_each_own_block(&mut force[body], &mut Vec::new(), &|first, force: &mut [Force]| {
+                let first = start + first;
+                run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force, adds: false });
+                let Self { bonds, ghosts, cracks, sites, .. } = *self;
+                for &row in cracks.rows_of_block(first, force.len()) {
+                    let row = row as usize;
+                    force[row - first].0 -= cracks.force_across(row, bonds, ghosts, sites);
+                }
+            });
+        }
+    }
+
+    /// Gives all ranks the force on every particle.
+    pub fn share(&self, force: &mut [Force]) {
+        share_rows_of(force, self.bodies());
     }
 }
 
@@ -117,8 +132,8 @@ pub(in crate::formulations) fn run(
     let view = step.world.phase(phase);
     let packed = step.resources.solid_rows::<PackedRows>(phase);
     let mass = view.read::<Mass>()?;
-    let mut force = view.write::<Force>()?;
-    InternalForce::of(&packed, &mass, gravity, plane).run(&mut force);
+    let mut force = view.write_own::<Force>()?;
+    InternalForce::of(&packed, &mass, gravity, plane).write_own(&mut force);
     packed.hessian.add_vidal_force(&packed.bonds, &packed.sites, &mut force);
     Ok(())
 }

@@ -8,7 +8,7 @@ use super::frame::{Frame, fill_ghosts};
 use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
-use crate::parallel::{FourLanes, HotLoop, Lanes4, Picked, for_each_block, run_hot};
+use crate::parallel::{FourLanes, HotLoop, Lanes4, Picked, for_each_block, run_hot, share_rows_of};
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
@@ -33,6 +33,13 @@ pub(in crate::formulations) struct PackedRows {
 }
 
 impl PackedRows {
+    /// Gives all ranks the stresses that each has computed for its own rows.
+    pub fn share_stresses(&mut self) {
+        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
+        let bodies = starts.zip(&self.frames).map(|(start, frame)| start..frame.end);
+        share_rows_of(&mut self.stresses, bodies);
+    }
+
     /// Fills the sites of the ghosts.
     pub fn fill_ghost_sites(&mut self) {
         let Self { ghosts, sites, origin, .. } = self;

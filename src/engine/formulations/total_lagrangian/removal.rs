@@ -98,8 +98,10 @@ impl Deformation {
         let view = step.world.phase(self.phase);
         let mut force = vec![Force::default(); view.len()];
         let mass = view.read::<Mass>()?;
-        InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane).run(&mut force);
+        let pass = InternalForce::of(packed, &mass, glam::DVec3::ZERO, self.plane);
+        pass.write_own(&mut force);
         packed.hessian.add_vidal_force(&packed.bonds, &packed.sites, &mut force);
+        pass.share(&mut force);
         Ok(force)
     }
 

@@ -7,6 +7,7 @@ use super::hessian::{BondedSites, FrameIndifferent};
 use super::phase::PackedRows;
 use super::removed::RemovedRows;
 use super::rows::pack;
+use crate::parallel::share_picked;
 use crate::schedule::{Run, Step, StepError};
 use crate::solids::{BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart, TakenUp};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
@@ -55,8 +56,12 @@ impl Deformation {
         let view = world.phase(self.phase);
         pack(&view, packed.origin, self.removed.rows(), &mut packed.sites[..view.len()])?;
         packed.fill_ghost_sites();
-        let mut columns = SolidColumns::of(&view)?;
-        let velocity = view.read::<Velocity>()?;
+        let mut columns = SolidColumns::own(&view)?;
+        // Beside cracks the velocities of neighbours count too.
+        let velocity = match packed.cracks.edges.is_empty() {
+            true => view.read_own::<Velocity>()?,
+            false => view.read::<Velocity>()?,
+        };
         let support = view.read::<SupportRadius>()?;
         let PackedRows {
             bonds, ghosts, sites, stresses, self_force, frames, cracks, hessian, kernels, ..
@@ -72,6 +77,7 @@ impl Deformation {
         for k in 0..self.solids.len() {
             let rows = world.body(self.solids.id(k)).rows.clone();
             let middle = rows.start + rows.len() / 2;
+            share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
             let frame = Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
             frames.push(frame);
             let (marks, plane) = (&cracks.marks[..], self.plane);
@@ -89,11 +95,14 @@ impl Deformation {
                 pass.run(law, rows, own, block)
             });
         }
+        self.solids.iter().for_each(|body| cracks.share_edges(&world.body(body.id).rows));
+        hessian.share();
         let plane = self.plane;
         let difference =
             FrameIndifferent { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane };
         difference.run(&view, &mut self.solids, part.dt, |_| true)?;
         hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
+        packed.share_stresses();
         packed.fill_ghost_stresses();
         packed.cracks.settle();
         Ok(())

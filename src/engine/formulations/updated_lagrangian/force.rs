@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::control::Control;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::InternalForce as StressForce;
-use crate::parallel::for_each_block;
+use crate::parallel::{for_each_block, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -23,11 +23,11 @@ impl Run for InternalForce {
         let view = step.world.phase(self.phase);
         let rows = step.resources.solid_rows::<UpdatedRows>(self.phase);
         let mass = view.read::<Mass>()?;
-        let mut force = view.write::<Force>()?;
+        let mut force = view.write_own::<Force>()?;
         if rows.has_force {
             add_gravity(&rows, &mass, self.gravity, &mut force);
         } else {
-            write(&rows, &mass, self.gravity, self.plane, &mut force);
+            write_own(&rows, &mass, self.gravity, self.plane, &mut force);
         }
         Ok(())
     }
@@ -44,14 +44,20 @@ fn add_gravity(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, force: &mut [F
     });
 }
 
-/// Writes the force of the last first pass, N.
-pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bool, force: &mut [Force]) {
+/// Writes the force of the last first pass on the particles of all ranks, N, without gravity.
+pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], plane: bool, force: &mut [Force]) {
+    write_own(rows, mass, DVec3::ZERO, plane, force);
+    share_rows_of(force, rows.bodies());
+}
+
+/// Writes the force of the last first pass on the particles that this rank computes, N.
+fn write_own(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bool, force: &mut [Force]) {
     let UpdatedRows { bonds, ghosts, cracks, sites, stresses, control, hessian, self_force, frames, .. } =
         rows;
     let mass = bytemuck::cast_slice(mass);
     let of_stress =
         StressForce { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane };
-    of_stress.run(force);
+    of_stress.write_own(force);
     hessian.add_vidal_force(bonds, sites, force);
     if !control.has_sums() {
         return;
@@ -62,7 +68,7 @@ pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bo
     let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
     for ((start, frame), is_apart) in starts.zip(frames).zip(is_apart) {
         if *is_apart {
-            of_control.add(start..frame.end, force);
+            of_control.add_to_own(start..frame.end, force);
         }
     }
 }

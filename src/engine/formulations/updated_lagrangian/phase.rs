@@ -1,5 +1,7 @@
 //! The packed rows of the phase, and its interface to the rest of the engine.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::control::Control;
@@ -8,6 +10,7 @@ use crate::formulations::total_lagrangian::{
     BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site, fill_ghosts, frame_of,
 };
 use crate::linalg::dyad;
+use crate::parallel::share_rows_of;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::{Ghosts, Repeat};
 use crate::world::{Force, Mobility, Velocity};
@@ -62,6 +65,23 @@ impl UpdatedRows {
     /// Whether a body has another reference than at the start.
     pub fn has_followed(&self) -> bool {
         self.follows.contains(&true) || self.control.has_sums()
+    }
+
+    /// Rows of the bodies.
+    pub fn bodies(&self) -> impl Iterator<Item = Range<usize>> + Clone {
+        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
+        starts.zip(&self.frames).map(|(start, frame)| start..frame.end)
+    }
+
+    /// Gives all ranks the stresses that each has computed for its own rows.
+    pub fn share_stresses(&mut self) {
+        let Self { frames, stresses, control, .. } = self;
+        let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
+        let bodies = starts.zip(&*frames).map(|(start, frame)| start..frame.end);
+        share_rows_of(stresses, bodies.clone());
+        if control.has_sums() {
+            share_rows_of(&mut control.stresses, bodies);
+        }
     }
 
     /// Fills the stresses of the ghosts, which have their sites.

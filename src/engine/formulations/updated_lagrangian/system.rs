@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::{Control, ControlPass};
@@ -14,6 +14,7 @@ use super::phase::UpdatedRows;
 use super::smoothed_reference::{Relaxation, Smoothing, increments};
 use crate::formulations::total_lagrangian::{BondedSites, Ellipsoid, Frame, FrameIndifferent, Site};
 use crate::notation::quantity;
+use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::solids::{
     BodyPass, HessianForm, Loss, SolidBodies, SolidColumns, SolidPart, StepEstimate, TakenUp, count_rows,
@@ -95,7 +96,7 @@ impl UpdatedSolids {
         let view = world.phase(self.phase);
         packed.pack(world, self.phase)?;
         packed.has_force = false;
-        let mut columns = SolidColumns::of(&view)?;
+        let mut columns = SolidColumns::own(&view)?;
         let support = view.read_near::<SupportRadius>()?;
         let UpdatedRows { bonds, ghosts, hessian, kernels, sites, .. } = &mut *packed;
         let support = bytemuck::cast_slice(&support);
@@ -108,7 +109,9 @@ impl UpdatedSolids {
             let of_body = BodyPass { body: k, view: &view, rows, part };
             self.pass_over_body(of_body, packed, &mut columns)?;
         }
+        packed.hessian.share();
         self.add_differences(&view, packed, part.dt)?;
+        packed.share_stresses();
         packed.fill_ghost_stresses();
         Ok(())
     }
@@ -136,6 +139,7 @@ impl UpdatedSolids {
         } = &mut *packed;
         let (follows, is_apart) = (follows[k], control.is_apart[k]);
         let middle = rows.start + rows.len() / 2;
+        share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
         let moved = |sites: &[Site]| Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
         let frame = if follows { Frame::at_rest(rows.end) } else { moved(sites) };
         let of_control = if is_apart { moved(&control.sites) } else { Frame::at_rest(rows.end) };
@@ -340,7 +344,7 @@ impl UpdatedSolids {
     ) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         force.resize(view.len(), Force::default());
-        force::write(packed, &view.read::<Mass>()?, DVec3::ZERO, self.plane, force);
+        force::write(packed, &view.read::<Mass>()?, self.plane, force);
         Ok(())
     }
 }

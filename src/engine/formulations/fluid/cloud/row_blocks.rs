@@ -8,11 +8,17 @@ use super::flow_cloud::FlowCloud;
 use super::near::part_of;
 use super::row_pass::{NearPairs, RowPass};
 use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Rows, SEEN, dot};
-use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector, for_each_block, run_blocks_on};
+use crate::parallel::{
+    BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector, for_each_block, for_each_own_block, run_blocks_on,
+    share_wide_rows,
+};
 
-/// What a pass sums for each block.
+/// What a pass sums for each block, or for each row.
 #[derive(Debug, Default)]
-pub struct RowSums(Vec<Lanes8>);
+pub struct RowSums {
+    of_blocks: Vec<Lanes8>,
+    pub(super) of_rows: Vec<DVec3>,
+}
 
 impl FlowCloud {
     /// See [`FlowCloud::for_each_row`].
@@ -21,7 +27,7 @@ impl FlowCloud {
         blocks: &Blocks,
         first: usize,
         out: &mut [P::Output],
-        RowSums(sums): &mut RowSums,
+        RowSums { of_blocks: sums, .. }: &mut RowSums,
         pass: &P,
     ) {
         if out.is_empty() {
@@ -32,10 +38,17 @@ impl FlowCloud {
         let Range { start, end } = table.of_fluid(from).start..table.of_fluid(to).end;
         let stride = 3 * S;
         sums.resize((end - start) * stride, Lanes8::ZERO);
-        let of_blocks = BlockSums { lanes: &mut sums[..], stride };
-        for_each_block(of_blocks, &mut Vec::new(), &|k, sums: BlockSums<'_>| {
-            run_blocks_on(self.plane, SomeBlocks { cloud: self, blocks, pass, first: start + k, sums });
-        });
+        for fluid in (from..=to).map(|number| table.of_fluid(number)) {
+            let lanes = &mut sums[(fluid.start - start) * stride..(fluid.end - start) * stride];
+            let of_blocks = BlockSums { lanes: &mut *lanes, stride };
+            for_each_own_block(of_blocks, &mut Vec::new(), &|k, sums: BlockSums<'_>| {
+                run_blocks_on(
+                    self.plane,
+                    SomeBlocks { cloud: self, blocks, pass, first: fluid.start + k, sums },
+                );
+            });
+            share_wide_rows(lanes, stride);
+        }
         let sums = &sums[..];
         for_each_block(out, &mut Vec::new(), &|k, out: &mut [P::Output]| {
             for (i, out) in (first + k..).zip(out) {

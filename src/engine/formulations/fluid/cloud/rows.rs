@@ -1,12 +1,16 @@
 //! Runs passes over rows: in blocks of particles, or four neighbours of one particle at a time.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use super::near::{FourNear, part, take_until};
 use super::row_blocks::RowSums;
 use super::row_pass::RowPass;
-use crate::parallel::{FourLanes, HotLoop, Vector, for_each_block, run_hot_on};
+use crate::parallel::{
+    FourLanes, HotLoop, Vector, for_each_block, for_each_own_block, run_hot_on, share_wide_rows,
+};
 
 impl FlowCloud {
     /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums` is memory that is kept from step to step.
@@ -19,19 +23,47 @@ impl FlowCloud {
     ) {
         match &self.blocks {
             Some(blocks) if first < self.fluid => self.run_in_blocks(blocks, first, out, sums, pass),
-            _ => for_each_block(out, &mut Vec::new(), &|start, out: &mut [P::Output]| {
-                run_hot_on(self.plane, Rows { cloud: self, pass, first: first + start, out });
-            }),
+            _ => self.run_by_rows(first, out, sums, pass),
         }
+    }
+
+    fn run_by_rows<const R: usize, const S: usize, P: RowPass<R, S>>(
+        &self,
+        first: usize,
+        out: &mut [P::Output],
+        RowSums { of_rows, .. }: &mut RowSums,
+        pass: &P,
+    ) {
+        of_rows.resize(out.len() * S, DVec3::ZERO);
+        let (sums, _) = of_rows.as_chunks_mut::<S>();
+        for body in self.bodies_in(first..first + out.len()) {
+            let rows = &mut sums[body.start - first..body.end - first];
+            for_each_own_block(&mut *rows, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
+                run_hot_on(self.plane, Rows { cloud: self, pass, first: body.start + start, sums });
+            });
+            share_wide_rows(rows.as_flattened_mut(), S);
+        }
+        let sums = &*sums;
+        for_each_block(out, &mut Vec::new(), &|start, out: &mut [P::Output]| {
+            for (k, out) in (start..).zip(out) {
+                *out = pass.output(first + k, &sums[k]);
+            }
+        });
+    }
+
+    /// The rows of each body among these rows of whole bodies.
+    pub(super) fn bodies_in(&self, rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+        let bodies = self.groups.iter().map(|group| group.cloud.clone());
+        bodies.filter(move |body| rows.start <= body.start && body.end <= rows.end)
     }
 }
 
 /// Some particles, whose neighbours are taken four at a time.
-struct Rows<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
+struct Rows<'a, const R: usize, const S: usize, P> {
     cloud: &'a FlowCloud,
     pass: &'a P,
     first: usize,
-    out: &'a mut [P::Output],
+    sums: &'a mut [[DVec3; S]],
 }
 
 impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for Rows<'_, R, S, P> {
@@ -39,10 +71,10 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for Rows<'_, R, S
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        let Self { cloud, pass, first, out } = self;
+        let Self { cloud, pass, first, sums: all } = self;
         let among = pass.among();
         let first_group = cloud.group_at(among.start);
-        for (k, out) in out.iter_mut().enumerate() {
+        for (k, totals) in all.iter_mut().enumerate() {
             let i = first + k;
             let mut sums = [Vector::zero(a); S];
             if !pass.skips(i) {
@@ -66,11 +98,9 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for Rows<'_, R, S
                     group += 1;
                 }
             }
-            let mut totals = [DVec3::ZERO; S];
             for n in 0..S {
                 totals[n] = sums[n].sum();
             }
-            *out = pass.output(i, &totals);
         }
     }
 }

@@ -4,18 +4,24 @@
 //! W for the kernel times the volume V_f, so that removed particles have no part in it). Loads b_f on the fluid act as gravity does, with the
 //! value that each particle feels: `- sum_f b_f . rho_f x_wf W` beside the pressures.
 
+use std::ops::Range;
+
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{
+    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows_of,
+};
 
 /// Least sum of V_f W for which there is fluid beside a wall.
 const LEAST_SHARE: f64 = 1e-10;
 
 /// The fluid beside a particle of a boundary.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub struct Beside {
     /// Mean pressure, with what loads on the fluid add on the way from it, Pa.
     pub pressure: f64,
@@ -35,10 +41,20 @@ pub struct WallPressure<'a> {
 impl WallPressure<'_> {
     /// Writes what is beside every particle of a boundary, and its neighbours within the support.
     pub fn run(&self, out: &mut [Beside], near: &mut NearRows) {
-        let rows = (out, near.writer());
-        for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
-            run_hot_in(self.cloud.plane, Rows { cloud: self.cloud, first, out, near });
-        });
+        let cloud = self.cloud;
+        let bodies = cloud.groups.iter().filter(|group| group.fluid().is_none());
+        let mut rest = (&mut *out, near.writer());
+        for Range { start, end } in bodies.clone().map(|group| group.cloud.clone()) {
+            let (rows, behind) = rest.split(end - start);
+            rest = behind;
+            for_each_own_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
+                run_hot_in(cloud.plane, Rows { cloud, first: start - cloud.fluid + first, out, near });
+            });
+        }
+        share_rows_of(
+            out,
+            bodies.map(|group| group.cloud.start - cloud.fluid..group.cloud.end - cloud.fluid),
+        );
     }
 }
 

@@ -32,7 +32,10 @@ use super::super::rows::Site;
 use super::super::spread::{Spread, fit};
 use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::linalg::Sym3;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in, sum_over_blocks};
+use crate::parallel::{
+    FourLanes, Lanes4, PlaneOrSolid, for_each_block, for_each_own_block, run_hot_in, share_rows,
+    sum_over_own_blocks,
+};
 use crate::solids::{
     CorrectedStress, FoldedEnergy, HessianForm, HessianResidual, HessianStiffness, SolidBodies,
 };
@@ -73,8 +76,8 @@ impl FrameIndifferent<'_> {
             return Ok(());
         }
         let Self { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane } = self;
-        let mut residual = view.write::<HessianResidual>()?;
-        let mut held = view.write::<HessianStiffness>()?;
+        let mut residual = view.write_own::<HessianResidual>()?;
+        let mut held = view.write_own::<HessianStiffness>()?;
         let support = view.read_near::<SupportRadius>()?;
         let damage = view.read::<Damage>().ok();
         let HessianRows { bodies, gradient, slopes, stiffness, pulls, loose, .. } = hessian;
@@ -98,13 +101,14 @@ impl FrameIndifferent<'_> {
                 &stiffness[rows.clone()],
                 &support[rows.clone()],
             );
-            let energy = sum_over_blocks(own, &|first, own: ResidualRows<'_>| {
+            let energy = sum_over_own_blocks(own, &|first, own: ResidualRows<'_>| {
                 let mut energy = FoldedEnergy::default();
                 let first = rows.start + first;
                 run_hot_in(plane, ResidualBlock { pass: &pass, first, own, energy: &mut energy });
                 energy
             });
             solids.add_hessian(body.body, energy);
+            share_rows(&mut pulls[rows]);
         }
         ghosts.fill(pulls, |ghost, own| {
             let pull = ghost.map.vector(own.displacement.xyz());
@@ -245,7 +249,7 @@ fn add_forces(
 ) {
     type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
     let own: Rows<'_> = (&mut stresses[rows.clone()], &mut self_force[rows.clone()]);
-    for_each_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
+    for_each_own_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
         let first = rows.start + first;
         run_hot_in(plane, ForceBlock { bonds, pulls, first, stresses, self_force });
     });

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use super::super::bonds::Bonds;
 use super::super::rows::Site;
 use super::vidal_2007::{Difference, VidalRows};
-use crate::parallel::{run_hot, split_by_rows};
+use crate::parallel::{run_hot, share_rows, split_by_rows};
 use crate::solids::{CorrectedStress, FoldedRows, HessianDifference, HessianForm};
 use crate::symmetry::Ghosts;
 
@@ -97,6 +97,16 @@ impl HessianRows {
                 vidal: Some(&self.vidal),
                 ..HessianBlock::default()
             },
+        }
+    }
+
+    /// Gives all ranks what the first pass has written and neighbours read.
+    pub fn share(&mut self) {
+        for HessianBody { rows, term, .. } in &self.bodies {
+            match term.form {
+                HessianForm::FrameIndifferent => share_rows(&mut self.gradient[rows.clone()]),
+                HessianForm::Vidal2007 => share_rows(&mut self.stress[rows.clone()]),
+            }
         }
     }
 

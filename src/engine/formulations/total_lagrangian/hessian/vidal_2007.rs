@@ -26,7 +26,7 @@ use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::{Sym3, dyad};
-use crate::parallel::{FourLanes, HotLoop, for_each_block, run_hot};
+use crate::parallel::{FourLanes, HotLoop, for_each_own_block, run_hot};
 use crate::solids::{CorrectedStress, HessianForm};
 use crate::symmetry::Ghosts;
 use crate::world::Force;
@@ -186,7 +186,7 @@ impl HessianRows {
         for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
             let own = (&mut stresses[rows.clone()], &mut self_force[rows.clone()]);
             type Rows<'a> = (&'a mut [CorrectedStress], &'a mut [DVec3]);
-            for_each_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
+            for_each_own_block(own, &mut Vec::new(), &|first, (stresses, self_force): Rows<'_>| {
                 let (vidal, theta, first) = (&self.vidal, &self.stress[..], rows.start + first);
                 let eta = term.eta;
                 run_hot(AdjointStress { vidal, theta, bonds, sites, eta, first, stresses, self_force });
@@ -198,7 +198,7 @@ impl HessianRows {
     pub fn add_vidal_force(&self, bonds: &Bonds, sites: &[Site], force: &mut [Force]) {
         for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
             let force = &mut force[rows.clone()];
-            for_each_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
+            for_each_own_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
                 let (vidal, theta, first) = (&self.vidal, &self.stress[..], rows.start + first);
                 run_hot(AdjointForce { vidal, theta, bonds, sites, eta: term.eta, first, force });
             });

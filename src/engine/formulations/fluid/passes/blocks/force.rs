@@ -8,7 +8,9 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
 use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Packed};
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, Fastest, PhaseTerms, TermRows, TermSums};
-use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block_in_tasks, run_blocks_on};
+use crate::parallel::{
+    BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on, share_wide_rows,
+};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 use glam::DVec3;
@@ -63,6 +65,7 @@ impl BlockForce<'_> {
         let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
         let rows = BlockSums { lanes: &mut forces, stride };
         let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums: &mut sums });
+        share_wide_rows(&mut forces, stride);
         (self.blocks.forces, self.blocks.fastest) = (forces, sums);
         fastest
     }
@@ -97,7 +100,7 @@ impl KernelLoop for AllBlocks<'_> {
 
     fn run<K: PairShape>(self, kernel: K) -> Fastest {
         let Self { pass, first, rows, sums } = self;
-        for_each_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
+        for_each_own_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
             PAIRS.with_borrow_mut(|pairs| {
                 let first = first + row;
                 run_blocks_on(pass.cloud.plane, SomeBlocks { pass: &pass, kernel, first, rows, pairs })

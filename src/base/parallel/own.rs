@@ -1,0 +1,96 @@
+//! Loops over the blocks of this rank; of a program that runs alone, these are all blocks.
+//!
+//! What such a loop writes is there for the rows of this rank alone, until it is exchanged: [`share_rows`], or the columns of the world by themselves when
+//! they are read. Sums are those over the blocks of all ranks.
+
+use std::ops::Range;
+
+use bytemuck::Pod;
+
+use super::blocks::{
+    BLOCK, BLOCKS_PER_TASK, BlockSum, Split, block_count, blocks_of_task, divide_and_sum,
+    for_each_block_in_tasks, sum_over_blocks,
+};
+use crate::ranks;
+
+/// Rows of a body that this rank computes.
+pub fn own_rows(body: &Range<usize>) -> Range<usize> {
+    let blocks = ranks::own_blocks(block_count(body.len()));
+    let row = |block: usize| body.start + (block * BLOCK).min(body.len());
+    row(blocks.start)..row(blocks.end)
+}
+
+/// Exchanges the rows of a body, of which every rank has computed its own.
+pub fn share_rows<T: Pod>(rows: &mut [T]) {
+    ranks::share(rows, BLOCK);
+}
+
+/// Exchanges the rows of a body of `width` values each, of which every rank has computed its own.
+pub fn share_wide_rows<T: Pod>(values: &mut [T], width: usize) {
+    let rows = values.len() / width;
+    let bytes = bytemuck::cast_slice_mut(values);
+    ranks::share_bodies(bytes, width * size_of::<T>(), BLOCK, std::iter::once(0..rows));
+}
+
+/// Exchanges the rows of several bodies in one array.
+pub fn share_rows_of<T: Pod>(rows: &mut [T], bodies: impl Iterator<Item = Range<usize>> + Clone) {
+    ranks::share_bodies(bytemuck::cast_slice_mut(rows), size_of::<T>(), BLOCK, bodies);
+}
+
+/// Exchanges values of some rows of a body, which ascend; every rank has computed those of its own rows.
+pub fn share_picked<T: Pod>(values: &mut [T], rows: &[u32], body: &Range<usize>) {
+    let before = |row: usize| rows.partition_point(|other| (*other as usize) < body.start + row);
+    ranks::share_some(values, body.len(), BLOCK, before);
+}
+
+/// [`for_each_block`](super::for_each_block) over the blocks of this rank. The rows are all those of a body.
+pub fn for_each_own_block<S: Split, R: BlockSum + Pod>(
+    rows: S,
+    sums: &mut Vec<R>,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    for_each_own_block_in_tasks(BLOCKS_PER_TASK, rows, sums, body)
+}
+
+/// [`for_each_own_block`] with that many blocks in a task.
+pub fn for_each_own_block_in_tasks<S: Split, R: BlockSum + Pod>(
+    per_task: usize,
+    rows: S,
+    sums: &mut Vec<R>,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    match ranks::has_several() {
+        true => sum_of_own(per_task, rows, body),
+        false => for_each_block_in_tasks(per_task, rows, sums, body),
+    }
+}
+
+/// [`sum_over_blocks`] over the blocks of all ranks, each of which runs its own.
+pub fn sum_over_own_blocks<S: Split, R: BlockSum + Pod>(
+    rows: S,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    match ranks::has_several() {
+        true => sum_of_own(BLOCKS_PER_TASK, rows, body),
+        false => sum_over_blocks(rows, body),
+    }
+}
+
+fn sum_of_own<S: Split, R: BlockSum + Pod>(
+    per_task: usize,
+    rows: S,
+    body: &(impl Fn(usize, S) -> R + Sync),
+) -> R {
+    let (len, count) = (rows.rows(), block_count(rows.rows()));
+    let own = ranks::own_blocks(count);
+    let mut rest = Some(rows.split((own.start * BLOCK).min(len)).1);
+    let mut sums: Vec<R> = Vec::new();
+    ranks::maximal_subtrees(0..count, &own, &mut |blocks| {
+        let Some(rows) = rest.take() else { return };
+        let (part, behind) = rows.split((blocks.end * BLOCK).min(len) - blocks.start * BLOCK);
+        rest = Some(behind);
+        let per_task = blocks_of_task(per_task, blocks.len());
+        sums.push(divide_and_sum(per_task, blocks.start * BLOCK, blocks.len(), part, body));
+    });
+    ranks::complete(count, &sums, &|sum: &mut R, next| sum.add(next))
+}

@@ -1,0 +1,102 @@
+//! Exchange of rows: every rank has computed its own, afterwards all ranks have all.
+
+use std::ops::Range;
+
+use bytemuck::Pod;
+
+use super::group::{self, Group};
+
+/// Exchanges the rows of one body, of which every rank has computed its blocks of `block` rows.
+pub fn share<T: Pod>(rows: &mut [T], block: usize) {
+    let len = rows.len();
+    share_bodies(bytemuck::cast_slice_mut(rows), size_of::<T>(), block, std::iter::once(0..len));
+}
+
+/// Exchanges the rows of several bodies, of `size` bytes each, of which every rank has computed its blocks: those of all bodies in one exchange.
+pub fn share_bodies(
+    bytes: &mut [u8],
+    size: usize,
+    block: usize,
+    bodies: impl Iterator<Item = Range<usize>> + Clone,
+) {
+    group::with(|group| {
+        let mut some = bodies.clone();
+        match (some.next(), some.next()) {
+            (Some(body), None) => {
+                of_one_body(group, &mut bytes[body.start * size..body.end * size], size, block)
+            }
+            _ => of_several_bodies(group, bytes, size, block, bodies),
+        }
+    });
+}
+
+/// Rows of rank `rank`, counted from the first of a body of `len` rows.
+fn part(group: &Group, rank: usize, len: usize, block: usize) -> Range<usize> {
+    let blocks = group.cut.blocks(rank, len.div_ceil(block));
+    (blocks.start * block).min(len)..(blocks.end * block).min(len)
+}
+
+/// Exchanges values of some rows of a body of `len` rows, of which every rank has computed those in its blocks: `end` gives the number of values before a
+/// row of the body.
+pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl Fn(usize) -> usize) {
+    group::with(|group| {
+        let mut cuts = std::mem::take(&mut group.cuts);
+        cuts.clear();
+        cuts.push(0);
+        cuts.extend(
+            (0..group.ranks.size()).map(|rank| end(part(group, rank, len, block).end) * size_of::<T>()),
+        );
+        run(group, bytemuck::cast_slice_mut(values), &cuts);
+        group.cuts = cuts;
+    });
+}
+
+fn of_one_body(group: &mut Group, bytes: &mut [u8], size: usize, block: usize) {
+    let len = bytes.len() / size;
+    let mut cuts = std::mem::take(&mut group.cuts);
+    cuts.clear();
+    cuts.push(0);
+    cuts.extend((0..group.ranks.size()).map(|rank| part(group, rank, len, block).end * size));
+    run(group, bytes, &cuts);
+    group.cuts = cuts;
+}
+
+fn of_several_bodies(
+    group: &mut Group,
+    bytes: &mut [u8],
+    size: usize,
+    block: usize,
+    bodies: impl Iterator<Item = Range<usize>> + Clone,
+) {
+    let (mut cuts, mut parts) = (std::mem::take(&mut group.cuts), std::mem::take(&mut group.parts));
+    cuts.clear();
+    parts.clear();
+    cuts.push(0);
+    let place = |group: &Group, rank: usize, body: &Range<usize>| {
+        let part = part(group, rank, body.len(), block);
+        (body.start + part.start) * size..(body.start + part.end) * size
+    };
+    for rank in 0..group.ranks.size() {
+        bodies.clone().for_each(|body| parts.extend_from_slice(&bytes[place(group, rank, &body)]));
+        cuts.push(parts.len());
+    }
+    run(group, &mut parts, &cuts);
+    let mut rest = &parts[..];
+    for rank in 0..group.ranks.size() {
+        for body in bodies.clone() {
+            let to = &mut bytes[place(group, rank, &body)];
+            let (from, behind) = rest.split_at(to.len());
+            to.copy_from_slice(from);
+            rest = behind;
+        }
+    }
+    (group.cuts, group.parts) = (cuts, parts);
+}
+
+/// Carries out one exchange.
+pub(super) fn run(group: &mut Group, bytes: &mut [u8], cuts: &[usize]) {
+    let rank = group.ranks.rank();
+    group.traffic.exchanges += 1;
+    group.traffic.bytes += (bytes.len() - (cuts[rank + 1] - cuts[rank])) as u64;
+    group.ranks.share(bytes, cuts);
+}

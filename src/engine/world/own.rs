@@ -1,0 +1,75 @@
+//! Columns of which a rank has computed its own rows: they are exchanged when somebody reads the rest.
+//!
+//! A pass that is divided among ranks writes a column by [`PhaseView::write_own`]. The rows of other ranks are old from then on, until the column is read or written
+//! as a whole; that exchanges it. The calls of a step follow from equal values, so that all ranks come to the same exchange.
+
+use std::any::TypeId;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use hecs::{ArchetypeColumn, ArchetypeColumnMut};
+
+use super::access::Mode;
+use super::column::Column;
+use super::registry::{ColumnInfo, ColumnSet};
+use super::state::{MissingColumn, PhaseView};
+use crate::parallel::BLOCK;
+use crate::ranks;
+
+/// Which columns of a phase are there for the rows of this rank alone, in the order of the columns.
+#[derive(Debug, Default)]
+pub(super) struct OwnOnly(Vec<AtomicBool>);
+
+impl OwnOnly {
+    pub fn of(columns: &ColumnSet) -> Self {
+        Self(columns.iter().map(|_| AtomicBool::new(false)).collect())
+    }
+
+    fn flag(&self, columns: &ColumnSet, column: TypeId) -> Option<&AtomicBool> {
+        let place = columns.iter().position(|own| own.type_id == column)?;
+        self.0.get(place)
+    }
+}
+
+impl<'a> PhaseView<'a> {
+    /// Column `T` for reading rows of this rank ([`own_rows`](crate::parallel::own_rows)), in a loop that is divided among ranks. The others may be old.
+    pub fn read_own<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        self.column(Mode::Reads)
+    }
+
+    /// Column `T` for writing rows of this rank, in a loop that is divided among ranks. Whoever reads the column next gets the rows of all.
+    pub fn write_own<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
+        self.mark_own(TypeId::of::<T>());
+        self.column_mut()
+    }
+
+    /// The rows of a column are written by each rank for its own from now on.
+    pub(crate) fn mark_own(&self, column: TypeId) {
+        if ranks::has_several()
+            && let Some(flag) = self.own_only().flag(self.columns(), column)
+        {
+            flag.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Exchanges the rows of a column if every rank has its own alone.
+    pub(super) fn complete(&self, column: &ColumnInfo) {
+        let flag = self.own_only().flag(self.columns(), column.type_id);
+        if flag.is_some_and(|flag| flag.swap(false, Ordering::Relaxed)) {
+            self.exchange(column);
+        }
+    }
+
+    #[cold]
+    fn exchange(&self, column: &ColumnInfo) {
+        assert!(ranks::has_several(), "`{}` is read as a whole inside of a loop of ranks", column.name);
+        let bodies = self.body_rows().iter().cloned();
+        self.write_own_bytes(column, &mut |bytes| {
+            ranks::share_bodies(bytes, column.element_size, BLOCK, bodies.clone());
+        });
+    }
+
+    /// Exchanges all columns of which every rank has its own rows alone: before the rows are divided anew.
+    pub fn complete_all(&self) {
+        self.columns().iter().for_each(|column| self.complete(column));
+    }
+}

@@ -1,0 +1,121 @@
+//! The same scene gives the same bits on any number of ranks.
+
+mod common;
+#[path = "ranks/threads.rs"]
+mod threads;
+
+use common::coupled::coupled;
+use common::thin::thin;
+use common::touching::{large_rigid_bodies, tool_of_triangles, touching};
+use common::wearing::wearing;
+use common::{
+    all_plugins, crash, double, eulerian, failing, failing_metals, flow, metals, of_many_tasks, removal,
+    simulation, with_formulation,
+};
+use meshless::ranks::{self, Cut};
+use meshless::record::StateHash;
+use meshless::scene::Source;
+use threads::on_ranks;
+
+/// Hash of the state, and the balance error, whose bits follow from every energy.
+type Found = (StateHash, u64);
+
+/// Weights of ranks from a seed, some of them zero.
+fn weights(seed: u64, size: usize) -> Vec<f64> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % 4
+    };
+    (0..size).map(|_| next() as f64).collect()
+}
+
+/// The scene after some steps; loops are divided anew in the middle, where there is a seed.
+fn after(source: &Source, steps: u64, cuts: Option<(u64, usize)>) -> Found {
+    let mut sim = simulation(source);
+    if let Some((seed, size)) = cuts {
+        for part in 0..3 {
+            sim.set_cut(Cut::by_weights(&weights(seed + part, size)));
+            sim.run(|sim| 3 * sim.clock().step < (part + 1) * steps).expect("a run");
+        }
+    }
+    sim.run(|sim| sim.clock().step < steps).expect("a run");
+    assert_eq!(sim.clock().step, steps);
+    (sim.state_hash(), sim.ledger().balance_error().to_bits())
+}
+
+fn assert_equal_bits(name: &str, source: &Source, steps: u64) {
+    let alone = after(source, steps, None);
+    for size in [2, 3, 4] {
+        let found = on_ranks(size, 1, |_| after(source, steps, None));
+        assert!(found.iter().all(|of_rank| *of_rank == alone), "{name} on {size} ranks");
+    }
+    let exchanged = on_ranks(2, 1, |_| {
+        after(source, 1, None);
+        ranks::traffic()
+    });
+    assert!(exchanged.iter().all(|traffic| traffic.bytes > 0), "{name}: nothing is divided");
+    let found = on_ranks(3, 2, |_| after(source, steps, Some((source.text.len() as u64, 3))));
+    assert!(found.iter().all(|of_rank| *of_rank == alone), "{name} with random cuts");
+}
+
+fn with_stabilization(form: &str) -> Source {
+    let Source { name, text, .. } = all_plugins(2);
+    let plugin = format!("plugins: [hessian_stabilization({form})]");
+    Source::new(name, text.replace("plugins: [hourglass_control()]", &plugin))
+}
+
+#[test]
+fn total_lagrangian_solids() {
+    assert_equal_bits("two dimensions", &of_many_tasks(&all_plugins(2)), 12);
+    assert_equal_bits("three dimensions", &all_plugins(3), 30);
+    assert_equal_bits("metals", &metals(), 30);
+    assert_equal_bits("second derivatives", &with_stabilization(""), 30);
+    assert_equal_bits("the form of the paper", &with_stabilization("form: Vidal2007"), 30);
+}
+
+#[test]
+fn updated_lagrangian_solids() {
+    let often = "UpdatedLagrangian(update: Every(3))";
+    assert_equal_bits("two dimensions", &with_formulation(often, &all_plugins(2)), 30);
+    assert_equal_bits("failing", &with_formulation(often, &failing()), 100);
+    assert_equal_bits("touching", &with_formulation(often, &touching()), 60);
+    assert_equal_bits("second derivatives", &with_formulation(often, &with_stabilization("")), 30);
+}
+
+#[test]
+fn eulerian_solids() {
+    assert_equal_bits("three dimensions", &eulerian(&all_plugins(3)), 20);
+    assert_equal_bits("metals", &eulerian(&metals()), 20);
+    assert_equal_bits("failing", &eulerian(&failing()), 60);
+}
+
+#[test]
+fn flows() {
+    // Lists are built, and fluids sorted, several times.
+    assert_equal_bits("two dimensions", &flow(2), 300);
+    assert_equal_bits("three dimensions", &flow(3), 60);
+    assert_equal_bits("double precision", &double(&flow(3)), 60);
+    assert_equal_bits("thin bodies", &thin(), 150);
+}
+
+#[test]
+fn flows_with_bodies() {
+    assert_equal_bits("coupled", &coupled(), 150);
+    assert_equal_bits("wearing", &wearing(), 60);
+}
+
+#[test]
+fn contact_and_rigid_bodies() {
+    assert_equal_bits("touching", &touching(), 150);
+    assert_equal_bits("a tool", &tool_of_triangles(), 100);
+    assert_equal_bits("rigid bodies", &large_rigid_bodies(), 30);
+}
+
+#[test]
+fn failure_and_removal() {
+    assert_equal_bits("removal", &removal(), 300);
+    assert_equal_bits("failing", &failing(), 300);
+    assert_equal_bits("failing metals", &failing_metals(), 150);
+    assert_equal_bits("crash", &crash(), 150);
+}
