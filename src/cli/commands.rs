@@ -9,7 +9,8 @@ use meshless_engine::plugin::Registry;
 use super::failure::Failure;
 use super::text::unsaid;
 use super::{
-    bench, check, completions, new, picture, plugins, resume, schema, surface, sweep, validate, version, view,
+    bench, check, completions, new, picture, plugins, ranks, resume, schema, surface, sweep, validate,
+    version, view,
 };
 
 /// Particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
@@ -44,6 +45,9 @@ exit codes: 0 success, 1 the run failed or a file could not be read or written, 
 
 impl Command {
     fn execute(self, registry: &Registry) -> Result<(), Failure> {
+        if !matches!(self, Self::Run(_) | Self::Resume(_)) {
+            ranks::require_one()?;
+        }
         match self {
             Self::Run(arguments) => super::run::execute(arguments, registry),
             Self::Resume(arguments) => resume::execute(arguments, registry),

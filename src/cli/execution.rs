@@ -8,6 +8,7 @@ use meshless_engine::assembly::{self, BuildOptions};
 use meshless_engine::notation::count;
 use meshless_engine::parallel::take_instruction_path;
 use meshless_engine::plugin::Registry;
+use meshless_engine::ranks;
 use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{Scene, Source};
 use meshless_engine::simulation::{RunError, Simulation};
@@ -18,14 +19,15 @@ use super::interrupt::Interrupt;
 use super::lock::Lock;
 use super::profile;
 use super::progress::Progress;
+use super::ranks::{end_if_alone_with, require_equal, usual_threads};
 use super::summary;
-use super::text::{complain, program, quoted, say};
+use super::text::{complain, program, quoted, say, speaks};
 
 /// By how much clocks of files may be behind.
 const CLOCK: Duration = Duration::from_millis(20);
 
 /// How a run is carried out; what it computes does not depend on any of this.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub struct How {
     /// Number of threads; without it, all cores
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -48,8 +50,8 @@ impl How {
     /// Sets the number of threads and the instruction path of this program; once, before anything runs.
     pub fn prepare(&self) -> Result<(), Failure> {
         take_instructions(self.instructions.as_deref())?;
-        let Some(threads) = self.threads else { return Ok(()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads));
+        let Some(threads) = self.threads.map(usize::from).or_else(usual_threads) else { return Ok(()) };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build_global().map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))
     }
 }
@@ -77,6 +79,7 @@ impl Execution {
         registry: &Registry,
         output: OutputOptions,
     ) -> Result<Self, Failure> {
+        require_equal("scene", &source.text)?;
         let begun = SystemTime::now() - CLOCK;
         let folder = output.folder.clone();
         let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
@@ -88,10 +91,19 @@ impl Execution {
         let interrupt = Interrupt::listen()?;
         let mut progress = Progress::new(&self.sim, how.quiet);
         // On a thread of the pool: a parallel loop that begins outside has to wake one each time.
-        let steps = rayon::scope(|_| self.steps(how.steps, &interrupt, &mut progress));
+        let steps = match ranks::has_several() {
+            true => self.steps(how.steps, &interrupt, &mut progress),
+            false => rayon::scope(|_| self.steps(how.steps, &interrupt, &mut progress)),
+        };
         progress.finish(&self.sim);
+        if let Err(error) = &steps {
+            end_if_alone_with(error);
+        }
         let failed_state = steps.is_err().then(|| self.keep_failed_state()).flatten();
         let finished = self.sim.finish();
+        if let Err(error) = &finished {
+            end_if_alone_with(error);
+        }
         if let Ok(summary) = &finished {
             if !how.quiet {
                 say(&summary::text(
@@ -100,7 +112,9 @@ impl Execution {
                     progress.steps(&self.sim),
                     &self.sim.state_hash(),
                 ));
-                say(&self.files()?);
+                if speaks() {
+                    say(&self.files()?);
+                }
             }
             if how.profile {
                 say(&profile::text(summary, progress.steps(&self.sim)));
@@ -111,7 +125,7 @@ impl Execution {
             return Err(Failure::Run(format!("{error}{}", state.unwrap_or_default())));
         }
         finished.map_err(|error| Failure::Run(error.to_string()))?;
-        if interrupt.asked() && !self.sim.is_finished() {
+        if ranks::any(interrupt.asked()) && !self.sim.is_finished() {
             Err(Failure::Interrupted(interrupt.signal()))
         } else {
             Ok(())
@@ -125,7 +139,7 @@ impl Execution {
         progress: &mut Progress,
     ) -> Result<(), RunError> {
         self.sim.start()?;
-        while !self.sim.is_finished() && !interrupt.asked() {
+        while !self.sim.is_finished() && !ranks::any(interrupt.asked()) {
             if limit.is_some_and(|limit| progress.steps(&self.sim) >= limit) {
                 break;
             }

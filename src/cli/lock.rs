@@ -3,6 +3,8 @@
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
+use meshless_engine::ranks;
+
 use super::failure::Failure;
 
 /// Holds the folder of a run until it is dropped, or until the program ends in whatever way.
@@ -12,9 +14,10 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Takes the folder, which must exist.
+    /// Takes the folder, which must exist; of several ranks the first one does.
     pub fn of(folder: &Path) -> Result<Self, Failure> {
-        let Ok(file) = File::open(folder) else { return Ok(Self { _folder: None }) };
+        let held = ranks::is_first().then(|| File::open(folder).ok()).flatten();
+        let Some(file) = held else { return Ok(Self { _folder: None }) };
         match file.try_lock() {
             Ok(()) => Ok(Self { _folder: Some(file) }),
             Err(TryLockError::WouldBlock) => Err(Failure::Usage(format!(

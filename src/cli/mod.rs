@@ -16,6 +16,7 @@ mod picture;
 mod plugins;
 mod profile;
 mod progress;
+mod ranks;
 mod resume;
 mod run;
 mod scene_file;

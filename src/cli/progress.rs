@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use meshless_engine::notation::quantity;
 use meshless_engine::simulation::Simulation;
 
-use super::text::{complain, counted, duration};
+use super::text::{complain, counted, duration, speaks};
 
 /// Time between two updates of the bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(200);
@@ -36,7 +36,7 @@ impl Progress {
     /// Starts to watch a run; the time that it has behind it does not count for the rates.
     pub fn new(sim: &Simulation, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let display = match (quiet, terminal) {
+        let display = match (quiet || !speaks(), terminal) {
             (true, _) => Display::Nothing,
             (false, true) => Display::Bar(bar()),
             (false, false) => Display::Lines,

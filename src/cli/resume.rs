@@ -13,6 +13,7 @@ use meshless_engine::simulation::Checkpoint;
 use super::execution::{Execution, How};
 use super::failure::Failure;
 use super::folder;
+use super::ranks::{all_or_none, together};
 use super::scene_file::replacement;
 use super::text::complain;
 
@@ -37,9 +38,19 @@ pub struct Arguments {
 
 /// Goes on from the checkpoint, in the folder it is in.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
-    let Arguments { path, until, scene: moved, set, how } = arguments;
     // Before the checkpoint is read, which takes threads of its own.
-    how.prepare()?;
+    arguments.how.prepare()?;
+    together(|| carry_out(arguments, registry))
+}
+
+fn carry_out(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
+    let how = arguments.how.clone();
+    all_or_none(prepared(arguments, registry))?.carry_out(&how)
+}
+
+/// The run as it was at the checkpoint.
+fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Failure> {
+    let Arguments { path, until, scene: moved, set, .. } = arguments;
     let file = folder::checkpoint(&path)?;
     let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
     let mut source = checkpoint.source();
@@ -73,7 +84,7 @@ pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure>
     let output = OutputOptions { folder, existing: Existing::Replace, resume: true };
     let mut execution = Execution::new(&scene, &source, registry, output)?;
     execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
-    execution.carry_out(&how)
+    Ok(execution)
 }
 
 fn time(text: &str) -> Result<f64, String> {

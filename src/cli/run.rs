@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use meshless_engine::plugin::Registry;
+use meshless_engine::ranks;
 use meshless_engine::record::Existing;
 use meshless_engine::record::OutputOptions;
 
 use super::execution::{Execution, How};
 use super::failure::Failure;
 use super::folder::{FAILED, default_folder};
+use super::ranks::{all_or_none, together};
 use super::scene_file::SceneFile;
 
 /// Run a scene
@@ -29,18 +31,27 @@ pub struct Arguments {
 
 /// Runs the scene.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
-    let Arguments { scene: file, out, force, how } = arguments;
+    arguments.how.prepare()?;
+    together(|| carry_out(arguments, registry))
+}
+
+fn carry_out(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
+    let how = arguments.how.clone();
+    all_or_none(prepared(arguments, registry))?.carry_out(&how)
+}
+
+fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Failure> {
+    let Arguments { scene: file, out, force, .. } = arguments;
     let (scene, source) = file.load()?;
-    how.prepare()?;
     let folder = out.unwrap_or_else(|| default_folder(file.named()));
     let failed = folder.join(FAILED);
     let existing = if force { Existing::Replace } else { Existing::Refuse };
-    let mut execution =
+    let execution =
         Execution::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
-    if failed.exists() {
+    if failed.exists() && ranks::is_first() {
         std::fs::remove_file(&failed).map_err(|error| {
             Failure::Run(format!("`{}` of an earlier run cannot be removed: {error}", failed.display()))
         })?;
     }
-    execution.carry_out(&how)
+    Ok(execution)
 }

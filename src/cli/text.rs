@@ -2,13 +2,30 @@
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// What has kept the lines for the user from being written.
 static UNSAID: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
+/// Whether this process speaks to the user: of several ranks one alone.
+static SPEAKS: AtomicBool = AtomicBool::new(true);
+
+/// Sets whether this process speaks to the user.
+pub fn speak(speaks: bool) {
+    SPEAKS.store(speaks, Ordering::Relaxed);
+}
+
+/// Whether this process speaks to the user.
+pub fn speaks() -> bool {
+    SPEAKS.load(Ordering::Relaxed)
+}
+
 /// Prints lines for the user.
 pub fn say(text: &str) {
+    if !speaks() {
+        return;
+    }
     let mut out = std::io::stdout();
     if let Err(error) = writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush())
         && let Ok(mut unsaid) = UNSAID.lock()
@@ -31,6 +48,9 @@ pub fn in_colour() -> bool {
 
 /// Prints what went wrong or needs a look.
 pub fn complain(text: &str) {
+    if !speaks() {
+        return;
+    }
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
 }
 

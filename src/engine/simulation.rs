@@ -90,6 +90,14 @@ pub enum RunError {
     /// What the run writes could not be written.
     #[error(transparent)]
     Record(#[from] crate::record::RecordError),
+    /// Ranks compute what must be equal, and it is not.
+    #[error(
+        "ranks have different energies after step {step}: a fault of the program, or of a machine; please report it"
+    )]
+    Diverged {
+        /// Number of steps done.
+        step: u64,
+    },
     /// The step has become too small to go on.
     #[error("the time step has fallen to {}, limited by {by}: the run would never finish", quantity(*.dt, "s"))]
     StepTooSmall {
@@ -113,10 +121,19 @@ pub enum RunError {
     },
 }
 
+impl RunError {
+    /// Whether what the run writes could not be written: of several ranks, one alone finds that out.
+    pub fn is_of_output(&self) -> bool {
+        matches!(self, Self::Checkpoint(_) | Self::Record(_) | Self::Step(StepError::Output(_)))
+    }
+}
+
 /// Least step, as a share of the whole duration, of a run whose step shrinks.
 const LEAST_STEP: f64 = 1e-12;
 /// The step of such a run over the first one, at most.
 const SHRUNK: f64 = 1e-3;
+/// Steps between two looks at whether all ranks have the same energies.
+const STEPS_BETWEEN_LOOKS: u64 = 16;
 /// Steps that no run takes.
 const MOST_STEPS: f64 = 1e15;
 
@@ -274,6 +291,7 @@ impl Simulation {
         self.clock.time = if self.ends_here() { self.end } else { self.clock.end() };
         self.clock.step += 1;
         self.ledger.close_step();
+        self.require_equal_ledgers()?;
         self.take_limit();
         self.run_stages(|stage| stage == Stage::Record)?;
         self.checkpoint_if_due()
@@ -326,6 +344,16 @@ impl Simulation {
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
+    }
+
+    /// That all ranks have the same energies.
+    fn require_equal_ledgers(&self) -> Result<(), RunError> {
+        let step = self.clock.step;
+        let is_due = ranks::has_several() && step.is_multiple_of(STEPS_BETWEEN_LOOKS);
+        match !is_due || ranks::agree(self.ledger.balance_error().to_bits()) {
+            true => Ok(()),
+            false => Err(RunError::Diverged { step }),
+        }
     }
 
     /// Takes the limit of the next step; in place, so that a step does not allocate.

@@ -84,6 +84,14 @@ pub fn set_cut(cut: Cut) {
     });
 }
 
+/// Ends all ranks at once, as this one cannot go on and the others do not know; does nothing in a program that runs alone.
+pub fn abort(code: i32) {
+    let ranks = with(|group| Rc::clone(&group.ranks));
+    if let Some(ranks) = ranks {
+        ranks.abort(code);
+    }
+}
+
 /// What this rank has exchanged since it entered.
 pub fn traffic() -> Traffic {
     with(|group| group.traffic).unwrap_or_default()

@@ -14,7 +14,7 @@ mod tree;
 
 pub use cut::Cut;
 pub use exchange::{share, share_bodies, share_some};
-pub use group::{Traffic, agree, any, enter, has_several, is_first, own_blocks, set_cut, traffic};
+pub use group::{Traffic, abort, agree, any, enter, has_several, is_first, own_blocks, set_cut, traffic};
 pub(crate) use tree::{complete, maximal_subtrees};
 
 /// Processes that carry out a run together. Every call is collective: all ranks make the same calls in the same order.

@@ -8,6 +8,8 @@ use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use crate::ranks;
+
 /// What happens to a file that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
@@ -102,13 +104,16 @@ impl WriteError {
 
 /// Writes what `content` produces to `path`, whole or not at all.
 ///
-/// The writer handed to `content` is buffered. On any error the file that was at `path` is untouched and the
+/// Of several ranks the first one alone writes. The writer handed to `content` is buffered. On any error the file that was at `path` is untouched and the
 /// temporary file is gone.
 pub fn write_atomically(
     path: &Path,
     existing: Existing,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
+    if !ranks::is_first() {
+        return Ok(());
+    }
     // Asked before the work as well as at the rename, which alone is free of races.
     if existing == Existing::Refuse && path.exists() {
         return Err(WriteError::Exists { path: path.to_path_buf() });

@@ -9,6 +9,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::atomic::{Existing, WriteError};
+use crate::ranks;
 
 mod read;
 #[cfg(test)]
@@ -86,11 +87,12 @@ pub enum SeriesError {
     Write(#[from] WriteError),
 }
 
-/// Writes a time series, row by row.
+/// Writes a time series, row by row; of several ranks the first one alone.
 #[derive(Debug)]
 pub struct SeriesWriter {
     path: PathBuf,
-    file: File,
+    /// None on a rank that writes no files.
+    file: Option<File>,
     /// Whole rows that the file does not have yet.
     pending: String,
     /// Bytes that the file has.
@@ -108,7 +110,8 @@ impl SeriesWriter {
             Existing::Refuse => options.create_new(true),
             Existing::Replace => options.create(true).truncate(true),
         };
-        let file = options.open(path).map_err(|source| WriteError::new(path, source))?;
+        let open = || options.open(path).map_err(|source| WriteError::new(path, source));
+        let file = ranks::is_first().then(open).transpose()?;
         let mut writer =
             Self { path: path.to_path_buf(), file, pending: header, position: 0, width: columns.len() };
         writer.flush()?;
@@ -119,18 +122,24 @@ impl SeriesWriter {
     /// at the checkpoint; what follows is cut off.
     pub fn resume(path: &Path, columns: &[(&str, &str)], position: u64) -> Result<Self, SeriesError> {
         let expected = header(path, columns)?;
+        let open = || Self::reopen(path, &expected, position);
+        let file = ranks::is_first().then(open).transpose()?;
+        Ok(Self { path: path.to_path_buf(), file, pending: String::new(), position, width: columns.len() })
+    }
+
+    fn reopen(path: &Path, expected: &str, position: u64) -> Result<File, SeriesError> {
         let mut file = OpenOptions::new()
             .read(true)
             .write(true)
             .open(path)
             .map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })?;
-        check_resumable(&mut file, &expected, position)
+        check_resumable(&mut file, expected, position)
             .map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })?
             .map_or(Ok(()), |what| Err(SeriesError::Resume { path: path.to_path_buf(), what }))?;
         file.set_len(position)
             .and_then(|()| file.seek(SeekFrom::Start(position)))
             .map_err(|source| WriteError::new(path, source))?;
-        Ok(Self { path: path.to_path_buf(), file, pending: String::new(), position, width: columns.len() })
+        Ok(file)
     }
 
     /// Adds the row of the time `t` \[s\].
@@ -151,10 +160,12 @@ impl SeriesWriter {
     /// Hands all rows to the operating system: they survive the end of the program, however it comes.
     pub fn flush(&mut self) -> Result<(), SeriesError> {
         let pending = std::mem::take(&mut self.pending);
-        if let Err(source) = self.file.write_all(pending.as_bytes()) {
+        if let Some(file) = &mut self.file
+            && let Err(source) = file.write_all(pending.as_bytes())
+        {
             // A full disk takes part of a row: the file is cut back to what it had, as far as that is possible.
             let back = SeekFrom::Start(self.position);
-            let _ = self.file.set_len(self.position).and_then(|()| self.file.seek(back));
+            let _ = file.set_len(self.position).and_then(|()| file.seek(back));
             return Err(WriteError::new(&self.path, source).into());
         }
         self.position += pending.len() as u64;
@@ -164,7 +175,8 @@ impl SeriesWriter {
     /// Forces all rows to the disk and returns the length of the file in bytes, to be kept in a checkpoint.
     pub fn sync(&mut self) -> Result<u64, SeriesError> {
         self.flush()?;
-        self.file.sync_data().map_err(|source| WriteError::new(&self.path, source))?;
+        let synced = self.file.as_ref().map_or(Ok(()), File::sync_data);
+        synced.map_err(|source| WriteError::new(&self.path, source))?;
         Ok(self.position)
     }
 

@@ -12,6 +12,7 @@ use super::Simulation;
 use super::inputs::Inputs;
 use super::sub_steps::SubStepState;
 use crate::parallel::{have_same_bits, instruction_path};
+use crate::ranks;
 use crate::record::output::OUTPUT;
 use crate::record::{
     Container, ContainerError, ContainerWriter, Existing, RecordError, StateHash, StateHasher,
@@ -133,6 +134,10 @@ impl Simulation {
         let inputs = postcard::to_stdvec(&self.inputs.beside(path, &source.name)).unwrap_or_default();
         let columns = all_columns(self);
         with_columns(&columns, None, &|last| -> Result<(), ContainerError> {
+            // Every rank has taken part in the exchange of the columns; one writes them.
+            if !ranks::is_first() {
+                return Ok(());
+            }
             let mut writer = ContainerWriter::new();
             writer.section(STATE, "header", 1, &bytes)?;
             writer.section(INPUTS, "inputs", 1, &inputs)?;

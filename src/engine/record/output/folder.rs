@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::options::OutputOptions;
+use crate::ranks;
 use crate::record::Existing;
 use crate::scene::Problem;
 
@@ -56,6 +57,9 @@ impl OutputFolder {
     /// # Errors
     /// A file is there, or nothing can be written.
     pub fn prepare(&self, names: &[String]) -> Result<(), Box<Problem>> {
+        if !ranks::is_first() {
+            return Ok(());
+        }
         if self.existing == Existing::Refuse && !self.resume {
             let fixed = [ENERGY, SUMMARY, CHECKPOINT].map(str::to_owned);
             let found = fixed.iter().chain(names).map(|name| self.file(name)).find(|file| file.exists());
@@ -93,6 +97,9 @@ impl OutputFolder {
     /// # Errors
     /// A file cannot be removed.
     pub fn clear(&self) -> std::io::Result<()> {
+        if !ranks::is_first() {
+            return Ok(());
+        }
         self.clear_temporaries()?;
         let mut old = self.all_frames();
         old.extend([CHECKPOINT, SUMMARY].map(|name| self.file(name)));
@@ -104,6 +111,9 @@ impl OutputFolder {
     /// # Errors
     /// A file cannot be removed.
     pub fn clear_temporaries(&self) -> std::io::Result<()> {
+        if !ranks::is_first() {
+            return Ok(());
+        }
         let prefix = format!(".{CHECKPOINT}.");
         let ours = |name: &str| name.starts_with(&prefix) && name.ends_with(".tmp");
         let entries = fs::read_dir(&self.path).into_iter().flatten().flatten();

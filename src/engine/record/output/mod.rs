@@ -9,6 +9,7 @@ mod frames;
 mod options;
 mod plan;
 mod present;
+mod silent;
 mod system;
 mod table;
 mod track;

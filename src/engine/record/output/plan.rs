@@ -7,6 +7,7 @@ use super::due::{Output, OutputParts, SceneInfo};
 use super::folder::{ENERGY, OutputFolder};
 use super::frames::Frames;
 use super::options::OutputOptions;
+use super::silent::of_this_rank;
 use super::system::output_system;
 use super::track::Track;
 use crate::fields::{ChosenField, FieldTable};
@@ -33,6 +34,7 @@ impl OutputPlan {
     /// A field is not there, a selection is empty, and the like; all at once.
     pub fn resolve(sim: &mut SimBuilder<'_>, recorder_items: &[Item]) -> Result<Self, Vec<Problem>> {
         let recorders: Vec<Box<dyn Recorder>> = sim.take_extensions();
+        let recorders: Vec<_> = recorders.into_iter().map(of_this_rank).collect();
         let table = Arc::new(FieldTable::collect(sim));
         let scene = sim.scene();
         let everything = BodySet::new(sim.bodies().iter().map(|body| body.id));

@@ -1,0 +1,99 @@
+//! Commands that several ranks carry out together, started by `mpirun`.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use meshless_engine::ranks;
+use meshless_engine::simulation::RunError;
+
+use super::failure::Failure;
+use super::text::{complain, speak};
+
+/// Where MPI libraries tell a process how many there are, and how many of them on this machine.
+const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"];
+const LOCAL_SIZES: [&str; 2] = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
+
+fn number_in(names: &[&str]) -> Option<usize> {
+    names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
+}
+
+/// Number of processes that have been started together.
+pub fn started() -> usize {
+    number_in(&SIZES).unwrap_or(1)
+}
+
+/// Threads of a rank, where the user does not say: the cores of the machine over the ranks that are on it. None for a program that runs alone.
+pub fn usual_threads() -> Option<usize> {
+    let here = number_in(&LOCAL_SIZES).filter(|_| started() > 1)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    Some((cores / here.max(1)).max(1))
+}
+
+/// Carries a command out as one of the ranks, on a thread of the pool: parallel loops and exchanges begin there.
+pub fn together<T: Send>(command: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+    match started() {
+        1 => command(),
+        size => rayon::scope(|_| on_ranks(size, command)),
+    }
+}
+
+#[cfg(feature = "mpi")]
+fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    let started = mpi_ranks::MpiRanks::start().map_err(|error| Failure::Run(error.to_string()))?;
+    ranks::enter(std::rc::Rc::new(started), || {
+        speak(ranks::is_first());
+        require_equal("program", env!("CARGO_PKG_VERSION"))?;
+        require_equal("instruction path", meshless_engine::parallel::instruction_path())?;
+        command()
+    })
+}
+
+#[cfg(not(feature = "mpi"))]
+fn on_ranks<T>(size: usize, _: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    Err(Failure::Usage(format!(
+        "{size} processes have been started together, and this program is built for one: build it with `--features mpi`"
+    )))
+}
+
+/// Refuses ranks that differ in what must be the same for all of them.
+pub fn require_equal(what: &str, value: &str) -> Result<(), Failure> {
+    let mut hasher = DefaultHasher::new();
+    value.hash(&mut hasher);
+    match ranks::agree(hasher.finish()) {
+        true => Ok(()),
+        false => Err(Failure::Usage(format!("all ranks must have the same {what}"))),
+    }
+}
+
+/// What has been prepared, if all ranks have succeeded. A failure of this rank alone is told by it.
+pub fn all_or_none<T>(prepared: Result<T, Failure>) -> Result<T, Failure> {
+    if !ranks::has_several() || !ranks::any(prepared.is_err()) {
+        return prepared;
+    }
+    let is_common = ranks::agree(prepared.is_err().into());
+    match prepared {
+        Ok(_) => Err(Failure::Run("another rank cannot begin".to_owned())),
+        Err(failure) if !is_common => {
+            speak(true);
+            Err(failure)
+        }
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Ends all ranks where one cannot go on and the others do not know: what it has to write cannot be written.
+pub fn end_if_alone_with(error: &RunError) {
+    if error.is_of_output() && ranks::has_several() {
+        complain(&format!("error: {error}"));
+        ranks::abort(1);
+    }
+}
+
+/// Refuses a command that several processes cannot carry out together.
+pub fn require_one() -> Result<(), Failure> {
+    match started() {
+        1 => Ok(()),
+        size => Err(Failure::Usage(format!(
+            "this command runs in one process, found {size} started together; `run` and `resume` are carried out by several"
+        ))),
+    }
+}
