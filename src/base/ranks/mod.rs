@@ -7,28 +7,14 @@
 //! The engine knows the trait [`Ranks`] alone; a program without several processes has none. As the thread pool of a parallel loop is that of the thread that
 //! begins it, the ranks of an exchange are those that the thread has entered ([`enter`]).
 
+mod collective;
 mod cut;
 mod exchange;
 mod group;
 mod tree;
 
+pub use collective::Ranks;
 pub use cut::Cut;
 pub use exchange::{share, share_bodies, share_some};
 pub use group::{Traffic, abort, agree, any, enter, has_several, is_first, own_blocks, set_cut, traffic};
 pub(crate) use tree::{complete, maximal_subtrees};
-
-/// Processes that carry out a run together. Every call is collective: all ranks make the same calls in the same order.
-pub trait Ranks {
-    /// Number of this rank, from 0.
-    fn rank(&self) -> usize;
-
-    /// Number of ranks.
-    fn size(&self) -> usize;
-
-    /// Gives every rank the part of each: rank r has written the bytes `cuts[r]..cuts[r + 1]`, and afterwards all are there. `cuts` ascends from 0 to the
-    /// number of bytes and is the same on every rank.
-    fn share(&self, bytes: &mut [u8], cuts: &[usize]);
-
-    /// Ends all ranks at once, as one of them cannot go on.
-    fn abort(&self, code: i32) -> !;
-}

@@ -47,14 +47,14 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) pairs: FlowPairs,
     /// The blocks of passes in single precision; none in double precision.
     pub(in crate::formulations::fluid) blocks: Option<Box<Blocks>>,
-    /// Neighbours of fluid particles within the support.
+    /// Neighbours of fluid particles within the support; of those of other ranks, all of their lists.
     pub(in crate::formulations::fluid) near: NearRows,
     /// Fluid neighbours within the support of every particle that is no fluid.
     pub(in crate::formulations::fluid) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(in crate::formulations::fluid) compression: Vec<f64>,
-    /// Whether every fluid particle is within `reach` of a boundary particle.
-    pub(in crate::formulations::fluid) is_close: Vec<bool>,
+    /// Whether every fluid particle is within `reach` of a boundary particle, 1 if so.
+    pub(in crate::formulations::fluid) is_close: Vec<u8>,
     /// Distance within which a fluid particle that a boundary repels has a particle of it, m.
     pub(in crate::formulations::fluid) reach: f64,
     /// Fluid particles that boundaries repel, in the order of rows.

@@ -3,8 +3,10 @@
 //! A third of the pairs of a list is in its skin only. The first pass over a list has the distances in its hands: it writes down who is near,
 //! and the passes after it leave out the rest.
 
+use std::ops::Range;
+
 use crate::neighbors::NeighborList;
-use crate::parallel::{FourLanes, Split};
+use crate::parallel::{FourLanes, Split, own_rows};
 
 /// Rows of neighbours, each in the room that its rows in the lists ask for.
 #[derive(Debug, Default)]
@@ -64,6 +66,29 @@ impl NearRows {
     pub fn row(&self, i: usize) -> &[u32] {
         let start = self.starts[i];
         &self.indices[start..start + self.counts[i] as usize]
+    }
+
+    /// Fills the rows of these bodies that other ranks look at with all that their lists hold, and the bits of each: who asks for neighbours within the support leaves out those beyond.
+    pub fn fill_others<'l>(
+        &mut self,
+        bodies: impl Iterator<Item = Range<usize>>,
+        lists: impl Fn(usize) -> [(&'l [u32], &'l [u8]); 2],
+    ) {
+        for body in bodies {
+            let own = own_rows(&body);
+            for row in (body.start..own.start).chain(own.end..body.end) {
+                let (start, mut used) = (self.starts[row], 0);
+                for (list, bits) in lists(row) {
+                    let place = start + used..start + used + list.len();
+                    self.indices[place.clone()].copy_from_slice(list);
+                    if !bits.is_empty() {
+                        self.lanes[place].copy_from_slice(bits);
+                    }
+                    used += list.len();
+                }
+                self.counts[row] = used as u32;
+            }
+        }
     }
 
     /// All rows, to be written.

@@ -3,12 +3,16 @@
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
 //! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
 
+use std::ops::Range;
+
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{
     BATCH, Batch, FluidKernel, Four, MASKS, Own, as_rows, dot, filled_up,
 };
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{
+    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows_of,
+};
 use crate::schedule::{Run, Step, StepError};
 
 /// Runs the pass.
@@ -34,12 +38,28 @@ impl FlowCloud {
         let (mut near, mut rates) = (std::mem::take(&mut self.near), std::mem::take(&mut self.compression));
         let mut is_close = std::mem::take(&mut self.is_close);
         rates.resize(self.fluid, 0.0);
-        is_close.resize(self.fluid, false);
-        let rows = (&mut rates[..], &mut is_close[..], near.writer());
-        for_each_block(rows, &mut Vec::new(), &|first, (out, is_close, near)| {
-            run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, is_close, near });
-        });
+        is_close.resize(self.fluid, 0);
+        let mut rest = (&mut rates[..], &mut is_close[..], near.writer());
+        for fluid in self.fluids() {
+            let (rows, behind) = rest.split(fluid.len());
+            rest = behind;
+            for_each_own_block(rows, &mut Vec::new(), &|first, (out, is_close, near)| {
+                let first = fluid.start + first;
+                run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, is_close, near });
+            });
+        }
+        share_rows_of(&mut rates, self.fluids());
+        share_rows_of(&mut is_close, self.fluids());
+        let lists = &self.pairs;
+        near.fill_others(self.fluids(), |i| [(lists.fluid.row(i), &[]), (lists.walls.row(i), &[])]);
         (self.near, self.compression, self.is_close) = (near, rates, is_close);
+    }
+}
+
+impl FlowCloud {
+    /// Rows of each fluid.
+    fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
+        self.groups.iter().map(|group| group.cloud.clone()).take_while(|rows| rows.end <= self.fluid)
     }
 }
 
@@ -49,7 +69,7 @@ struct Rows<'a> {
     back: f64,
     first: usize,
     out: &'a mut [f64],
-    is_close: &'a mut [bool],
+    is_close: &'a mut [u8],
     near: NearWriter<'a>,
 }
 
@@ -77,7 +97,7 @@ impl Rows<'_> {
             let walls = lists.walls.row(i);
             let sum = pairs.add::<A, P>(a, walls, (&mut near, &mut batch), sum, Some(&mut least));
             near.close();
-            self.is_close[k] = a.below(least, reach) != 0;
+            self.is_close[k] = (a.below(least, reach) != 0).into();
             *out = a.scale(kernel.weight_scale(), sum).sum();
         }
     }

@@ -117,7 +117,7 @@ impl Repulsion {
             let shortfall = &mut column[group.rows.clone()];
             if self.is_short {
                 let far = shortfall.iter_mut().zip(&cloud.is_close[group.cloud.clone()]);
-                far.filter(|(_, close)| !**close).for_each(|(short, _)| short.0 = 0.0);
+                far.filter(|(_, close)| **close == 0).for_each(|(short, _)| short.0 = 0.0);
             }
             for repelled in out.iter_mut().filter(|repelled| group.cloud.contains(&repelled.i)) {
                 let short = &mut shortfall[repelled.i - group.cloud.start].0;
@@ -137,7 +137,7 @@ impl Run for Repulsion {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let mut repelled = std::mem::take(&mut cloud.repelled);
-        let near = cloud.is_close.iter().enumerate().filter(|(_, close)| **close);
+        let near = cloud.is_close.iter().enumerate().filter(|(_, close)| **close != 0);
         self.close.clear();
         self.close.reserve(cloud.fluid);
         self.close.extend(near.map(|(i, _)| i as u32));

@@ -6,15 +6,6 @@ use crate::formulations::fluid::lists::NearRows;
 use crate::pair::Fastest;
 use crate::parallel::Lanes8;
 
-/// What the pass of the compression finds for a block.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Rates {
-    /// Rates of compression over the weight at r = 0.
-    pub rate: Lanes8,
-    /// A bit for each particle within reach of a boundary.
-    pub is_close: usize,
-}
-
 /// The blocks of a flow, and what their passes read and write.
 pub struct Blocks {
     pub lists: Lists,
@@ -22,8 +13,10 @@ pub struct Blocks {
     pub packed: Vec<Packed>,
     /// Neighbours within the support of any particle of a block.
     pub near: NearRows,
-    /// Rates of compression, and a bit for each lane that is close to a boundary.
-    pub rates: Vec<Rates>,
+    /// Rates of compression over the weight at r = 0.
+    pub rates: Vec<Lanes8>,
+    /// A bit for each particle of a block within reach of a boundary.
+    pub close: Vec<u8>,
     /// What the pass of the force sums for each block.
     pub forces: Vec<Lanes8>,
     /// The largest rates of the pair terms in blocks of the pass.
@@ -41,6 +34,7 @@ impl Blocks {
             packed: Vec::new(),
             near: NearRows::default(),
             rates: Vec::new(),
+            close: Vec::new(),
             forces: Vec::new(),
             fastest: Vec::new(),
             hides,

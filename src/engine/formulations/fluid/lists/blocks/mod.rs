@@ -13,7 +13,7 @@ mod lists;
 mod memory;
 
 pub use lists::{Lists, Sources};
-pub use memory::{Blocks, Rates};
+pub use memory::Blocks;
 pub use record::{Other, Own, Packed, Units, dot, pack, pack_states};
 pub use seen::SEEN;
 pub use sums::BlockSums;

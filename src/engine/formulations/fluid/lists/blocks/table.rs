@@ -116,6 +116,11 @@ impl Table {
     pub fn of_fluid(&self, n: usize) -> std::ops::Range<usize> {
         (if n == 0 { 0 } else { self.ends[n - 1] })..self.ends[n]
     }
+
+    /// The blocks of each fluid.
+    pub fn fluids(&self) -> impl Iterator<Item = std::ops::Range<usize>> + Clone {
+        (0..self.ends.len()).map(|n| self.of_fluid(n))
+    }
 }
 
 /// Halves points until eight are left, in a box of edges up to `limit`, m.

@@ -2,16 +2,19 @@
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, Rates, SEEN, dot, pack};
+use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, SEEN, dot, pack};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
-use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_block, run_blocks_on};
+use crate::parallel::{
+    BlockLoop, EightLanes, Lanes8, Split, for_each_block, for_each_own_block, run_blocks_on, share_rows_of,
+};
 
 impl FlowCloud {
     /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
     pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
-        let Blocks { lists, units, packed, near, rates, hides, .. } = blocks;
+        let Blocks { lists, units, packed, near, rates, close, hides, .. } = blocks;
         pack(packed, &self.records, units);
-        rates.resize(lists.table.rows.len(), Rates::default());
+        rates.resize(lists.table.rows.len(), Lanes8::ZERO);
+        close.resize(lists.table.rows.len(), 0);
         let pass = Compress {
             packed,
             lists,
@@ -22,23 +25,28 @@ impl FlowCloud {
             least: self.kernel.least_square(),
             plane: self.plane,
         };
-        let rows = (&mut rates[..], near.writer());
+        let rows = (&mut rates[..], &mut close[..], near.writer());
         if *hides {
             self.kernel.run(AllBlocks::<true> { pass, rows });
         } else {
             self.kernel.run(AllBlocks::<false> { pass, rows });
         }
+        share_rows_of(rates, lists.table.fluids());
+        share_rows_of(close, lists.table.fluids());
+        near.fill_others(lists.table.fluids(), |block| {
+            let seen = if *hides { lists.seen(block) } else { Default::default() };
+            [(lists.fluid.row(block), seen.0), (lists.walls.row(block), seen.1)]
+        });
         let factor = self.kernel.weight_scale();
-        let (rates, table) = (&blocks.rates, &lists.table);
+        let (rates, close, table) = (&*rates, &*close, &lists.table);
         self.compression.resize(self.fluid, 0.0);
-        self.is_close.resize(self.fluid, false);
+        self.is_close.resize(self.fluid, 0);
         let rows = (&mut self.compression[..], &mut self.is_close[..]);
-        for_each_block(rows, &mut Vec::new(), &|first, (rate, is_close): (&mut [f64], &mut [bool])| {
+        for_each_block(rows, &mut Vec::new(), &|first, (rate, is_close): (&mut [f64], &mut [u8])| {
             for (k, (rate, is_close)) in rate.iter_mut().zip(is_close).enumerate() {
                 let (block, lane) = table.place(first + k);
-                let of_block = &rates[block];
-                *rate = factor * f64::from(of_block.rate.0[lane]);
-                *is_close = of_block.is_close >> lane & 1 == 1;
+                *rate = factor * f64::from(rates[block].0[lane]);
+                *is_close = close[block] >> lane & 1;
             }
         });
         if blocks.hides {
@@ -69,17 +77,26 @@ struct Compress<'a> {
 /// `HIDDEN`: where some particles do not see what is near them; those who do get a bit each.
 struct AllBlocks<'a, const HIDDEN: bool> {
     pass: Compress<'a>,
-    rows: (&'a mut [Rates], NearWriter<'a>),
+    rows: BlockRows<'a>,
 }
+
+/// Rates of compression, bits of the particles close to a boundary, and neighbours, of some blocks.
+type BlockRows<'a> = (&'a mut [Lanes8], &'a mut [u8], NearWriter<'a>);
 
 impl<const HIDDEN: bool> KernelLoop for AllBlocks<'_, HIDDEN> {
     type Output = ();
 
     fn run<K: PairShape>(self, kernel: K) {
         let Self { pass, rows } = self;
-        for_each_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Rates], NearWriter<'_>)| {
-            run_blocks_on(pass.plane, SomeBlocks::<K, HIDDEN> { pass, kernel, first, out, near });
-        });
+        let mut rest = rows;
+        for fluid in pass.lists.table.fluids() {
+            let (rows, behind) = rest.split(fluid.len());
+            rest = behind;
+            for_each_own_block(rows, &mut Vec::new(), &|first, rows: BlockRows<'_>| {
+                let first = fluid.start + first;
+                run_blocks_on(pass.plane, SomeBlocks::<K, HIDDEN> { pass, kernel, first, rows });
+            });
+        }
     }
 }
 
@@ -87,8 +104,7 @@ struct SomeBlocks<'a, K, const HIDDEN: bool> {
     pass: Compress<'a>,
     kernel: K,
     first: usize,
-    out: &'a mut [Rates],
-    near: NearWriter<'a>,
+    rows: BlockRows<'a>,
 }
 
 impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
@@ -96,11 +112,11 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Self { pass, kernel, first, out, near: mut writer } = self;
+        let Self { pass, kernel, first, rows: (rates, close, mut writer) } = self;
         let Compress { packed, lists, unit, back, reach, limit, least: smallest, .. } = pass;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let (back, limit, smallest) = (a.splat(back), a.splat(limit), a.splat(smallest));
-        for (k, out) in out.iter_mut().enumerate() {
+        for (k, (rate, close)) in rates.iter_mut().zip(close).enumerate() {
             let block = first + k;
             let mut near = writer.row(k);
             let mut least = a.splat(f64::INFINITY);
@@ -124,7 +140,7 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
                 }
             }
             near.close();
-            *out = Rates { rate: sums.sum, is_close: a.below(least, a.splat(reach)) };
+            (*rate, *close) = (sums.sum, a.below(least, a.splat(reach)) as u8);
         }
     }
 }
