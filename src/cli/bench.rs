@@ -18,7 +18,7 @@ use meshless_engine::plugin::Registry;
 use super::execution::take_instructions;
 use super::failure::Failure;
 use super::text::say;
-use measure::Measurement;
+use measure::{Measurement, SetUp};
 use work::{WORKS, Work};
 
 /// Measure the speed on benchmark cases: particle-steps/s, pairs/s, memory, share of each system
@@ -33,6 +33,9 @@ pub struct Arguments {
     /// Numbers of threads
     #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Vec<u16>,
+    /// Numbers of ranks, processes started by `mpirun`
+    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    ranks: Vec<u16>,
     /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
     #[arg(long, value_name = "PATH")]
     instructions: Option<String>,
@@ -48,6 +51,14 @@ pub struct Arguments {
     /// Print one JSON object for each measurement, in place of tables
     #[arg(long)]
     json: bool,
+    /// Measure in this process, not in one of its own for each measurement
+    #[arg(long, hide = true)]
+    here: bool,
+}
+
+/// All pairs of the two.
+fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
+    ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)))
 }
 
 fn count(text: &str) -> Result<usize, String> {
@@ -81,15 +92,14 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     if !arguments.json {
         say(&report::heading(&machine::describe()));
     }
-    let alone = works.len() * arguments.particles.len() * arguments.threads.len() == 1;
+    let least = Duration::from_secs_f64(arguments.seconds);
     for &particles in &arguments.particles {
         for work in &works {
-            for &threads in &arguments.threads {
-                let least = Duration::from_secs_f64(arguments.seconds);
-                let measurement = if alone {
-                    Measurement::take(work, particles, threads, least, registry)?
-                } else {
-                    apart::take(work, particles, threads, least, instructions)?
+            for (ranks, threads) in pairs(&arguments.ranks, &arguments.threads) {
+                let set_up = SetUp { work, particles, ranks, threads, least };
+                let measurement = match arguments.here {
+                    true => Measurement::take(&set_up, registry)?,
+                    false => apart::take(&set_up, instructions)?,
                 };
                 say(&if arguments.json {
                     report::json(&measurement)?

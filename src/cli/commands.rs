@@ -45,7 +45,7 @@ exit codes: 0 success, 1 the run failed or a file could not be read or written, 
 
 impl Command {
     fn execute(self, registry: &Registry) -> Result<(), Failure> {
-        if !matches!(self, Self::Run(_) | Self::Resume(_)) {
+        if !matches!(self, Self::Run(_) | Self::Resume(_) | Self::Bench(_)) {
             ranks::require_one()?;
         }
         match self {
@@ -69,6 +69,7 @@ impl Command {
 
 /// Runs the program with the arguments it was started with: the whole `main` of a program that scenes are run with.
 pub fn run(registry: Registry) -> ExitCode {
+    ranks::let_the_first_speak();
     let command = match CommandLine::try_parse() {
         Ok(line) => line.command,
         Err(error) => {
@@ -94,7 +95,7 @@ fn ended(done: Result<(), Failure>) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report();
-            failure.exit_code()
+            ExitCode::from(failure.code())
         }
     }
 }

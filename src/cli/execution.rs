@@ -112,8 +112,11 @@ impl Execution {
                     progress.steps(&self.sim),
                     &self.sim.state_hash(),
                 ));
-                if speaks() {
-                    say(&self.files()?);
+                // What lies there is a help to the user; a folder that cannot be listed is no failure of the run.
+                if speaks()
+                    && let Ok(files) = self.files()
+                {
+                    say(&files);
                 }
             }
             if how.profile {

@@ -1,7 +1,5 @@
 //! How a command fails, and the exit code of each way.
 
-use std::process::ExitCode;
-
 #[cfg(feature = "rerun")]
 use meshless_engine::record::WriteError;
 use meshless_engine::scene::SceneError;
@@ -22,6 +20,9 @@ pub enum Failure {
     /// The run failed, or a file could not be read or written. Exit code 1.
     #[error("error: {0}")]
     Run(String),
+    /// One of several ranks has told the user already. The exit code of what it told.
+    #[error("the run has failed")]
+    Told(u8),
     /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that was ended by it.
     #[error("the run was interrupted")]
     Interrupted(u8),
@@ -30,6 +31,7 @@ pub enum Failure {
 impl Failure {
     pub(super) fn report(&self) {
         match self {
+            Self::Told(_) => {}
             Self::Scene(error) if in_colour() => complain(&error.styled()),
             Self::Usage(text) | Self::Run(text) if in_colour() => {
                 complain(&format!("\u{1b}[1;31merror\u{1b}[0m: {text}"));
@@ -38,12 +40,14 @@ impl Failure {
         }
     }
 
-    pub(super) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    /// Its exit code.
+    pub(super) fn code(&self) -> u8 {
+        match self {
             Self::Scene(_) | Self::Usage(_) => 2,
             Self::Run(_) => 1,
+            Self::Told(code) => *code,
             Self::Interrupted(signal) => exit_code(*signal),
-        })
+        }
     }
 }
 

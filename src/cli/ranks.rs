@@ -8,12 +8,18 @@ use meshless_engine::simulation::RunError;
 use super::failure::Failure;
 use super::text::{complain, speak};
 
-/// Where MPI libraries tell a process how many there are, and how many of them on this machine.
+/// Where MPI libraries tell a process how many there are, its number, and how many are on its machine.
 const SIZES: [&str; 3] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"];
+const NUMBERS: [&str; 2] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK"];
 const LOCAL_SIZES: [&str; 2] = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
 
 fn number_in(names: &[&str]) -> Option<usize> {
     names.iter().find_map(|name| std::env::var(name).ok()?.parse().ok())
+}
+
+/// Leaves it to the first of several processes to speak to the user.
+pub fn let_the_first_speak() {
+    speak(number_in(&NUMBERS).unwrap_or(0) == 0);
 }
 
 /// Number of processes that have been started together.
@@ -41,9 +47,15 @@ fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, Failure>) -> Result
     let started = mpi_ranks::MpiRanks::start().map_err(|error| Failure::Run(error.to_string()))?;
     ranks::enter(std::rc::Rc::new(started), || {
         speak(ranks::is_first());
-        require_equal("program", env!("CARGO_PKG_VERSION"))?;
-        require_equal("instruction path", meshless_engine::parallel::instruction_path())?;
-        command()
+        let done = require_equal("program", env!("CARGO_PKG_VERSION"))
+            .and_then(|()| require_equal("instruction path", meshless_engine::parallel::instruction_path()))
+            .and_then(|()| command());
+        // As soon as one process ends with an error, `mpirun` ends the others, which may not have told theirs yet.
+        done.map_err(|failure| {
+            failure.report();
+            ranks::any(true);
+            Failure::Told(failure.code())
+        })
     })
 }
 

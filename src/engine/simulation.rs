@@ -132,6 +132,8 @@ impl RunError {
 const LEAST_STEP: f64 = 1e-12;
 /// The step of such a run over the first one, at most.
 const SHRUNK: f64 = 1e-3;
+/// Steps between two looks at whether ranks are ready together.
+const STEPS_BETWEEN_CUTS: u64 = 50;
 /// Steps between two looks at whether all ranks have the same energies.
 const STEPS_BETWEEN_LOOKS: u64 = 16;
 /// Steps that no run takes.
@@ -284,6 +286,7 @@ impl Simulation {
 
     fn try_step(&mut self) -> Result<(), RunError> {
         self.start()?;
+        self.balance_ranks();
         self.clock.dt = self.choose_step()?;
         self.run_stages(|stage| stage <= Stage::InitialIntegrate)?;
         self.run_short_steps()?;
@@ -344,6 +347,16 @@ impl Simulation {
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
+    }
+
+    /// Divides loops anew where some ranks are ready long before others.
+    fn balance_ranks(&mut self) {
+        if ranks::has_several()
+            && self.clock.step.is_multiple_of(STEPS_BETWEEN_CUTS)
+            && let Some(cut) = ranks::balanced_cut()
+        {
+            self.set_cut(cut);
+        }
     }
 
     /// That all ranks have the same energies.

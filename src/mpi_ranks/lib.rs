@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use meshless_base::ranks::Ranks;
 use mpi::Threading;
-use mpi::datatype::PartitionMut;
+use mpi::datatype::{Partition, PartitionMut};
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives};
@@ -54,12 +54,16 @@ impl MpiRanks {
         let mut own = self.own.borrow_mut();
         own.clear();
         own.extend_from_slice(&bytes[start..end]);
-        let count = |n: usize| i32::try_from(n).unwrap_or(i32::MAX);
         let counts: Vec<i32> = cuts.windows(2).map(|pair| count(pair[1] - pair[0])).collect();
         let places: Vec<i32> = cuts[..self.size()].iter().map(|&cut| count(cut)).collect();
         let mut all = PartitionMut::new(bytes, counts, places);
         self.world.all_gather_varcount_into(&own[..], &mut all);
     }
+}
+
+/// A number of bytes as MPI counts; those of one exchange are below [`MOST`].
+fn count(bytes: usize) -> i32 {
+    i32::try_from(bytes).unwrap_or(i32::MAX)
 }
 
 impl Ranks for MpiRanks {
@@ -96,6 +100,15 @@ impl Ranks for MpiRanks {
                 bytes[part(rank)].copy_from_slice(&round[of_round[rank]..of_round[rank + 1]]);
             }
         }
+    }
+
+    fn exchange(&self, sent: (&[u8], &[usize]), received: (&mut [u8], &[usize])) {
+        let counts =
+            |cuts: &[usize]| cuts.windows(2).map(|pair| count(pair[1] - pair[0])).collect::<Vec<i32>>();
+        let places = |cuts: &[usize]| cuts[..self.size()].iter().map(|&cut| count(cut)).collect::<Vec<i32>>();
+        let out = Partition::new(sent.0, counts(sent.1), places(sent.1));
+        let mut into = PartitionMut::new(received.0, counts(received.1), places(received.1));
+        self.world.all_to_all_varcount_into(&out, &mut into);
     }
 
     fn abort(&self, code: i32) -> ! {

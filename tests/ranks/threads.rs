@@ -19,15 +19,22 @@ struct Table {
 /// An exchange in two rounds: all have put down their parts, all have taken those of the others.
 struct State {
     parts: Vec<Vec<u8>>,
-    /// Cuts of the first one that has come.
+    /// Cuts of the first one that has come, and those of each.
     cuts: Vec<usize>,
+    cuts_of: Vec<Vec<usize>>,
     arrived: usize,
     round: u64,
 }
 
 impl Table {
     fn of(size: usize) -> Self {
-        let state = State { parts: vec![Vec::new(); size], cuts: Vec::new(), arrived: 0, round: 0 };
+        let state = State {
+            parts: vec![Vec::new(); size],
+            cuts: Vec::new(),
+            cuts_of: vec![Vec::new(); size],
+            arrived: 0,
+            round: 0,
+        };
         Self { state: Mutex::new(state), changed: Condvar::new() }
     }
 
@@ -79,6 +86,22 @@ impl Ranks for Thread {
         self.table.meet(self.size, self.rank, |state| {
             for (rank, part) in state.parts.iter().enumerate().filter(|(rank, _)| *rank != self.rank) {
                 bytes[cuts[rank]..cuts[rank + 1]].copy_from_slice(part);
+            }
+        });
+    }
+
+    fn exchange(&self, (sent, cuts): (&[u8], &[usize]), (received, places): (&mut [u8], &[usize])) {
+        assert_eq!((cuts.len(), places.len()), (self.size + 1, self.size + 1));
+        self.table.meet(self.size, self.rank, |state| {
+            state.parts[self.rank].clear();
+            state.parts[self.rank].extend_from_slice(sent);
+            state.cuts_of[self.rank] = cuts.to_vec();
+        });
+        self.table.meet(self.size, self.rank, |state| {
+            for rank in 0..self.size {
+                let from = &state.cuts_of[rank];
+                let part = &state.parts[rank][from[self.rank]..from[self.rank + 1]];
+                received[places[rank]..places[rank + 1]].copy_from_slice(part);
             }
         });
     }

@@ -85,12 +85,14 @@ fn sum_of_own<S: Split, R: BlockSum + Pod>(
     let own = ranks::own_blocks(count);
     let mut rest = Some(rows.split((own.start * BLOCK).min(len)).1);
     let mut sums: Vec<R> = Vec::new();
-    ranks::maximal_subtrees(0..count, &own, &mut |blocks| {
-        let Some(rows) = rest.take() else { return };
-        let (part, behind) = rows.split((blocks.end * BLOCK).min(len) - blocks.start * BLOCK);
-        rest = Some(behind);
-        let per_task = blocks_of_task(per_task, blocks.len());
-        sums.push(divide_and_sum(per_task, blocks.start * BLOCK, blocks.len(), part, body));
+    ranks::work(|| {
+        ranks::maximal_subtrees(0..count, &own, &mut |blocks| {
+            let Some(rows) = rest.take() else { return };
+            let (part, behind) = rows.split((blocks.end * BLOCK).min(len) - blocks.start * BLOCK);
+            rest = Some(behind);
+            let per_task = blocks_of_task(per_task, blocks.len());
+            sums.push(divide_and_sum(per_task, blocks.start * BLOCK, blocks.len(), part, body));
+        })
     });
     ranks::complete(count, &sums, &|sum: &mut R, next| sum.add(next))
 }

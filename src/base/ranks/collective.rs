@@ -12,6 +12,9 @@ pub trait Ranks {
     /// number of bytes and is the same on every rank.
     fn share(&self, bytes: &mut [u8], cuts: &[usize]);
 
+    /// Sends each rank a part and receives one from each: `sent[cuts[r]..cuts[r + 1]]` goes to rank r, and of `received` the part of rank r is filled by it.
+    fn exchange(&self, sent: (&[u8], &[usize]), received: (&mut [u8], &[usize]));
+
     /// Ends all ranks at once, as one of them cannot go on.
     fn abort(&self, code: i32) -> !;
 }

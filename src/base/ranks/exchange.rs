@@ -30,12 +30,6 @@ pub fn share_bodies(
     });
 }
 
-/// Rows of rank `rank`, counted from the first of a body of `len` rows.
-fn part(group: &Group, rank: usize, len: usize, block: usize) -> Range<usize> {
-    let blocks = group.cut.blocks(rank, len.div_ceil(block));
-    (blocks.start * block).min(len)..(blocks.end * block).min(len)
-}
-
 /// Exchanges values of some rows of a body of `len` rows, of which every rank has computed those in its blocks: `end` gives the number of values before a
 /// row of the body.
 pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl Fn(usize) -> usize) {
@@ -44,9 +38,9 @@ pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl 
         cuts.clear();
         cuts.push(0);
         cuts.extend(
-            (0..group.ranks.size()).map(|rank| end(part(group, rank, len, block).end) * size_of::<T>()),
+            (0..group.ranks.size()).map(|rank| end(group.part(rank, len, block).end) * size_of::<T>()),
         );
-        run(group, bytemuck::cast_slice_mut(values), &cuts);
+        group.share(bytemuck::cast_slice_mut(values), &cuts);
         group.cuts = cuts;
     });
 }
@@ -56,8 +50,8 @@ fn of_one_body(group: &mut Group, bytes: &mut [u8], size: usize, block: usize) {
     let mut cuts = std::mem::take(&mut group.cuts);
     cuts.clear();
     cuts.push(0);
-    cuts.extend((0..group.ranks.size()).map(|rank| part(group, rank, len, block).end * size));
-    run(group, bytes, &cuts);
+    cuts.extend((0..group.ranks.size()).map(|rank| group.part(rank, len, block).end * size));
+    group.share(bytes, &cuts);
     group.cuts = cuts;
 }
 
@@ -73,14 +67,14 @@ fn of_several_bodies(
     parts.clear();
     cuts.push(0);
     let place = |group: &Group, rank: usize, body: &Range<usize>| {
-        let part = part(group, rank, body.len(), block);
+        let part = group.part(rank, body.len(), block);
         (body.start + part.start) * size..(body.start + part.end) * size
     };
     for rank in 0..group.ranks.size() {
         bodies.clone().for_each(|body| parts.extend_from_slice(&bytes[place(group, rank, &body)]));
         cuts.push(parts.len());
     }
-    run(group, &mut parts, &cuts);
+    group.share(&mut parts, &cuts);
     let mut rest = &parts[..];
     for rank in 0..group.ranks.size() {
         for body in bodies.clone() {
@@ -91,12 +85,4 @@ fn of_several_bodies(
         }
     }
     (group.cuts, group.parts) = (cuts, parts);
-}
-
-/// Carries out one exchange.
-pub(super) fn run(group: &mut Group, bytes: &mut [u8], cuts: &[usize]) {
-    let rank = group.ranks.rank();
-    group.traffic.exchanges += 1;
-    group.traffic.bytes += (bytes.len() - (cuts[rank + 1] - cuts[rank])) as u64;
-    group.ranks.share(bytes, cuts);
 }

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 use std::rc::Rc;
+use std::time::Instant;
 
 use super::{Cut, Ranks};
 
@@ -19,10 +20,36 @@ pub(super) struct Group {
     pub ranks: Rc<dyn Ranks>,
     pub cut: Cut,
     pub traffic: Traffic,
-    /// Memory in which parts are put together.
+    /// Time spent in loops that are divided since the last look at it, s.
+    pub busy: f64,
+    /// Memory in which parts are put together, and in which others arrive.
     pub parts: Vec<u8>,
+    pub received: Vec<u8>,
     /// Memory of bounds.
     pub cuts: Vec<usize>,
+}
+
+impl Group {
+    /// Rows of rank `rank`, counted from the first of a body of `len` rows, in blocks of `block`.
+    pub fn part(&self, rank: usize, len: usize, block: usize) -> Range<usize> {
+        let blocks = self.cut.blocks(rank, len.div_ceil(block));
+        (blocks.start * block).min(len)..(blocks.end * block).min(len)
+    }
+
+    /// [`Ranks::share`], counted.
+    pub fn share(&mut self, bytes: &mut [u8], cuts: &[usize]) {
+        let rank = self.ranks.rank();
+        self.traffic.exchanges += 1;
+        self.traffic.bytes += (bytes.len() - (cuts[rank + 1] - cuts[rank])) as u64;
+        self.ranks.share(bytes, cuts);
+    }
+
+    /// [`Ranks::exchange`], counted.
+    pub fn exchange(&mut self, sent: (&[u8], &[usize]), received: (&mut [u8], &[usize])) {
+        self.traffic.exchanges += 1;
+        self.traffic.bytes += received.0.len() as u64;
+        self.ranks.exchange(sent, received);
+    }
 }
 
 thread_local! {
@@ -46,7 +73,9 @@ pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
         ranks,
         cut,
         traffic: Traffic::default(),
+        busy: 0.0,
         parts: Vec::new(),
+        received: Vec::new(),
         cuts: Vec::new(),
     }));
     let _leave = Leave;
@@ -71,6 +100,22 @@ pub fn is_first() -> bool {
 /// The blocks of a loop over `count` of them that this rank computes.
 pub fn own_blocks(count: usize) -> Range<usize> {
     with(|group| group.cut.blocks(group.ranks.rank(), count)).unwrap_or(0..count)
+}
+
+/// Runs a part of a divided loop, and counts the time that this rank spends in it.
+pub(crate) fn work<T>(f: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let done = f();
+    with(|group| group.busy += begun.elapsed().as_secs_f64());
+    done
+}
+
+/// A cut by which all ranks would be ready together, from the time that each has spent in divided loops since this was asked last; none where they nearly are.
+/// It is the same on all ranks.
+pub fn balanced_cut() -> Option<Cut> {
+    let busy = with(|group| std::mem::take(&mut group.busy))?;
+    let seconds: Vec<f64> = gather(busy.to_bits()).into_iter().map(f64::from_bits).collect();
+    with(|group| group.cut.balanced(&seconds))?
 }
 
 /// Divides loops anew, between two steps, with the same cut on all ranks.
@@ -104,9 +149,7 @@ fn gather(value: u64) -> Vec<u64> {
         let mut values = vec![0_u64; size];
         values[rank] = value;
         let cuts: Vec<usize> = (0..=size).map(|k| 8 * k).collect();
-        group.traffic.exchanges += 1;
-        group.traffic.bytes += 8 * (size as u64 - 1);
-        group.ranks.share(bytemuck::cast_slice_mut(&mut values), &cuts);
+        group.share(bytemuck::cast_slice_mut(&mut values), &cuts);
         values
     });
     values.unwrap_or_else(|| vec![value])

@@ -11,10 +11,15 @@ mod collective;
 mod cut;
 mod exchange;
 mod group;
+mod halo;
 mod tree;
 
 pub use collective::Ranks;
 pub use cut::Cut;
 pub use exchange::{share, share_bodies, share_some};
-pub use group::{Traffic, abort, agree, any, enter, has_several, is_first, own_blocks, set_cut, traffic};
+pub(crate) use group::work;
+pub use group::{
+    Traffic, abort, agree, any, balanced_cut, enter, has_several, is_first, own_blocks, set_cut, traffic,
+};
+pub use halo::Halo;
 pub(crate) use tree::{complete, maximal_subtrees};

@@ -7,7 +7,6 @@ use std::ops::Range;
 
 use bytemuck::Pod;
 
-use super::exchange::run;
 use super::group;
 
 /// Calls `f` with the blocks of each of the largest subtrees of a tree over the blocks `node` that lie in the range `own`, ascending.
@@ -40,7 +39,7 @@ pub(crate) fn complete<R: Pod + Default>(count: usize, own: &[R], add: &impl Fn(
         let mut sums = vec![R::zeroed(); cuts[size] / size_of::<R>()];
         let first = cuts[group.ranks.rank()] / size_of::<R>();
         sums[first..first + own.len()].copy_from_slice(own);
-        run(group, bytemuck::cast_slice_mut(&mut sums), &cuts);
+        group.share(bytemuck::cast_slice_mut(&mut sums), &cuts);
         let mut next: Vec<usize> = cuts.iter().map(|cut| cut / size_of::<R>()).collect();
         sum_of(0..count, &ranges, &sums, &mut next, add)
     });

@@ -1,25 +1,27 @@
 //! A measurement in a process of its own: its memory is its own, and no earlier work has shaped the heap.
 
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use super::super::failure::Failure;
-use super::measure::Measurement;
-use super::work::Work;
+use super::measure::{Measurement, SetUp};
 
-/// Calls this program with the one work and reads what it measures.
-pub fn take(
-    work: &Work,
-    particles: usize,
-    threads: u16,
-    least: Duration,
-    instructions: Option<&str>,
-) -> Result<Measurement, Failure> {
+/// Calls this program with the one set-up and reads what it measures.
+pub fn take(set_up: &SetUp<'_>, instructions: Option<&str>) -> Result<Measurement, Failure> {
+    let SetUp { work, particles, ranks, threads, least } = *set_up;
     let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
     let program = std::env::current_exe().map_err(|error| failed(&error))?;
-    let output = Command::new(program)
-        .args(["bench", work.name, "--json"])
+    let mut command = match ranks {
+        1 => Command::new(program),
+        _ => {
+            let mut command = Command::new("mpirun");
+            command.args(["-n", &ranks.to_string()]).arg(program);
+            command
+        }
+    };
+    let output = command
+        .args(["bench", work.name, "--json", "--here"])
         .args(["--particles", &particles.to_string()])
+        .args(["--ranks", &ranks.to_string()])
         .args(["--threads", &threads.to_string()])
         .args(["--seconds", &least.as_secs_f64().to_string()])
         .args(instructions.map(|path| format!("--instructions={path}")))

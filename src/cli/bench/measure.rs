@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use meshless_engine::plugin::Registry;
+use meshless_engine::ranks;
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::BodyId;
 use serde::{Deserialize, Serialize};
@@ -10,11 +11,27 @@ use serde::{Deserialize, Serialize};
 use super::super::failure::Failure;
 use super::super::memory::{processor_seconds, resident_bytes};
 use super::super::neighbors::Neighbors;
+use super::super::ranks::together;
 use super::machine;
 use super::work::Work;
 
 /// Steps before the clock starts: lists and buffers have their size then.
 const WARM_UP: u64 = 3;
+
+/// What is to be measured.
+#[derive(Clone, Copy)]
+pub struct SetUp<'a> {
+    /// The work.
+    pub work: &'a Work,
+    /// Number of particles, approximately.
+    pub particles: usize,
+    /// Ranks.
+    pub ranks: u16,
+    /// Threads of each.
+    pub threads: u16,
+    /// Wall time to be filled.
+    pub least: Duration,
+}
 
 /// What was measured.
 #[derive(Serialize, Deserialize)]
@@ -25,6 +42,8 @@ pub struct Measurement {
     pub particles: usize,
     /// Mean number of neighbours.
     pub neighbors: f64,
+    /// Ranks, each with that many threads.
+    pub ranks: u16,
     /// Threads.
     pub threads: u16,
     /// Steps that were timed.
@@ -40,6 +59,10 @@ pub struct Measurement {
     pub directed_pairs_per_second: f64,
     /// Growth of the program while it was built, over particles, B; none where the system does not tell.
     pub bytes_per_particle: Option<f64>,
+    /// Exchanges with other ranks in a step.
+    pub exchanges_per_step: f64,
+    /// What a rank receives in a step, B.
+    pub bytes_per_step: f64,
     /// From the scene to the end of the first step, s.
     pub first_step_after: f64,
     /// Time of every system, in the order of the step, s.
@@ -59,25 +82,15 @@ pub struct System {
 
 impl Measurement {
     /// Builds the work and times its steps.
-    pub fn take(
-        work: &Work,
-        particles: usize,
-        threads: u16,
-        least: Duration,
-        registry: &Registry,
-    ) -> Result<Self, Failure> {
+    pub fn take(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
+        let threads = set_up.threads;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
         let pool = pool.map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))?;
-        pool.install(|| Self::take_here(work, particles, threads, least, registry))
+        pool.install(|| together(|| Self::take_here(set_up, registry)))
     }
 
-    fn take_here(
-        work: &Work,
-        particles: usize,
-        threads: u16,
-        least: Duration,
-        registry: &Registry,
-    ) -> Result<Self, Failure> {
+    fn take_here(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
+        let SetUp { work, particles, ranks, threads, least } = *set_up;
         let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
         let before = resident_bytes();
         let begun = Instant::now();
@@ -90,21 +103,24 @@ impl Measurement {
             sim.step().map_err(|error| failed(&error))?;
         }
         let (first, timers) = (sim.clock().step, timers(&sim));
-        let processor = processor_seconds();
+        let (processor, traffic) = (processor_seconds(), ranks::traffic());
         let begun = Instant::now();
-        while begun.elapsed() < least || sim.clock().step == first {
+        while ranks::any(begun.elapsed() < least) || sim.clock().step == first {
             sim.step().map_err(|error| failed(&error))?;
         }
         let seconds = begun.elapsed().as_secs_f64();
         let spent = processor.zip(processor_seconds()).map(|(before, after)| after - before);
         let (particles, neighbors) = moving(&sim)?;
         let steps = sim.clock().step - first;
+        let now = ranks::traffic();
+        let per_step = |before: u64, now: u64| (now - before) as f64 / steps as f64;
         let rate = particles as f64 * steps as f64 / seconds;
         let grown = before.zip(after).map(|(before, after)| after.saturating_sub(before) as f64);
         Ok(Self {
             work: work.name.to_owned(),
             particles,
             neighbors,
+            ranks,
             threads,
             steps,
             seconds,
@@ -112,6 +128,8 @@ impl Measurement {
             particle_steps_per_second: rate,
             directed_pairs_per_second: rate * neighbors,
             bytes_per_particle: grown.map(|grown| grown / particles.max(1) as f64),
+            exchanges_per_step: per_step(traffic.exchanges, now.exchanges),
+            bytes_per_step: per_step(traffic.bytes, now.bytes),
             first_step_after,
             systems: since(timers, &sim),
             machine: machine::describe(),

@@ -17,12 +17,13 @@ pub fn list(works: &[&Work]) -> String {
 pub fn heading(machine: &Machine) -> String {
     format!(
         "{}, {}, meshless {}\n\
-         {:<14} {:>10} {:>8} {:>8} {:>12} {:>14} {:>6} {:>12} {:>11}",
+         {:<14} {:>10} {:>5} {:>7} {:>8} {:>12} {:>14} {:>6} {:>12} {:>11} {:>14}",
         machine.processor,
         machine.instruction_path,
         machine.version,
         "work",
         "particles",
+        "ranks",
         "threads",
         "neighb.",
         "M p-steps/s",
@@ -30,6 +31,7 @@ pub fn heading(machine: &Machine) -> String {
         "busy",
         "B/particle",
         "1st step s",
+        "MB exchanged",
     )
 }
 
@@ -37,10 +39,16 @@ pub fn heading(machine: &Machine) -> String {
 pub fn text(measured: &Measurement, profile: bool) -> String {
     let bytes = measured.bytes_per_particle.map_or_else(|| "-".to_owned(), |bytes| format!("{bytes:.0}"));
     let busy = measured.busy.map_or_else(|| "-".to_owned(), |busy| format!("{:.0} %", 100.0 * busy));
+    let (bytes_per_step, exchanges) = (1e-6 * measured.bytes_per_step, measured.exchanges_per_step);
+    let exchanged = match measured.ranks {
+        1 => "-".to_owned(),
+        _ => format!("{bytes_per_step:.2} in {exchanges:.0}"),
+    };
     let mut text = format!(
-        "{:<14} {:>10} {:>8} {:>8.1} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2}",
+        "{:<14} {:>10} {:>5} {:>7} {:>8.1} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2} {:>14}",
         measured.work,
         counted(measured.particles as f64, "").trim_end(),
+        measured.ranks,
         measured.threads,
         measured.neighbors,
         1e-6 * measured.particle_steps_per_second,
@@ -48,6 +56,7 @@ pub fn text(measured: &Measurement, profile: bool) -> String {
         busy,
         bytes,
         measured.first_step_after,
+        exchanged,
     );
     if profile {
         let work = measured.steps as f64 * measured.particles as f64;

@@ -13,7 +13,7 @@ use super::column::Column;
 use super::registry::{ColumnInfo, ColumnSet};
 use super::state::{MissingColumn, PhaseView};
 use crate::parallel::BLOCK;
-use crate::ranks;
+use crate::ranks::{self, Halo};
 
 /// Which columns of a phase are there for the rows of this rank alone, in the order of the columns.
 #[derive(Debug, Default)]
@@ -40,6 +40,16 @@ impl<'a> PhaseView<'a> {
     pub fn write_own<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
         self.mark_own(TypeId::of::<T>());
         self.column_mut()
+    }
+
+    /// Column `T` for reading rows of this rank and those of its halo, which are exchanged if every rank has its own alone. The others may be old.
+    pub fn read_halo<T: Column>(&self, halo: &Halo) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
+        let column = ColumnInfo::of::<T>();
+        let flag = self.own_only().flag(self.columns(), column.type_id);
+        if flag.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            self.write_own_bytes(&column, &mut |bytes| halo.fill_bytes(bytes, column.element_size));
+        }
+        self.column(Mode::ReadsNear)
     }
 
     /// The rows of a column are written by each rank for its own from now on.

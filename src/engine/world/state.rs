@@ -247,7 +247,7 @@ impl<'a> PhaseView<'a> {
     }
 
     /// Rows of the bodies of the phase, in scene order.
-    pub(super) fn body_rows(&self) -> &'a [Range<usize>] {
+    pub(crate) fn body_rows(&self) -> &'a [Range<usize>] {
         &self.phase.bodies
     }
 

@@ -1,5 +1,7 @@
 //! The packed rows of the phase, and its interface to the rest of the engine.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
@@ -8,7 +10,8 @@ use super::frame::{Frame, fill_ghosts};
 use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
 use super::rows::Site;
-use crate::parallel::{FourLanes, HotLoop, Lanes4, Picked, for_each_block, run_hot, share_rows_of};
+use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, Picked, for_each_block, own_rows, run_hot};
+use crate::ranks::Halo;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, Velocity};
@@ -26,18 +29,34 @@ pub(in crate::formulations) struct PackedRows {
     /// Of every body, in the order of rows.
     pub frames: Vec<Frame>,
     pub cracks: Cracks,
+    /// Rows of other ranks that the passes read.
+    pub halo: Halo,
     pub hessian: HessianRows,
     pub kernels: Vec<BodyKernel>,
     /// Stable step of each body in its reference configuration, s.
     pub stable_step: Vec<f64>,
+    /// Whether the sites of all rows have their reference positions and volumes.
+    pub has_places: bool,
+}
+
+/// The row in the middle of a body, whose motion is the frame of the body.
+pub(super) fn middle(body: &Range<usize>) -> usize {
+    body.start + body.len() / 2
 }
 
 impl PackedRows {
-    /// Gives all ranks the stresses that each has computed for its own rows.
-    pub fn share_stresses(&mut self) {
-        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
-        let bodies = starts.zip(&self.frames).map(|(start, frame)| start..frame.end);
-        share_rows_of(&mut self.stresses, bodies);
+    /// Makes the halo of the present cut among ranks: rows of bonds of the own rows, and the middles of `bodies`, whose motion all ranks take as frames.
+    pub fn make_halo(&mut self, bodies: &[Range<usize>]) {
+        let Self { bonds, ghosts, .. } = self;
+        let mut wanted = vec![false; bodies.last().map_or(0, |body| body.end)];
+        for body in bodies {
+            wanted[middle(body)] = true;
+            for row in own_rows(body) {
+                bonds.row(row).for_each(|(j, _)| wanted[ghosts.source(j)] = true);
+            }
+        }
+        self.halo = Halo::of(bodies, BLOCK, &wanted);
+        self.has_places = false;
     }
 
     /// Fills the sites of the ghosts.

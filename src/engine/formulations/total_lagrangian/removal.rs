@@ -52,6 +52,8 @@ impl Deformation {
         if count_rows(&removed, |row| *row != Removed::NO) == self.removed.rows.len() {
             return Ok(false);
         }
+        // What follows looks at all rows.
+        packed.has_places = false;
         self.pass(step.world, packed, SolidPart::of(step))?;
         self.solids.book(step)?;
         let held = self.solids.stored();
@@ -60,6 +62,7 @@ impl Deformation {
         self.removed.rows.extend((0..removed.len() as u32).filter(|&k| removed[k as usize] != Removed::NO));
         self.cut(step.world, packed)?;
         self.refit(step.world, packed, &known)?;
+        packed.has_places = false;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
         self.solids.book(step)?;

@@ -1,9 +1,12 @@
 //! Rows that the hot passes read per neighbour: four lanes each, packed from the columns in every step.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::parallel::{Lanes4, for_each_block};
+use crate::parallel::{Lanes4, for_each_block, for_each_own_block};
+use crate::ranks::Halo;
 use crate::schedule::StepError;
 use crate::world::{PhaseView, Position, ReferencePosition, ReferenceVolume};
 
@@ -33,24 +36,46 @@ impl Site {
     }
 }
 
-/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it.
+/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it. Of several ranks each fills the rows that it
+/// computes and those of the halo, once it has the places of all; until then there is no halo.
 pub(super) fn pack(
     view: &PhaseView<'_>,
     origin: DVec3,
     removed: &[u32],
     sites: &mut [Site],
+    halo: Option<&Halo>,
 ) -> Result<(), StepError> {
-    let position = view.read_near::<Position>()?;
+    let position = match halo {
+        Some(halo) => view.read_halo::<Position>(halo)?,
+        None => view.read_near::<Position>()?,
+    };
     let reference = view.read_near::<ReferencePosition>()?;
     let volume = view.read_near::<ReferenceVolume>()?;
-    let rows = (&mut sites[..], &position[..], &reference[..], &volume[..]);
-    type Rows<'a> = (&'a mut [Site], &'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
-    for_each_block(rows, &mut Vec::new(), &|_, (sites, x, reference, volume): Rows<'_>| {
+    type Columns<'a> = (&'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
+    let columns = |rows: Range<usize>| (&position[rows.clone()], &reference[rows.clone()], &volume[rows]);
+    let fill = |sites: &mut [Site], (x, reference, volume): Columns<'_>| {
         for (k, site) in sites.iter_mut().enumerate() {
             let reference = reference[k].0;
             *site = Site::new(reference - origin, x[k].0 - reference, volume[k].0);
         }
-    });
+    };
+    type Rows<'a> = (&'a mut [Site], Columns<'a>);
+    let body = |_, (sites, columns): Rows<'_>| fill(sites, columns);
+    match halo {
+        None => {
+            let all = columns(0..sites.len());
+            for_each_block((&mut *sites, all), &mut Vec::new(), &body);
+        }
+        Some(halo) => {
+            for rows in view.body_rows() {
+                let own = (&mut sites[rows.clone()], columns(rows.clone()));
+                for_each_own_block(own, &mut Vec::new(), &body);
+            }
+            for row in halo.rows().iter().map(|&row| row as usize) {
+                fill(&mut sites[row..=row], columns(row..row + 1));
+            }
+        }
+    }
     for &row in removed {
         sites[row as usize].reference.0[3] = 0.0;
     }

@@ -16,6 +16,7 @@ use super::support::choose_support;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError, SimBuilder};
+use crate::ranks::Halo;
 use crate::removal::Leaving;
 use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
 use crate::symmetry::{Ghosts, Repeat};
@@ -183,6 +184,8 @@ impl SetUp {
             self_force: vec![DVec3::ZERO; count],
             frames: Vec::with_capacity(self.bodies.len()),
             cracks: Cracks::default(),
+            halo: Halo::default(),
+            has_places: false,
             hessian,
             kernels: self.bodies.iter().map(|body| body.kernel(dimension)).collect(),
             stable_step,

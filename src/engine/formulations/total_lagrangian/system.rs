@@ -4,10 +4,11 @@ use super::cracks::EdgeRows;
 use super::deformation::{DeformationPass, DeformationRows};
 use super::frame::Frame;
 use super::hessian::{BondedSites, FrameIndifferent};
-use super::phase::PackedRows;
+use super::phase::{PackedRows, middle};
 use super::removed::RemovedRows;
 use super::rows::pack;
 use crate::parallel::share_picked;
+use crate::ranks;
 use crate::schedule::{Run, Step, StepError};
 use crate::solids::{BodyPass, Loss, Refits, SolidBodies, SolidColumns, SolidPart, TakenUp};
 use crate::world::{Damage, MissingColumn, PhaseId, Removed, SupportRadius, Velocity, World};
@@ -46,6 +47,19 @@ impl Deformation {
         Ok(())
     }
 
+    /// Packs the sites that the pass reads.
+    fn pack(&self, world: &World, packed: &mut PackedRows) -> Result<(), StepError> {
+        let view = world.phase(self.phase);
+        if !packed.halo.is_current() {
+            packed.make_halo(view.body_rows());
+        }
+        let PackedRows { sites, halo, origin, has_places, .. } = packed;
+        let halo = (ranks::has_several() && *has_places).then_some(&*halo);
+        pack(&view, *origin, self.removed.rows(), &mut sites[..view.len()], halo)?;
+        *has_places = true;
+        Ok(())
+    }
+
     /// Runs the pass over all bodies.
     pub(super) fn pass(
         &mut self,
@@ -54,7 +68,7 @@ impl Deformation {
         part: SolidPart<'_>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        pack(&view, packed.origin, self.removed.rows(), &mut packed.sites[..view.len()])?;
+        self.pack(world, packed)?;
         packed.fill_ghost_sites();
         let mut columns = SolidColumns::own(&view)?;
         // Beside cracks the velocities of neighbours count too.
@@ -76,7 +90,7 @@ impl Deformation {
         self.solids.begin();
         for k in 0..self.solids.len() {
             let rows = world.body(self.solids.id(k)).rows.clone();
-            let middle = rows.start + rows.len() / 2;
+            let middle = middle(&rows);
             share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
             let frame = Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
             frames.push(frame);
@@ -102,7 +116,7 @@ impl Deformation {
             FrameIndifferent { bonds, ghosts, sites, frames, stresses, self_force, hessian, plane };
         difference.run(&view, &mut self.solids, part.dt, |_| true)?;
         hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
-        packed.share_stresses();
+        packed.halo.fill(&mut packed.stresses);
         packed.fill_ghost_stresses();
         packed.cracks.settle();
         Ok(())

@@ -1,0 +1,92 @@
+//! Rows beside those of a rank: exchanged where a pass reads neighbours and nothing else of the other ranks.
+
+use std::ops::Range;
+
+use bytemuck::Pod;
+
+use super::Cut;
+use super::group::{self, Group};
+
+/// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs alone.
+#[derive(Debug, Default)]
+pub struct Halo {
+    /// The cut that it belongs to.
+    cut: Option<Cut>,
+    /// Rows that others read of this rank, rank by rank, and where those of each rank end.
+    send: Vec<u32>,
+    send_cuts: Vec<usize>,
+    /// Rows that this rank reads of the others.
+    receive: Vec<u32>,
+    receive_cuts: Vec<usize>,
+}
+
+impl Halo {
+    /// The halo of a rank that reads `wanted` rows of these bodies, whose loops go in blocks of `block` rows; its own rows may be among them. All ranks make
+    /// theirs together.
+    pub fn of(bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
+        group::with(|group| Self::in_group(group, bodies, block, wanted)).unwrap_or_default()
+    }
+
+    fn in_group(group: &mut Group, bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
+        let (rank, size) = (group.ranks.rank(), group.ranks.size());
+        let (mut receive, mut receive_cuts) = (Vec::new(), vec![0]);
+        for other in 0..size {
+            for body in bodies.iter().filter(|_| other != rank) {
+                let part = group.part(other, body.len(), block);
+                let rows = body.start + part.start..body.start + part.end;
+                receive.extend(rows.filter(|&row| wanted[row]).map(|row| row as u32));
+            }
+            receive_cuts.push(receive.len());
+        }
+        // How many rows each rank reads of each other one.
+        let mut counts = vec![0_u64; size * size];
+        for other in 0..size {
+            counts[rank * size + other] = (receive_cuts[other + 1] - receive_cuts[other]) as u64;
+        }
+        let rows_of_counts: Vec<usize> = (0..=size).map(|k| k * size * size_of::<u64>()).collect();
+        group.share(bytemuck::cast_slice_mut(&mut counts), &rows_of_counts);
+        let mut send_cuts = vec![0];
+        for other in 0..size {
+            send_cuts.push(send_cuts[other] + counts[other * size + rank] as usize);
+        }
+        let mut send = vec![0_u32; send_cuts[size]];
+        let bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size_of::<u32>()).collect::<Vec<_>>();
+        group.exchange(
+            (bytemuck::cast_slice(&receive), &bytes(&receive_cuts)),
+            (bytemuck::cast_slice_mut(&mut send), &bytes(&send_cuts)),
+        );
+        Self { cut: Some(group.cut.clone()), send, send_cuts, receive, receive_cuts }
+    }
+
+    /// Whether it belongs to the present cut.
+    pub fn is_current(&self) -> bool {
+        group::with(|group| self.cut.as_ref() == Some(&group.cut)).unwrap_or(true)
+    }
+
+    /// The rows of other ranks, ascending rank by rank.
+    pub fn rows(&self) -> &[u32] {
+        &self.receive
+    }
+
+    /// Fills the rows of the halo with what their ranks have computed.
+    pub fn fill<T: Pod>(&self, rows: &mut [T]) {
+        self.fill_bytes(bytemuck::cast_slice_mut(rows), size_of::<T>());
+    }
+
+    /// [`Halo::fill`] for rows of `size` bytes.
+    pub fn fill_bytes(&self, bytes: &mut [u8], size: usize) {
+        group::with(|group| {
+            let (mut out, mut into) = (std::mem::take(&mut group.parts), std::mem::take(&mut group.received));
+            out.clear();
+            let at = |row: u32| row as usize * size..(row as usize + 1) * size;
+            self.send.iter().for_each(|&row| out.extend_from_slice(&bytes[at(row)]));
+            into.resize(self.receive.len() * size, 0);
+            let in_bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size).collect::<Vec<_>>();
+            group.exchange((&out, &in_bytes(&self.send_cuts)), (&mut into, &in_bytes(&self.receive_cuts)));
+            for (&row, from) in self.receive.iter().zip(into.chunks_exact(size)) {
+                bytes[at(row)].copy_from_slice(from);
+            }
+            (group.parts, group.received) = (out, into);
+        });
+    }
+}
