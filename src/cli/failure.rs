@@ -22,7 +22,10 @@ pub enum Failure {
     Run(String),
     /// One of several ranks has told the user already. The exit code of what it told.
     #[error("the run has failed")]
-    #[cfg_attr(not(feature = "mpi"), expect(dead_code, reason = "a program built without MPI is one process"))]
+    #[cfg_attr(
+        not(feature = "mpi"),
+        expect(dead_code, reason = "a program built without MPI is one process")
+    )]
     Told(u8),
     /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that was ended by it.
     #[error("the run was interrupted")]

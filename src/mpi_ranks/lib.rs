@@ -53,12 +53,19 @@ impl MpiRanks {
         let (start, end) = (cuts[self.rank()], cuts[self.rank() + 1]);
         let mut own = self.own.borrow_mut();
         own.clear();
+        // See `addressed`.
+        own.reserve(1);
         own.extend_from_slice(&bytes[start..end]);
         let counts: Vec<i32> = cuts.windows(2).map(|pair| count(pair[1] - pair[0])).collect();
         let places: Vec<i32> = cuts[..self.size()].iter().map(|&cut| count(cut)).collect();
         let mut all = PartitionMut::new(bytes, counts, places);
         self.world.all_gather_varcount_into(&own[..], &mut all);
     }
+}
+
+/// Bytes with an address: that of an empty vector is 1, which Open MPI takes for `MPI_IN_PLACE`.
+fn addressed(bytes: &[u8]) -> &[u8] {
+    if bytes.is_empty() { &[0] } else { bytes }
 }
 
 /// A number of bytes as MPI counts; those of one exchange are below [`MOST`].
@@ -106,8 +113,10 @@ impl Ranks for MpiRanks {
         let counts =
             |cuts: &[usize]| cuts.windows(2).map(|pair| count(pair[1] - pair[0])).collect::<Vec<i32>>();
         let places = |cuts: &[usize]| cuts[..self.size()].iter().map(|&cut| count(cut)).collect::<Vec<i32>>();
-        let out = Partition::new(sent.0, counts(sent.1), places(sent.1));
-        let mut into = PartitionMut::new(received.0, counts(received.1), places(received.1));
+        let out = Partition::new(addressed(sent.0), counts(sent.1), places(sent.1));
+        let mut nothing = [0];
+        let into = if received.0.is_empty() { &mut nothing[..] } else { received.0 };
+        let mut into = PartitionMut::new(into, counts(received.1), places(received.1));
         self.world.all_to_all_varcount_into(&out, &mut into);
     }
 

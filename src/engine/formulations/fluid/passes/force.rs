@@ -7,7 +7,7 @@ use super::pair_force::PairForce;
 use crate::formulations::fluid::cloud::{ACCOUNTS, FLOW_RECORDS, FlowCloud, PARTS, REPELLED, Role, SPINS};
 use crate::formulations::fluid::rotation::Couples;
 use crate::pair::{BodyTerms, PhaseTerms};
-use crate::parallel::for_each_block;
+use crate::parallel::{for_each_block, share_wide_rows};
 use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
@@ -41,7 +41,7 @@ impl Run for FlowForce {
         let mut blocks = if flows { cloud.blocks.take() } else { None };
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
-        let mut force = view.write::<Force>()?;
+        let mut force = view.write_own::<Force>()?;
         let mut parts = step.resources.of_mut(self.parts);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
         for (number, (group, BodyTerms { forces, .. })) in groups.zip(parts.iter_mut()).enumerate() {
@@ -78,6 +78,7 @@ impl Run for FlowForce {
             if let Role::Boundary(surface) = &group.role
                 && surface.velocity != DVec3::ZERO
             {
+                share_wide_rows(forces, PARTS);
                 // What drives a belt does the work that friction turns into heat.
                 let friction: DVec3 = forces.iter().step_by(PARTS).sum();
                 let work = -friction.dot(surface.velocity) * step.clock.dt;

@@ -12,9 +12,8 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
-use crate::parallel::{
-    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows_of,
-};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_picked};
+use crate::ranks;
 
 /// Least sum of V_f W for which there is fluid beside a wall.
 const LEAST_SHARE: f64 = 1e-10;
@@ -44,17 +43,33 @@ impl WallPressure<'_> {
         let cloud = self.cloud;
         let bodies = cloud.groups.iter().filter(|group| group.fluid().is_none());
         let mut rest = (&mut *out, near.writer());
-        for Range { start, end } in bodies.clone().map(|group| group.cloud.clone()) {
+        for Range { start, end } in bodies.map(|group| group.cloud.clone()) {
             let (rows, behind) = rest.split(end - start);
             rest = behind;
             for_each_own_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
                 run_hot_in(cloud.plane, Rows { cloud, first: start - cloud.fluid + first, out, near });
             });
         }
-        share_rows_of(
-            out,
-            bodies.map(|group| group.cloud.start - cloud.fluid..group.cloud.end - cloud.fluid),
-        );
+        share_wetted(cloud, out);
+    }
+}
+
+/// Gives all ranks what is beside the particles of boundaries that have fluid in their lists; beside the others there is nothing.
+fn share_wetted(cloud: &FlowCloud, out: &mut [Beside]) {
+    if !ranks::has_several() {
+        return;
+    }
+    let lists = &cloud.pairs.boundary;
+    for Range { start, end } in
+        cloud.groups.iter().filter(|group| group.fluid().is_none()).map(|group| group.cloud.clone())
+    {
+        let rows = start - cloud.fluid..end - cloud.fluid;
+        let wetted: Vec<u32> =
+            rows.clone().filter(|&row| !lists.row(row).is_empty()).map(|row| row as u32).collect();
+        let mut beside: Vec<Beside> = wetted.iter().map(|&row| out[row as usize]).collect();
+        share_picked(&mut beside, &wetted, &rows);
+        out[rows].fill(Beside::default());
+        wetted.iter().zip(beside).for_each(|(&row, beside)| out[row as usize] = beside);
     }
 }
 

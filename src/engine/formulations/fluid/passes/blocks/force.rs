@@ -8,9 +8,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
 use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Packed};
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, Fastest, PhaseTerms, TermRows, TermSums};
-use crate::parallel::{
-    BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on, share_wide_rows,
-};
+use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 use glam::DVec3;
@@ -65,7 +63,9 @@ impl BlockForce<'_> {
         let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
         let rows = BlockSums { lanes: &mut forces, stride };
         let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums: &mut sums });
-        share_wide_rows(&mut forces, stride);
+        self.blocks.make_halo(self.number, &self.group.cloud);
+        let halo = &self.blocks.halos[self.number];
+        halo.fill_bytes(bytemuck::cast_slice_mut(&mut forces), stride * size_of::<Lanes8>());
         (self.blocks.forces, self.blocks.fastest) = (forces, sums);
         fastest
     }

@@ -6,7 +6,7 @@ use super::super::pair_force::ForceRows;
 use crate::formulations::fluid::cloud::PARTS;
 use crate::formulations::fluid::lists::blocks::Table;
 use crate::pair::TermRows;
-use crate::parallel::{Lanes8, Split, for_each_block};
+use crate::parallel::{Lanes8, Split, for_each_own_block};
 use crate::world::Force;
 
 /// Sums of the flow itself: of the pressures of fluids, of friction, of the pressures of boundaries.
@@ -35,11 +35,11 @@ impl Landing<'_> {
         DVec3::new(f64::from(x.0[lane]), f64::from(y.0[lane]), z)
     }
 
-    /// Writes the forces, [`PARTS`] parts of each, and what the terms make.
+    /// Writes the forces on the particles that this rank computes, [`PARTS`] parts of each, and what the terms make.
     pub fn run(&self, written: TermRows<'_>, parts: &mut [DVec3]) {
         let terms = written.terms();
         let stride = stride(terms);
-        for_each_block(ForceRows { written, parts }, &mut Vec::new(), &|first, rows: ForceRows<'_>| {
+        for_each_own_block(ForceRows { written, parts }, &mut Vec::new(), &|first, rows: ForceRows<'_>| {
             let ForceRows { mut written, parts } = rows;
             for k in 0..written.rows() {
                 let (block, lane) = self.table.place(self.first_row + first + k);
