@@ -309,6 +309,20 @@ const LAYERS: &[&str] = &[
     "notation",
 ];
 
+#[test]
+fn the_table_of_modules_has_all_of_them_in_order() {
+    let page = read(&root().join("ARCHITECTURE.md"));
+    let rows = page.lines().filter(|line| line.starts_with("| `"));
+    let modules =
+        rows.flat_map(|line| line.split('|').nth(1).unwrap_or_default().split('`').skip(1).step_by(2));
+    let modules: Vec<&str> = modules.collect();
+    assert_eq!(modules, LAYERS, "ARCHITECTURE.md lists the modules in the order of LAYERS");
+    assert!(
+        page.split_whitespace().count() < 1400,
+        "ARCHITECTURE.md is a page to begin with: two printed pages"
+    );
+}
+
 /// Folders whose files and folders must not import each other in circles.
 const WITHOUT_CIRCLES: &[&str] = &[
     "formulations/total_lagrangian",
