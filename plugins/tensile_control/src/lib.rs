@@ -4,9 +4,10 @@
 //! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
 //! no better than particles are evenly spread, and all of it is scaled down where it would give more energy than it has taken.
 
-mod local;
-
-use meshless_engine::formulations::fluid::{FLOW_RECORDS, FlowCloud, Interior, RowSums};
+use meshless_engine::correction::MomentMatrix;
+use meshless_engine::formulations::fluid::{
+    ArrangementPass, FLOW_RECORDS, FlowCloud, Interior, RowSums, smallest_eigenvalue,
+};
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::sum_over_blocks;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
@@ -14,8 +15,6 @@ use meshless_engine::schedule::{AccountId, AccountKind, Mode, Run, Shared, Stage
 use meshless_engine::world::{BodyId, Force, Pressure, Velocity};
 use schemars::JsonSchema;
 use serde::Deserialize;
-
-use local::{Local, Locals};
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -48,7 +47,7 @@ impl Plugin for TensileControl {
         let controlled = sim.share(bodies.iter().collect::<Controlled>());
         sim.extend(controlled);
         let phases = sim.phases_of(&bodies);
-        let control = Control::new(controlled);
+        let control = TensileForce::new(controlled);
         sim.add_system(
             System::new(Stage::Rates, Self::NAME, control)
                 .on_phases(phases)
@@ -61,19 +60,28 @@ impl Plugin for TensileControl {
     }
 }
 
-struct Control {
+/// How the neighbours of a particle are arranged.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrangement {
+    /// Smallest eigenvalue of the moment matrix: one inside, about a half at a free surface.
+    lambda: f64,
+    /// First moment, 1/m: it points to where particles are crowded.
+    first_moment: DVec3,
+}
+
+struct TensileForce {
     bodies: Shared<Controlled>,
-    locals: Vec<Local>,
+    arrangements: Vec<Arrangement>,
     interior: Interior,
     changes: Vec<DVec3>,
     sums: RowSums,
 }
 
-impl Control {
+impl TensileForce {
     fn new(bodies: Shared<Controlled>) -> Self {
         Self {
             bodies,
-            locals: Vec::new(),
+            arrangements: Vec::new(),
             interior: Interior::default(),
             changes: Vec::new(),
             sums: RowSums::default(),
@@ -93,7 +101,7 @@ impl Control {
         self.changes.clear();
         self.changes.extend(rows.clone().map(|i| {
             let tension = if self.interior.has(i) { pressure[i].0.min(0.0) } else { 0.0 };
-            self.locals[i].first_moment * (2.0 * tension * cloud.volume(i))
+            self.arrangements[i].first_moment * (2.0 * tension * cloud.volume(i))
         }));
         let both = (&velocity[rows.clone()], &self.changes[..]);
         let given = step.clock.dt
@@ -114,7 +122,7 @@ fn affordable(given: f64, taken: f64) -> f64 {
     if given > taken.max(0.0) { taken.max(0.0) / given } else { 1.0 }
 }
 
-impl Run for Control {
+impl Run for TensileForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
         let (cloud, bodies) = (resources.get::<FlowCloud>(), resources.of(self.bodies));
@@ -127,9 +135,15 @@ impl Run for Control {
         if !tension {
             return Ok(());
         }
-        self.locals.resize(cloud.fluid, Local::default());
-        cloud.for_each_row(0, &mut self.locals, &mut self.sums, &Locals(&cloud));
-        self.interior.find(&cloud, |i| self.locals[i].lambda);
+        let plane = cloud.plane();
+        let output = |_: usize, moment: &MomentMatrix, first_moment: DVec3| Arrangement {
+            lambda: smallest_eigenvalue(moment.matrix(), plane),
+            first_moment,
+        };
+        self.arrangements.resize(cloud.fluid, Arrangement::default());
+        let pass = ArrangementPass { cloud: &cloud, output };
+        cloud.for_each_row(0, &mut self.arrangements, &mut self.sums, &pass);
+        self.interior.find(&cloud, |i| self.arrangements[i].lambda);
         for &id in bodies.iter() {
             self.add_force(step, &cloud, (id, account))?;
         }

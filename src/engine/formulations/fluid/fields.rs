@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::correction::{add_moment, moment_of};
+use crate::correction::{MomentMatrix, add_moment, moment_of};
 use crate::fields::Field;
-use crate::formulations::fluid::cloud::{FlowCloud, Near, NearPairs, RowPass, RowSums, smallest_eigenvalue};
+use crate::formulations::fluid::cloud::{
+    ArrangementPass, FlowCloud, Near, NearPairs, RowPass, RowSums, smallest_eigenvalue,
+};
 use crate::parallel::{Arithmetic, Vector};
 use crate::plugin::BodyKind;
 use crate::world::{Column, Value, Velocity};
@@ -31,8 +33,11 @@ pub(crate) fn fields() -> [Field; 2] {
     });
     let surface = Field::with_input("free_surface", "1", f64::COMPONENTS, needs(), |input, out| {
         let cloud = input.resources.get::<FlowCloud>();
+        let cloud: &FlowCloud = &cloud;
         let mut rows = vec![0.0; input.rows.len()];
-        cloud.for_each_row(input.rows.start, &mut rows, &mut RowSums::default(), &FreeSurface(&cloud));
+        let output = |i: usize, moment: &MomentMatrix, first: DVec3| free_surface(cloud, i, moment, first);
+        let pass = ArrangementPass { cloud, output };
+        cloud.for_each_row(input.rows.start, &mut rows, &mut RowSums::default(), &pass);
         out.extend(rows);
         Ok(())
     });
@@ -85,55 +90,27 @@ impl RowPass<1, 6> for Vorticity<'_> {
     }
 }
 
-/// One at a free surface, zero inside: what lies in the mouth of a cone, or of an umbrella at its end, along the outward normal covers a
-/// particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
-struct FreeSurface<'a>(&'a FlowCloud);
-
-impl RowPass<0, 4> for FreeSurface<'_> {
-    type Output = f64;
-
-    fn among(&self) -> Range<usize> {
-        self.0.everything()
+/// One at a free surface, zero inside, from the moment matrix and the first moment of particle `i`: a neighbour in the mouth of a cone, or of an
+/// umbrella at its end, along the outward normal covers the particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
+fn free_surface(cloud: &FlowCloud, i: usize, moment: &MomentMatrix, first_moment: DVec3) -> f64 {
+    let least = smallest_eigenvalue(moment.matrix(), cloud.plane);
+    if !(ALONE..=INSIDE).contains(&least) {
+        return f64::from(u8::from(least < ALONE));
     }
-
-    fn reads(&self, _: usize) -> [DVec3; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn add<A: Arithmetic>(
-        &self,
-        near: &NearPairs<A>,
-        _: &[Vector<A>; 0],
-        _: &[Vector<A>; 0],
-        [xx, yy, zz, inward]: &mut [Vector<A>; 4],
-    ) {
-        let weight = near.volume * near.weight;
-        add_moment([xx, yy, zz], weight, near.x_ij);
-        *inward = near.x_ij.mul_add(weight, *inward);
-    }
-
-    fn output(&self, i: usize, &[xx, yy, zz, inward]: &[DVec3; 4]) -> f64 {
-        let cloud = self.0;
-        let moment = moment_of([xx, yy, zz], cloud.plane);
-        let least = smallest_eigenvalue(moment.matrix(), cloud.plane);
-        if !(ALONE..=INSIDE).contains(&least) {
-            return f64::from(u8::from(least < ALONE));
-        }
-        let outward = -moment.inverse().map_or(inward, |inverse| inverse * inward).normalize_or_zero();
-        let h = cloud.kernel.smoothing_length();
-        let covers = |near: &Near| {
-            let height = near.x_ij.dot(outward);
-            let aside = (near.x_ij - outward * height).length();
-            near.volume > 0.0
-                && if near.distance >= std::f64::consts::SQRT_2 * h {
-                    (near.x_ij - outward * h).length() < h
-                } else {
-                    (height - h).abs() + aside < h
-                }
-        };
-        let mut covered = false;
-        cloud.for_each_neighbor(i, |near| covered |= covers(near));
-        f64::from(u8::from(!covered))
-    }
+    let inward = moment.inverse().map_or(first_moment, |inverse| inverse * first_moment);
+    let outward = -inward.normalize_or_zero();
+    let h = cloud.kernel.smoothing_length();
+    let covers = |near: &Near| {
+        let height = near.x_ij.dot(outward);
+        let aside = (near.x_ij - outward * height).length();
+        near.volume > 0.0
+            && if near.distance >= std::f64::consts::SQRT_2 * h {
+                (near.x_ij - outward * h).length() < h
+            } else {
+                (height - h).abs() + aside < h
+            }
+    };
+    let mut covered = false;
+    cloud.for_each_neighbor(i, |near| covered |= covers(near));
+    f64::from(u8::from(!covered))
 }

@@ -22,6 +22,8 @@ mod row_pass;
 
 mod row_blocks;
 
+mod arrangement;
+
 mod rows;
 
 mod surroundings;
@@ -32,6 +34,7 @@ mod sort;
 
 mod neighbors;
 
+pub use arrangement::ArrangementPass;
 pub use flow_cloud::{FlowCloud, Near};
 pub use group::{FluidState, Group, Role, Surface};
 pub use near::{part, take_until};
