@@ -32,6 +32,7 @@ mod symbols;
 mod syntax;
 mod table;
 mod time;
+mod touching;
 mod tree;
 
 pub use crate::space::{Dimension, Vec3};
@@ -54,6 +55,7 @@ pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
 pub use table::Table;
 pub use time::{Step, StopWhen, Time};
+pub use touching::TouchingPairs;
 
 #[cfg(test)]
 mod tests;

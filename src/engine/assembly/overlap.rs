@@ -9,10 +9,10 @@ use crate::scene::{Problem, Scene};
 
 /// One problem for every pair of bodies that overlap. Rigid bodies with a contact are left to that: it knows their surfaces.
 pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene) -> Vec<Problem> {
-    let contacts: Vec<(String, String)> = scene.contact_pairs().map(|(_, contact)| contact.between).collect();
+    let touching = scene.touching_pairs();
     let is_left = |first: &BodyPlan, second: &BodyPlan| {
-        let between = |(a, b): &(String, String)| [(a, b), (b, a)].contains(&(&first.name, &second.name));
-        [first, second].iter().all(|body| body.kind == BodyKind::Rigid) && contacts.iter().any(between)
+        [first, second].iter().all(|body| body.kind == BodyKind::Rigid)
+            && touching.has(&first.name, &second.name)
     };
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {

@@ -207,11 +207,7 @@ impl Rigid {
 /// The surface of a body. Where no contact names it, any shape will do.
 fn surface(plan: &BodyPlan, shape: &Shape, sim: &SimBuilder<'_>) -> Result<Box<dyn Surface>, SetupError> {
     let exact = sim.surface(shape, &format!("bodies[{}].shape", plan.id.0));
-    let touches = |(_, contact): (usize, Contact)| {
-        let (a, b) = &contact.between;
-        [a, b].contains(&&plan.name)
-    };
-    if exact.is_ok() || sim.scene().contact_pairs().any(touches) {
+    if exact.is_ok() || sim.scene().touching_pairs().names(&plan.name) {
         return exact;
     }
     match shape.region(sim.dimension(), sim.folder(), "shape") {

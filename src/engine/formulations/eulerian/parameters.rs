@@ -20,7 +20,7 @@ use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, SimBuilder};
 use crate::removal::Leaving;
-use crate::scene::{Contact, Dimension};
+use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
 use crate::solids::{SolidBodies, TakenUp, require_support};
 use crate::symmetry::repeats_of;
@@ -116,8 +116,7 @@ impl Formulation for Eulerian {
             }
             kernels.push(BodyKernel { kernel, divergence: parameters.divergence, control: None });
             let name = &sim.body(*id).name;
-            let own = |(_, contact): (usize, Contact)| contact.between == (name.clone(), name.clone());
-            let touches_itself = sim.scene().contact_pairs().any(own);
+            let touches_itself = sim.scene().touching_pairs().has(name, name);
             let rows = sim.body(*id).rows.clone();
             listed.push(ListedBody { id: *id, rows, support, repeats, touches_itself });
         }

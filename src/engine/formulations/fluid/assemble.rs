@@ -71,12 +71,12 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let groups = bodies.groups.clone();
     let mut cloud = cloud(bodies, common, reach, sim)?;
     let spin = cloud.viscosities.spin;
-    let (walls, contacts, gravity) = (advice::walls(sim), advice::contacts(sim), sim.gravity());
+    let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
         checks::flow_is_slow(&mut cloud, setup.world)?;
-        advice::sinking(&cloud, &walls, &contacts, gravity, setup);
+        advice::sinking(&cloud, &walls, &touching, gravity, setup);
         setup.resources.insert(cloud);
         Ok(())
     });

@@ -23,18 +23,12 @@ pub(super) struct Passing {
 impl Passing {
     /// All pairs of solids and rigid bodies that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let contacts: Vec<(String, String)> =
-            sim.scene().contact_pairs().map(|(_, contact)| contact.between).collect();
-        let touch = |a: &BodyPlan, b: &BodyPlan| {
-            let is = |(one, other): &(String, String)| {
-                (*one == a.name && *other == b.name) || (*one == b.name && *other == a.name)
-            };
-            contacts.iter().any(is)
-        };
+        let touching = sim.scene().touching_pairs();
         let solid = |body: &&BodyPlan| matches!(body.kind, BodyKind::Solid | BodyKind::Rigid);
         let bodies = || sim.bodies().iter().filter(solid);
         let all = bodies().flat_map(|a| bodies().filter(|b| a.id.0 < b.id.0).map(move |b| (a, b)));
-        let pairs: Vec<[BodyId; 2]> = all.filter(|(a, b)| !touch(a, b)).map(|(a, b)| [a.id, b.id]).collect();
+        let pairs: Vec<[BodyId; 2]> =
+            all.filter(|(a, b)| !touching.has(&a.name, &b.name)).map(|(a, b)| [a.id, b.id]).collect();
         let spacings = sim.bodies().iter().map(|body| body.spacing).collect();
         Self { told: vec![false; pairs.len()], pairs, spacings }
     }

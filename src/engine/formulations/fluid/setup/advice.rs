@@ -6,6 +6,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group};
 use crate::pair::PhaseTerms;
 use crate::plugin::{BodyKind, Setup, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
+use crate::scene::TouchingPairs;
 use crate::world::{BodyId, ReferenceVolume};
 
 /// Warns of fluids whose density nothing diffuses.
@@ -22,21 +23,11 @@ pub fn undamped_density(terms: Option<&PhaseTerms>, groups: &[Group], sim: &mut 
     }
 }
 
-/// Pairs of names of bodies that have a contact.
-pub fn contacts(sim: &SimBuilder<'_>) -> Vec<(String, String)> {
-    sim.scene().contact_pairs().map(|(_, contact)| contact.between).collect()
-}
-
-/// Whether there is a contact between two bodies.
-pub fn touch(contacts: &[(String, String)], a: &str, b: &str) -> bool {
-    contacts.iter().any(|(one, other)| (one == a && other == b) || (one == b && other == a))
-}
-
 /// Warns of rigid bodies that sink to walls which do not hold them.
 pub fn sinking(
     cloud: &FlowCloud,
     walls: &[BodyId],
-    contacts: &[(String, String)],
+    touching: &TouchingPairs,
     gravity: DVec3,
     setup: &mut Setup<'_>,
 ) {
@@ -56,10 +47,7 @@ pub fn sinking(
             bodies.iter().find(is_it).is_some_and(|body| !body.is_driven())
         };
         // A solid, a tool or a wall may hold it; another loose body does not.
-        let rests = contacts.iter().any(|(one, other)| {
-            (one == name && other != name && !is_free(other))
-                || (other == name && one != name && !is_free(one))
-        });
+        let rests = touching.partners(name).any(|other| other != name && !is_free(other));
         let held = walls.is_empty() || rests;
         if falls && density > densest && !held {
             let wall = name_of(&walls[0]);

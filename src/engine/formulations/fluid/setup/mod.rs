@@ -10,6 +10,5 @@ pub mod rest;
 
 pub mod advice;
 
-pub use advice::{contacts, touch};
 pub use sound_speed::estimate as estimate_sound_speeds;
 pub use start::start;

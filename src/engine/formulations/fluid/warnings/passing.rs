@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::setup::{contacts, touch};
 use crate::plugin::{BodyKind, SimBuilder};
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
@@ -29,14 +28,14 @@ struct Pair {
 impl Passing {
     /// All pairs of a scene that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
-        let contacts = contacts(sim);
+        let touching = sim.scene().touching_pairs();
         let of = |kind: BodyKind| sim.bodies().iter().filter(move |body| body.kind == kind);
         let mut pairs = Vec::new();
         for wall in of(BodyKind::Boundary) {
             for body in of(BodyKind::Rigid).chain(of(BodyKind::Solid)) {
                 let shape = &sim.scene().bodies[wall.id.0].shape;
                 let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
-                if !touch(&contacts, &body.name, &wall.name) {
+                if !touching.has(&body.name, &wall.name) {
                     pairs.push(Pair { body: body.id, wall: wall.id, region, spacing: body.spacing });
                 }
             }
