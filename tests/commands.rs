@@ -48,6 +48,14 @@ fn wait_for(file: &Path) {
 }
 
 #[test]
+fn more_threads_than_any_machine_has_are_refused() {
+    let folder = folder();
+    let output = meshless(folder.path(), &["run", "beam.ron", "--threads", "9999", "--steps", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(err(&output).contains("9999 is not in 1..=1024"), "{}", err(&output));
+}
+
+#[test]
 fn a_check_reviews_bodies_by_what_they_are() {
     let folder = folder();
     let check = |body: &str| {

@@ -30,7 +30,7 @@ const CLOCK: Duration = Duration::from_millis(20);
 #[derive(Args, Clone)]
 pub struct How {
     /// Number of threads; without it, all cores
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
     #[arg(long, value_name = "PATH")]

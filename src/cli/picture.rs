@@ -72,5 +72,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 #[cfg(not(feature = "rerun"))]
 pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { path, .. } = arguments;
-    Err(Failure::Run(format!("this program was built without rerun and cannot read `{}`", path.display())))
+    Err(Failure::Run(format!(
+        "this program was built without rerun and cannot read `{}`; build it with its default features",
+        path.display()
+    )))
 }

@@ -18,7 +18,7 @@ pub struct Body {
     pub shape: Shape,
     /// Distance between neighbouring particles \[m\].
     pub spacing: f64,
-    /// How the material moves: `TotalLagrangian`, `Fluid`, `Rigid`, `Wall`.
+    /// How the material moves: `TotalLagrangian`, `UpdatedLagrangian`, `Eulerian`, `Fluid`, `Rigid`, `Wall`.
     pub formulation: Item,
     /// Velocity of all particles at the start \[m/s\].
     #[serde(default)]

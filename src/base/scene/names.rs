@@ -13,7 +13,7 @@ pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, V
         help.push(format!("did you mean `{near}`?"));
     }
     if known.is_empty() {
-        help.push(format!("no {kind} is known here"));
+        help.push(format!("the scene has no {kind}"));
     } else {
         let names: Vec<_> = known.iter().map(|known| format!("`{}`", known.as_ref())).collect();
         help.push(format!("known here: {}", names.join(", ")));

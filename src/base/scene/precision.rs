@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Arithmetic of the sums over neighbours of fluids. State, density, pressure, time stepping and the books of energy are in double precision in any case, and so are solids.
+/// Arithmetic of the sums over neighbours of fluids. State, density, pressure, time stepping and the energy balance are in double precision in any case, and so are solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Precision {

@@ -100,8 +100,14 @@ fn options(probe: &Probe, i: usize) -> Option<Problem> {
             "`relative_to` needs one of `on` and `at`",
             "`relative_to: (at: (0, 0), follows: \"bar\")`",
         )
+    } else if probe.line.is_some_and(|line| line.from == line.to) {
+        ("line.to", "the two ends of a line must be different points", "a single point is measured with `at`")
     } else if probe.line.is_some_and(|line| !(2..=MOST_PLACES).contains(&line.points)) {
-        ("line.points", "a line has 2 to 1000 places", "choose another number")
+        (
+            "line.points",
+            "`points` must be from 2 to 1000",
+            "a line has a place at each of its ends and others between them",
+        )
     } else {
         return None;
     };

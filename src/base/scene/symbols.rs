@@ -52,6 +52,7 @@ pub(super) fn fault_of_name(name: &str) -> Option<(String, String)> {
     if starts && name.chars().all(fits) && name.len() <= 100 {
         return None;
     }
-    let help = "names consist of letters, digits and `_`, start with no digit and have at most 100 bytes";
+    let help =
+        "names consist of letters, digits and `_`, do not start with a digit and have at most 100 bytes";
     Some(("the name cannot stand in an expression".to_owned(), help.to_owned()))
 }

@@ -63,11 +63,28 @@ impl Table {
 
     fn read(&self, file: &Path) -> Result<Vec<(f64, f64)>, String> {
         let shown = file.display();
-        let failed = |error: csv::Error| format!("cannot read the table `{shown}`: {error}");
+        let failed = |error: csv::Error| match error.kind() {
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                let line = error.position().map_or(0, csv::Position::line);
+                format!(
+                    "`{shown}`, line {line}: expected {expected_len} values as in the header, found {len}"
+                )
+            }
+            csv::ErrorKind::Utf8 { .. } => {
+                let line = error.position().map_or(0, csv::Position::line);
+                format!(
+                    "`{shown}`, line {line}: expected text in UTF-8; save the table as CSV in this encoding"
+                )
+            }
+            _ => format!("cannot read the table `{shown}`: {error}"),
+        };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(failed)?;
         let headers = reader.headers().map_err(failed)?.clone();
         let names: Vec<&str> =
             headers.iter().map(|name| name.split('[').next().unwrap_or(name).trim()).collect();
+        if names.is_empty() {
+            return Err(format!("the table `{shown}` is empty: expected a header and rows of two numbers"));
+        }
         if names.len() < 2 {
             return Err(format!("a table needs two columns, `{shown}` has {}", names.len()));
         }
@@ -84,13 +101,17 @@ impl Table {
             let [x, y] = columns.map(|k| record[k].parse::<f64>());
             let (Ok(x), Ok(y)) = (x, y) else {
                 return Err(format!(
-                    "`{shown}`, row {line}: expected numbers, found `{}`",
-                    record.as_slice()
+                    "`{shown}`, line {line}: expected numbers, found `{}`",
+                    record.iter().collect::<Vec<_>>().join(",")
                 ));
             };
             points.push((x, y));
         }
-        if points.is_empty() { Err(format!("a table needs a row, `{shown}` has none")) } else { Ok(points) }
+        if points.is_empty() {
+            Err(format!("the table `{shown}` has a header but no rows"))
+        } else {
+            Ok(points)
+        }
     }
 }
 

@@ -21,6 +21,17 @@ impl FillError {
     pub(super) fn new(path: impl Into<String>, kind: FillErrorKind) -> Self {
         Self { path: path.into(), kind }
     }
+
+    /// What is wrong, with the name of the field where the requirement is on one number.
+    pub fn message(&self) -> String {
+        match self.kind {
+            FillErrorKind::NotPositive(_) => {
+                let field = self.path.rsplit('.').next().unwrap_or_default();
+                format!("`{field}` {}", self.kind)
+            }
+            _ => self.kind.to_string(),
+        }
+    }
 }
 
 /// What is wrong with a field of a shape, or with the particles that would fill it.

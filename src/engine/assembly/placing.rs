@@ -49,7 +49,7 @@ pub(super) fn place_bodies<'r>(
             let (sites, bounds) =
                 fill(body, formulation.0, scene, source.folder(), memory_left).map_err(|error| {
                     let path = format!("bodies[{k}].{}", error.path);
-                    vec![Problem::at_path(path, error.kind.to_string()).helps(error.kind.help())]
+                    vec![Problem::at_path(path, error.message()).helps(error.kind.help())]
                 })?;
             Ok((formulation, sites, bounds))
         };

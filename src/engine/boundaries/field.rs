@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::part::Part;
-use crate::notation::place;
-use crate::notation::quantity;
+use crate::notation::{place, quantity};
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression, PerAxis};
@@ -81,7 +80,7 @@ impl Field {
             None => Ok(()),
             Some((point, value)) => Err(SetupError::parameter(
                 "value",
-                format!("the {what} must be finite, found {value} at {}", place(point)),
+                format!("the {what} must be finite, found {} at {} m", place(value), place(point)),
                 "give an expression that is finite on all selected particles",
             )),
         }
@@ -107,7 +106,9 @@ impl Field {
         }
         let (point, value) = (points[bad.0 - 1], out[bad.0 - 1]);
         let message = format!(
-            "the value must be finite, found {value} at the reference position {point} and {}",
+            "the value must be finite, found {} at the reference position {} m and {}",
+            place(value),
+            place(point),
             quantity(t, "s")
         );
         Err(StepError::System { system: by.to_owned(), message })

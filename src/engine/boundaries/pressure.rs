@@ -8,7 +8,7 @@ use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
 use super::skin_load::{self, Kind, LoadedSurface, skins_of};
-use crate::notation::quantity;
+use crate::notation::{place, quantity};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{Step, StepError};
@@ -98,7 +98,8 @@ impl LoadLaw for Follower {
             let pressure = self.value.eval(point, t);
             if !pressure.is_finite() {
                 let message = format!(
-                    "the pressure must be finite, found {pressure} at the reference position {point} and {}",
+                    "the pressure must be finite, found {pressure} Pa at the reference position {} m and {}",
+                    place(point),
                     quantity(t, "s")
                 );
                 return Err(StepError::System { system: Pressure::NAME.to_owned(), message });

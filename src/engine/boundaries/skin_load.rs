@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::field::Field;
 use super::symmetry::planes_of;
-use crate::notation::quantity;
+use crate::notation::{place, quantity};
 use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
 use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
@@ -205,7 +205,9 @@ impl SkinLoad {
                 };
             if !force.is_finite() {
                 let message = format!(
-                    "the load must be finite, found {force} N at the reference position {middle} and {}",
+                    "the load must be finite, found {} N at the reference position {} m and {}",
+                    place(force),
+                    place(middle),
                     quantity(t, "s")
                 );
                 return Err(StepError::System { system: (*label).to_owned(), message });

@@ -41,6 +41,19 @@ fn a_traction_on_a_bore_acts_on_its_area() {
 }
 
 #[test]
+fn a_load_without_a_value_is_told_with_its_place() {
+    let text = r#"(dimension: Two, materials: {"soft": StVenantKirchhoff(density: 1000, young: 1e6, poisson: 0.3)},
+        bodies: [(name: "b", material: "soft", shape: Box(min: (0, 0), max: (0.2, 0.05)), spacing: 0.01, formulation: TotalLagrangian)],
+        conditions: [Traction(on: Select(body: "b", face: MaxX), value: ("sqrt(-1 - t)", 0))], time: (end: 1e-5))"#;
+    let (scene, source) = parse(Source::new("test.ron", text.to_owned())).unwrap_or_else(|e| panic!("{e}"));
+    let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+    let error = sim.run(|_| true).expect_err("no load").to_string();
+    let wanted =
+        "the load must be finite, found (NaN, 0) N at the reference position (0.2, 0.0025) m and 0 s";
+    assert!(error.contains(wanted), "{error}");
+}
+
+#[test]
 fn a_pressure_all_around_a_body_has_no_resultant() {
     let load = r#"Pressure(on: Select(body: "b", surface: All), value: "1000")"#;
     for (dimension, shape) in [

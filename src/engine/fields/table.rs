@@ -66,7 +66,10 @@ impl FieldTable {
             .map(|k| if among.contains(BodyId(k)) { self.find(base, k) } else { None })
             .collect();
         let Some(first) = in_bodies.iter().flatten().next().map(|&k| self.shape(k)) else {
-            let (message, helps) = unknown("field", base, &self.names(among));
+            let (mut message, helps) = unknown("field", base, &self.names(among));
+            if self.fields.iter().any(|field| field.name() == base) {
+                message = format!("the bodies chosen here do not have the field `{base}`");
+            }
             return Err(Box::new(Problem::new(message).helps(helps)));
         };
         // Alternatives of one name that differ in unit or components are different things.

@@ -221,7 +221,7 @@ impl<'s> SimBuilder<'s> {
     /// The surface of a shape, which a tool has; `field` is the shape's name among the parameters, for errors.
     pub fn surface(&self, shape: &Shape, field: &str) -> Result<Box<dyn Surface>, SetupError> {
         shape.surface(self.scene.dimension, self.folder, field).map_err(|error| {
-            SetupError::parameter(error.path, error.kind.to_string(), error.kind.help().unwrap_or_default())
+            SetupError::parameter(error.path.clone(), error.message(), error.kind.help().unwrap_or_default())
         })
     }
 

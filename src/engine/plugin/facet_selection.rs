@@ -24,7 +24,11 @@ pub(crate) fn facets_of(
 ) -> Result<Vec<u32>, SetupError> {
     let region_of = |shape: &crate::shapes::Shape, path: &str| {
         shape.region(sim.dimension(), sim.folder(), path).map_err(|error| {
-            SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")
+            SetupError::parameter(
+                error.path.clone(),
+                error.message(),
+                "give a shape of the scene's dimension",
+            )
         })
     };
     let within = select.within.as_ref().map(|shape| region_of(shape, "on.within")).transpose()?;

@@ -42,7 +42,11 @@ pub(super) fn resolve(
     check(select, &path, bodies, dimension)?;
     let within = match &select.within {
         Some(shape) => Some(shape.region(dimension, folder, &path("within")).map_err(|error| {
-            SetupError::parameter(error.path, error.kind.to_string(), "give a shape of the scene's dimension")
+            SetupError::parameter(
+                error.path.clone(),
+                error.message(),
+                "give a shape of the scene's dimension",
+            )
         })?),
         None => None,
     };

@@ -366,7 +366,7 @@ impl<'a> Deserializer<'a> for Value<'a> {
 /// What is expected where a variant stands.
 fn one_of(name: &str, variants: &[&str]) -> String {
     let known: Vec<_> = variants.iter().map(|variant| format!("`{variant}`")).collect();
-    format!("a {name}: one of {}", known.join(", "))
+    format!("one of {} for this {name}", known.join(", "))
 }
 
 /// A name as serde reads the keys of fields and variants.

@@ -91,7 +91,7 @@ fn run(
     }
     match compiler.program.as_slice() {
         [Op::Constant(value)] if !value.is_finite() => {
-            Err(compiler.error(0..text.len(), "no finite value", ""))
+            Err(compiler.error(0..text.len(), format!("the value must be finite, found {value}"), ""))
         }
         _ => Ok(Program { ops: compiler.program, tables: compiler.tables }),
     }
@@ -124,9 +124,9 @@ impl Compiler<'_> {
         match self.peek() {
             Some(c) => {
                 let range = self.at..self.at + c.len_utf8();
-                self.error(range, format!("found `{c}` where {expected} was expected"), "")
+                self.error(range, format!("expected {expected}, found `{c}`"), "")
             }
-            None => self.error(self.at..self.at, format!("found the end where {expected} was expected"), ""),
+            None => self.error(self.at..self.at, format!("expected {expected}, found the end"), ""),
         }
     }
 
@@ -303,8 +303,12 @@ impl Compiler<'_> {
             return self.push(Op::Variable(index));
         }
         if VARIABLES.contains(&name.as_str()) {
-            let message = format!("a number that depends on `{name}`");
-            return Err(self.error(range, message, "numbers here are the same everywhere and always"));
+            let message = format!("the number must be constant, found `{name}`");
+            return Err(self.error(
+                range,
+                message,
+                "it may be made of numbers, parameters and functions of them",
+            ));
         }
         if let Some(value) = self.symbols.parameters.get(&name) {
             return self.push(Op::Constant(*value));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::notation::place;
+use crate::notation::{count, place};
 
 /// Why a file is no mesh, or its mesh no solid. Places are in the coordinates of the scene \[m\].
 #[derive(Debug, Error)]
@@ -13,7 +13,9 @@ pub enum MeshFault {
     #[error("the name ends neither in `.stl` nor in `.obj`")]
     Extension,
     /// A text that is no STL, or a binary file of the wrong length.
-    #[error("not an STL file: expected `solid` at its start or {expected} bytes, found {size} bytes")]
+    #[error(
+        "not an STL file: expected the word `solid` or a binary file of {expected} bytes, found {size} bytes"
+    )]
     NotStl {
         /// Length of the file in bytes.
         size: usize,
@@ -35,7 +37,7 @@ pub enum MeshFault {
     #[error("the file has no triangle")]
     NoTriangle,
     /// Edges with a triangle on one side only.
-    #[error("the mesh is open: {edges} edges have a triangle on one side only, the first at {} m", place(*at))]
+    #[error("the mesh is open: a triangle is on one side only at {}, the first at {} m", count(*edges as u64, "edge"), place(*at))]
     Open {
         /// Number of such edges.
         edges: usize,
@@ -43,7 +45,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Edges with more than two triangles.
-    #[error("at {edges} edges of the mesh more than two triangles meet, the first at {} m", place(*at))]
+    #[error("more than two triangles meet at {} of the mesh, the first at {} m", count(*edges as u64, "edge"), place(*at))]
     Crowded {
         /// Number of such edges.
         edges: usize,
@@ -51,7 +53,7 @@ pub enum MeshFault {
         at: DVec3,
     },
     /// Neighbouring triangles of which one faces outward and the other inward.
-    #[error("the triangles on both sides of {edges} edges face opposite ways, the first at {} m", place(*at))]
+    #[error("the triangles on the two sides face opposite ways at {}, the first at {} m", count(*edges as u64, "edge"), place(*at))]
     Orientation {
         /// Number of such edges.
         edges: usize,

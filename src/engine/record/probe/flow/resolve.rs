@@ -53,7 +53,7 @@ pub fn resolve(
                 shape.region(sim.dimension(), sim.folder(), &path)
             });
             let within = within.transpose().map_err(|error| {
-                let problem = Problem::at_path(error.path.clone(), error.kind.to_string());
+                let problem = Problem::at_path(error.path.clone(), error.message());
                 vec![problem.help("give a shape of the scene's dimension")]
             })?;
             Box::new(FluxGauge { at, normal, within })
