@@ -9,6 +9,7 @@
 //! has moved more than half the skin, within one set of particles or from one set to another (fluid and solid).
 
 mod axis;
+mod beside;
 mod buckets;
 mod cells;
 mod cloud;
@@ -23,6 +24,7 @@ mod search;
 mod tests;
 mod verlet;
 
+pub use beside::CellBlock;
 pub use buckets::Buckets;
 pub use cells::sort_into_cells;
 pub use cloud::bounds;

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Buckets, Periodic, sort_into_cells};
+use super::{Buckets, CellBlock, Periodic, sort_into_cells};
 
 /// Cells that a task takes.
 const CELLS_OF_TASK: usize = 64;
@@ -16,7 +16,7 @@ const CELLS_OF_TASK: usize = 64;
 /// The cells, and where their particles were.
 #[derive(Debug, Default)]
 pub struct Parting {
-    counts: [usize; 3],
+    grid: CellBlock,
     length: f64,
     cells: Buckets,
     /// In the order of cells, m.
@@ -66,7 +66,8 @@ impl Parting {
     /// Notes where particles are, in cells of at least that length, m.
     pub fn note(&mut self, positions: &[DVec3], length: f64) {
         let sorted = sort_into_cells(&mut self.cells, positions, length, &Periodic::NONE);
-        (self.counts, self.length) = (sorted.counts, sorted.length);
+        self.grid = CellBlock { counts: sorted.counts, wraps: [false; 3] };
+        self.length = sorted.length;
         self.then.clear();
         self.then.extend(self.cells.rows.iter().map(|&row| positions[row as usize]));
     }
@@ -90,27 +91,9 @@ impl Parting {
             *own = moved.fold(Displacements::NONE, Displacements::and);
         });
         let all = boxes.iter().fold(Displacements::NONE, |all, own| all.with(*own)).diagonal();
-        (0..3).for_each(|axis| self.widen(axis));
+        self.grid.join_beside(&mut self.boxes, &mut self.window, &Displacements::with);
         let near = self.boxes.iter().map(|own| own.diagonal()).fold(0.0, f64::max);
         Parted { near, all }
-    }
-
-    /// Joins each cell with those beside it along an axis.
-    fn widen(&mut self, axis: usize) {
-        let Self { counts, boxes, window, .. } = self;
-        let stride: usize = counts[..axis].iter().product();
-        let count = counts[axis];
-        if count == 1 {
-            return;
-        }
-        std::mem::swap(boxes, window);
-        boxes.clear();
-        boxes.extend(window.iter().enumerate().map(|(cell, own)| {
-            let k = cell / stride % count;
-            let before = if k > 0 { window[cell - stride] } else { Displacements::NONE };
-            let after = if k + 1 < count { window[cell + stride] } else { Displacements::NONE };
-            own.with(before).with(after)
-        }));
     }
 }
 

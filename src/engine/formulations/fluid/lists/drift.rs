@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::spread::{Growing, Spread};
 use crate::formulations::fluid::lanes::Record;
-use crate::neighbors::{Buckets, Periodic, SHIFT, sort_into_cells};
+use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
 /// What has to hold for lists to be good, m.
@@ -44,10 +44,8 @@ type Pair = [Spread; 2];
 /// The cells, with the particles that were in each when the lists were built.
 #[derive(Debug, Default)]
 pub struct Drift {
-    counts: [usize; 3],
-    /// Axes whose last cell is beside the first.
-    wraps: [bool; 3],
-    /// Periods of those axes, m, and one over them; zero on the others.
+    grid: CellBlock,
+    /// Periods of the axes along which the grid repeats, m, and one over them; zero on the others.
     periods: [Lanes4; 2],
     /// Least length of a cell, m.
     length: f64,
@@ -62,12 +60,12 @@ pub struct Drift {
 impl Drift {
     /// Sorts particles into cells of at least that length, m.
     pub fn sort(&mut self, positions: &[DVec3], length: f64, periodic: &Periodic) {
-        self.wraps = periodic.axes();
         let period = periodic.lengths();
         let inverse = DVec3::from_array(period.to_array().map(|l| if l > 0.0 { 1.0 / l } else { 0.0 }));
         self.periods = [Lanes4::new(period, 0.0), Lanes4::new(inverse, 0.0)];
         let sorted = sort_into_cells(&mut self.cells, positions, length, periodic);
-        (self.counts, self.length) = (sorted.counts, sorted.length);
+        self.grid = CellBlock { counts: sorted.counts, wraps: periodic.axes() };
+        self.length = sorted.length;
         self.then.resize(positions.len(), Lanes4::ZERO);
         let rows = (&mut self.then[..], &self.cells.rows[..]);
         sum_over_blocks(rows, &|_, (then, rows): (&mut [Lanes4], &[u32])| {
@@ -97,35 +95,13 @@ impl Drift {
         if far_apart < 0.0 {
             return far_apart;
         }
-        (0..3).for_each(|axis| self.widen(axis));
+        let join = |[a, b]: Pair, [c, d]: Pair| [a.with(c), b.with(d)];
+        self.grid.join_beside(&mut self.spreads, &mut self.window, &join);
         let least = |[fluid, walls]: &Pair| {
             (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls))
         };
         let near = self.spreads.par_iter().with_min_len(256).map(least).reduce(|| f64::INFINITY, f64::min);
         far_apart.min(near)
-    }
-
-    /// Joins each cell with those beside it along an axis.
-    fn widen(&mut self, axis: usize) {
-        let Self { counts, wraps, spreads, window, .. } = self;
-        let stride: usize = counts[..axis].iter().product();
-        let (count, wraps) = (counts[axis], wraps[axis]);
-        if count == 1 {
-            return;
-        }
-        std::mem::swap(spreads, window);
-        spreads.resize(window.len(), [Spread::NONE; 2]);
-        spreads.par_iter_mut().with_min_len(256).enumerate().for_each(|(cell, spread)| {
-            let k = cell / stride % count;
-            let first = cell - k * stride;
-            let before = if k > 0 { Some(k - 1) } else { wraps.then_some(count - 1) };
-            let after = if k + 1 < count { Some(k + 1) } else { wraps.then_some(0) };
-            *spread = window[cell];
-            for beside in [before, after].into_iter().flatten() {
-                let [fluid, walls] = window[first + beside * stride];
-                *spread = [spread[0].with(fluid), spread[1].with(walls)];
-            }
-        });
     }
 }
 
