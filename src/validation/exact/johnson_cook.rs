@@ -13,7 +13,7 @@ use crate::template::Template;
 pub(crate) const CASE: Case = Case {
     id: "M3",
     title: "flow stress of Johnson and Cook",
-    resolutions: &[250, 500, 1000],
+    resolutions: &[500, 1000, 2000],
     ci_resolution: 500,
     run: johnson_cook,
 };
