@@ -10,7 +10,7 @@ use crate::formulations::fluid::cloud::{
     FlowCloud, FluidState, Group, Neighborhood, Role, Surface, Viscosities,
 };
 use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
-use crate::formulations::fluid::lists::{FlowPairs, NearRows, Skins, Thickness, ThinBody};
+use crate::formulations::fluid::lists::{FlowPairs, GapPairs, NearRows, Side, Skins, Thickness, ThinBody};
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
@@ -18,7 +18,7 @@ use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::scene::{Dimension, Problem};
-use crate::world::BodyId;
+use crate::world::{BodyId, Column, Damage};
 
 /// What all fluids of a scene have in common.
 struct Common {
@@ -184,6 +184,7 @@ fn cloud(
     let skins = Skins::new(support, spacing, &periodic);
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
+    let gaps = GapPairs::new(sides(&groups, sim));
     let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
     Ok(FlowCloud {
         groups,
@@ -195,17 +196,38 @@ fn cloud(
         before: Vec::new(),
         records: vec![Record::default(); total],
         blocks,
-        pairs: FlowPairs::new(skins, periodic, ends, thin, plane),
+        pairs: FlowPairs::new(skins, periodic, ends, thin, plane).with_gaps(gaps),
         near: NearRows::default(),
         near_boundary: NearRows::default(),
         compression: Vec::new(),
         is_close: Vec::new(),
         reach,
         repelled: Vec::new(),
+        gap_forces: Vec::new(),
         loads: Vec::new(),
         spins: if spin { vec![Lanes4::ZERO; total] } else { Vec::new() },
         neighborhoods,
     })
+}
+
+/// The boundaries as the search for gaps sees them. A deformable body that a symmetry plane cuts goes on behind it, where a wall ends the fluid: there is no gap between the two. In a body
+/// that can fail, empty space may be a crack.
+fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<Side> {
+    let is_cut = sim.scene().conditions.iter().any(|item| item.name() == "Symmetry");
+    let copies = |body: BodyId| groups.iter().filter(|group| group.body == body).count();
+    let side = |group: &Group| {
+        let Role::Boundary(surface) = &group.role else { return None };
+        let ends_at_plane = is_cut && sim.body(group.body).kind == BodyKind::Solid;
+        let can_fail = sim.columns(group.phase).get(Damage::NAME).is_some();
+        Some(Side {
+            body: group.body,
+            rows: group.cloud.clone(),
+            is_moved: surface.moved,
+            is_thin: copies(group.body) > 1,
+            is_closed: ends_at_plane || can_fail,
+        })
+    };
+    groups.iter().filter_map(side).collect()
 }
 
 /// Who is beside whom in the bodies to which fluids stick.

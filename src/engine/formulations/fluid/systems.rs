@@ -2,15 +2,17 @@
 
 use super::fields::fields;
 use crate::formulations::fluid::cloud::{
-    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, Group, ListPosition, NEIGHBORS, Neighbors,
-    REPELLED, Role, SPINS,
+    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
+    Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{Continuity, DensityShift, EquationOfState};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::{Couples, Spin};
 use crate::formulations::fluid::setup::advice;
-use crate::formulations::fluid::walls::{PreviousVelocity, RangeShortfall, Repulsion, WallState};
+use crate::formulations::fluid::walls::{
+    GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallState,
+};
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
 use crate::plugin::{BodyKind, SetupError, SimBuilder};
@@ -143,6 +145,18 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
+        );
+    }
+    if groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.moved)) {
+        let gaps = GapPressure::new(sim.gravity(), sim.body(groups[0].body).spacing);
+        sim.add_system(
+            System::new(Stage::Boundary, "gap_pressure", gaps)
+                .on_phases(boundaries.iter().copied())
+                .in_long_steps()
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(FLOW_LOADS, Mode::ReadsNear)
+                .touches_packed(GAP_FORCES, Mode::Writes)
+                .after(WALL_PRESSURE),
         );
     }
     for phase in boundaries {

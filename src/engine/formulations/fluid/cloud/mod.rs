@@ -44,6 +44,6 @@ pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_blocks::RowSums;
 pub use row_pass::{NearPairs, RowPass};
-pub use shared::{COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, REPELLED, SPINS};
+pub use shared::{COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
 pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};

@@ -15,7 +15,7 @@ use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role}
 use crate::formulations::fluid::lanes::Record;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
 use crate::formulations::fluid::rotation::Couples;
-use crate::parallel::{Lanes4, for_each_block, share_rows, share_wide_rows};
+use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
 use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
@@ -136,10 +136,9 @@ impl Coupling {
             to.resize(group.rows.len(), Force::default());
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
             PairForce { cloud, group, adds: false }.run(to, parts_to);
-            share_rows(to);
-            share_wide_rows(parts_to, PARTS);
             couples.add(cloud, group, to, parts_to);
             cloud.repel(group, to, parts_to);
+            cloud.press_gaps(group, to, parts_to);
             if side == 0 {
                 self.drag.clear();
                 self.drag.resize(group.rows.len(), 0.0);

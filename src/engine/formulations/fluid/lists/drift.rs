@@ -21,6 +21,8 @@ pub struct Skins {
     pub fluid: f64,
     /// Skin of the lists of fluids and what bounds them.
     pub walls: f64,
+    /// Skin of the lists of boundaries among themselves; without end where there are none.
+    pub gaps: f64,
 }
 
 /// Skin of the neighbour lists of fluids over their spacing.
@@ -34,7 +36,12 @@ impl Skins {
         let lengths = periodic.lengths().to_array().into_iter().filter(|&length| length > 0.0);
         let room =
             lengths.fold(f64::INFINITY, |room, length| room.min((0.5 - 1e-9) * length - support)).max(0.0);
-        Self { support, fluid: room.min(SKIN * spacing), walls: room.min(WALL_SKIN * spacing) }
+        Self {
+            support,
+            fluid: room.min(SKIN * spacing),
+            walls: room.min(WALL_SKIN * spacing),
+            gaps: f64::INFINITY,
+        }
     }
 }
 
@@ -98,10 +105,32 @@ impl Drift {
         let join = |[a, b]: Pair, [c, d]: Pair| [a.with(c), b.with(d)];
         self.grid.join_beside(&mut self.spreads, &mut self.window, &join);
         let least = |[fluid, walls]: &Pair| {
-            (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls))
+            let flow = (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls));
+            flow.min(skins.gaps - walls.farthest(*walls))
         };
         let near = self.spreads.par_iter().with_min_len(256).map(least).reduce(|| f64::INFINITY, f64::min);
         far_apart.min(near)
+    }
+
+    /// Lists the particles from row `first` on, ascending, that have one with another label in their cell or in one beside it. A label of `u32::MAX` counts for nothing.
+    pub fn rows_beside_others(&self, first: usize, label: impl Fn(usize) -> u32, out: &mut Vec<usize>) {
+        const NONE: [u32; 2] = [u32::MAX, 0];
+        let labels = |cell: usize| {
+            let rows = &self.cells.rows[self.cells.range(cell)];
+            let rows = &rows[rows.partition_point(|&row| (row as usize) < first)..];
+            rows.iter()
+                .map(|&row| (row as usize, label(row as usize)))
+                .filter(|(_, label)| *label != u32::MAX)
+        };
+        let join = |a: [u32; 2], b: [u32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let of_cell = |cell| labels(cell).fold(NONE, |all, (_, label)| join(all, [label, label]));
+        let mut ranges: Vec<[u32; 2]> = (0..self.cells.count()).map(of_cell).collect();
+        self.grid.join_beside(&mut ranges, &mut Vec::new(), &join);
+        out.clear();
+        for (cell, [low, high]) in ranges.into_iter().enumerate().filter(|(_, [low, high])| low < high) {
+            out.extend(labels(cell).filter(|(_, label)| low < *label || *label < high).map(|(row, _)| row));
+        }
+        out.sort_unstable();
     }
 }
 
@@ -135,7 +164,7 @@ impl HotLoop for Moved<'_> {
 mod tests {
     use super::*;
 
-    const SKINS: Skins = Skins { support: 0.26, fluid: 0.04, walls: 0.08 };
+    const SKINS: Skins = Skins { support: 0.26, fluid: 0.04, walls: 0.08, gaps: f64::INFINITY };
 
     /// Particles that hop about, and those of a floor.
     fn places(fluid: usize, floor: usize) -> Vec<DVec3> {

@@ -12,9 +12,12 @@ mod thickness;
 
 mod sides;
 
+mod gaps;
+
 mod pairs;
 
 pub use drift::Skins;
+pub use gaps::{GapPairs, Side};
 pub use near_rows::{NearRow, NearRows, NearWriter};
 pub use pairs::FlowPairs;
 pub use sides::ThinBody;

@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::drift::{Drift, Skins};
+use super::gaps::GapPairs;
 use super::sides::{Sides, ThinBody};
 use super::spread::Spread;
 use crate::formulations::fluid::lanes::Record;
@@ -30,6 +31,8 @@ pub struct FlowPairs {
     pub walls: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,
+    /// Boundary particles beside gaps between bodies.
+    pub gaps: GapPairs,
     plane: bool,
     /// How much particles that are near each other can at least still move against each other, m.
     room: f64,
@@ -50,11 +53,21 @@ impl FlowPairs {
             fluid: NeighborList::default(),
             walls: NeighborList::default(),
             boundary: NeighborList::default(),
+            gaps: GapPairs::default(),
             room: f64::NEG_INFINITY,
             thin,
             plane,
             builds: 0,
         }
+    }
+
+    /// Keeps lists of what is beside gaps as well.
+    pub fn with_gaps(mut self, gaps: GapPairs) -> Self {
+        if gaps.are_possible() {
+            self.skins.gaps = self.skins.walls;
+        }
+        self.gaps = gaps;
+        self
     }
 
     #[inline]
@@ -80,7 +93,7 @@ impl FlowPairs {
         fluid: usize,
         blocks: Option<&mut Lists>,
     ) -> Result<(), NeighborError> {
-        let Skins { support, fluid: skin, walls: wall_skin } = self.skins;
+        let Skins { support, fluid: skin, walls: wall_skin, .. } = self.skins;
         let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
         if blocks.is_some() {
             self.search.sort(wet, skin, &self.periodic)?;
@@ -90,9 +103,12 @@ impl FlowPairs {
         self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
         self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
+        let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
+        let faces = |i, j| sides.sees(i, j, &self.walls) && sides.sees(j, i, &self.walls);
+        self.drift.sort(positions, CELL * support, &self.periodic);
+        self.gaps.build((positions, fluid), (support, wall_skin), (&self.periodic, &self.drift), faces)?;
         let mut hides = None;
         if !self.thin.is_empty() {
-            let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
             let walls = self.walls.clone();
             self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));
@@ -112,7 +128,6 @@ impl FlowPairs {
             };
             lists.build(&sources, (&mut self.search, &self.groups), &self.walls)?;
         }
-        self.drift.sort(positions, CELL * support, &self.periodic);
         // The particles may have moved already: those of an interrupted run have.
         self.room = f64::NEG_INFINITY;
         self.builds += 1;

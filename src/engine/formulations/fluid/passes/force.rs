@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::blocks::BlockForce;
 use super::pair_force::PairForce;
-use crate::formulations::fluid::cloud::{ACCOUNTS, FLOW_RECORDS, FlowCloud, PARTS, REPELLED, Role, SPINS};
+use crate::formulations::fluid::cloud::{
+    ACCOUNTS, FLOW_RECORDS, FlowCloud, GAP_FORCES, PARTS, REPELLED, Role, SPINS,
+};
 use crate::formulations::fluid::rotation::Couples;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::{for_each_block, share_wide_rows};
@@ -20,6 +22,7 @@ pub fn reads_flow(system: System) -> System {
         .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
         .touches_packed(SPINS, Mode::ReadsNear)
         .touches_packed(REPELLED, Mode::Reads)
+        .touches_packed(GAP_FORCES, Mode::Reads)
 }
 
 /// Makes the forces on the particles of one phase.
@@ -58,11 +61,12 @@ impl Run for FlowForce {
                 let pass = PairForce { cloud: &cloud, group, adds: !flows };
                 match terms {
                     Some(terms) => pass.run_with(terms, step, total, forces)?,
-                    None => pass.run(total, forces),
+                    None => pass.run_own(total, forces),
                 }
             }
             self.couples.add(&cloud, group, total, forces);
             cloud.repel(group, total, forces);
+            cloud.press_gaps(group, total, forces);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);

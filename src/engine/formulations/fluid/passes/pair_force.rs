@@ -13,7 +13,9 @@ use super::pair_sums::{Between, Forces, Pairs};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
 use crate::formulations::fluid::lanes::{FluidKernel, Own, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
-use crate::parallel::{BlockSum, FourLanes, PlaneOrSolid, Split, for_each_own_block, run_hot_in};
+use crate::parallel::{
+    BlockSum, FourLanes, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows, share_wide_rows,
+};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
@@ -44,15 +46,22 @@ impl Split for ForceRows<'_> {
 }
 
 impl PairForce<'_> {
-    /// Writes the forces on the particles of the group that this rank computes and [`PARTS`] parts of each, N.
+    /// Writes the forces on all particles of the group and [`PARTS`] parts of each, N.
     pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
+        self.run_own(total, parts);
+        share_rows(total);
+        share_wide_rows(parts, PARTS);
+    }
+
+    /// The same for the particles that this rank computes.
+    pub fn run_own(&self, total: &mut [Force], parts: &mut [DVec3]) {
         let rows = ForceRows { written: TermRows::without_terms(total), parts };
         for_each_own_block(rows, &mut Vec::new(), &|first, rows| {
             run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms: None });
         });
     }
 
-    /// The same with the pair terms of the body, which get the geometry of each row as the pass has made it.
+    /// [`PairForce::run_own`] with the pair terms of the body, which get the geometry of each row as the pass has made it.
     pub fn run_with(
         &self,
         terms: &mut PhaseTerms,

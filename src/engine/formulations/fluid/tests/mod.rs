@@ -22,6 +22,8 @@ mod ringing;
 
 mod noticing;
 
+mod gaps;
+
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};

@@ -12,6 +12,9 @@ mod wall_pressure;
 
 mod wall_state;
 
+mod gaps;
+
+pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody};

@@ -12,6 +12,8 @@ mod compression;
 
 mod filling;
 
+mod thin_gap;
+
 mod fit;
 
 mod friction;

@@ -1,0 +1,145 @@
+//! Bodies so near to walls that no particle of the fluid fits between: they feel the pressure that the fluid has there.
+
+use glam::DVec3;
+
+use super::{column, double, simulation};
+use crate::formulations::fluid::FlowCloud;
+use crate::simulation::Simulation;
+use crate::world::{BodyId, Position, Pressure};
+
+const GRAVITY: f64 = 9.81;
+
+/// A body in a tank with still water 0.2 m deep; the shape of the water leaves out that of the body.
+fn tank(shape: &str, more: &str) -> String {
+    format!(
+        r#"(dimension: Two, gravity: (0.0, -{GRAVITY}),
+            materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "stone": NeoHookean(density: 2500.0, young: 1.0e6, poisson: 0.3)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.01, formulation: Fluid, shape: Difference(Box(min: (0, 0), max: (0.3, 0.2)), {shape})),
+                (name: "tank", material: "wall", spacing: 0.01, formulation: Wall(),
+                 shape: Difference(Box(min: (-0.03, -0.03), max: (0.33, 0.25)), Box(min: (0, 0), max: (0.3, 1)))),
+                (name: "stone", material: "stone", spacing: 0.01, formulation: Rigid(), shape: {shape}),
+            ],
+            {more}, time: (end: 0.05))"#
+    )
+}
+
+/// Force of the water on a body at the end of a run, N.
+fn force(sim: &mut Simulation, body: usize) -> DVec3 {
+    sim.run(|_| true).expect("a run");
+    let cloud = sim.resources().get::<FlowCloud>();
+    cloud.forces_on(BodyId(body)).expect("a flow").iter().map(|(force, _)| *force).sum()
+}
+
+/// Archimedes: the floor gives what is missing on the side where the body lies.
+#[test]
+fn a_body_on_the_floor_or_at_a_wall_has_its_buoyancy() {
+    let held = r#"conditions: [Fix(on: Select(body: "stone"))]"#;
+    for (shape, area) in [
+        ("Box(min: (0.1, 0.0), max: (0.2, 0.06))", 0.006),
+        ("Box(min: (0.0, 0.06), max: (0.06, 0.12))", 0.0036),
+        ("Box(min: (0.0, 0.0), max: (0.1, 0.1))", 0.01),
+        ("Sphere(center: (0.15, 0.05), radius: 0.05)", 0.007854),
+    ] {
+        let on_body = force(&mut simulation(&tank(shape, held)), 2);
+        let lift = 1000.0 * GRAVITY * area;
+        // What presses one side alone is ten times as much.
+        assert!((on_body - lift * DVec3::Y).length() < 0.2 * lift, "{shape}: {on_body} and {lift}");
+    }
+    let block = "Box(min: (0.1, 0.0), max: (0.2, 0.06))";
+    let lift = force(&mut simulation(&tank(block, held)), 2).y;
+    assert!((lift / (1000.0 * GRAVITY * 0.006) - 1.0).abs() < 0.01, "{lift}");
+}
+
+#[test]
+fn the_forces_in_a_gap_have_no_sum_and_no_couple() {
+    let (ball, block) =
+        ("Sphere(center: (0.15, 0.05), radius: 0.05)", "Box(min: (0.2, 0.03), max: (0.24, 0.07))");
+    let pebble = format!(
+        r#"(name: "pebble", material: "stone", spacing: 0.01, formulation: Rigid(), shape: {block}), (name: "tank""#
+    );
+    let text = tank(ball, "conditions: []")
+        .replacen(ball, &format!("Union([{ball}, {block}])"), 1)
+        .replacen(r#"(name: "tank""#, &pebble, 1)
+        .replace("end: 0.05", "end: 0.001");
+    let mut sim = double(&text);
+    sim.run(|_| true).expect("a run");
+    let cloud = sim.resources().get::<FlowCloud>();
+    let forces = &cloud.gap_forces;
+    let places = cloud.records[cloud.fluid..].iter().map(|record| record.position());
+    let scale: f64 = forces.iter().map(|force| force.length()).sum();
+    assert!(scale > 100.0, "{scale}");
+    let sum: DVec3 = forces.iter().sum();
+    let couple: DVec3 = places.zip(forces).map(|(x, force)| x.cross(*force)).sum();
+    assert!(sum.length() < 1e-12 * scale && couple.length() < 1e-12 * scale, "{sum}, {couple}, {scale}");
+}
+
+/// Its weight over the width between the walls.
+#[test]
+fn a_piston_bears_on_the_width_between_the_walls() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0.0, -9.81),
+            materials: {"water": Fluid(density: 1000.0, sound_speed: 40.0), "steel": NeoHookean(density: 8000.0, young: 1.0e7, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.02, formulation: Fluid(pressure: "7848 + 9810*(0.2 - y)"), shape: Box(min: (0, 0), max: (0.2, 0.2))),
+                (name: "piston", material: "steel", spacing: 0.02, formulation: Rigid(), shape: Box(min: (0, 0.2), max: (0.2, 0.3))),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                 shape: Difference(Box(min: (-0.08, -0.08), max: (0.28, 0.5)), Box(min: (0, 0), max: (0.2, 1)))),
+            ],
+            conditions: [Fix(on: Select(body: "piston"))], time: (end: 0.02))"#,
+    );
+    let lift = force(&mut sim, 1).y;
+    let pressure = column::<Pressure>(&sim, 0);
+    let places = column::<Position>(&sim, 0);
+    // The pressure at the piston, from that at each height.
+    let at_piston = |(p, x): (&Pressure, &Position)| p.0 - 1000.0 * GRAVITY * (0.2 - x.0.y);
+    let mean = pressure.iter().zip(&places).map(at_piston).sum::<f64>() / places.len() as f64;
+    assert!((lift / (0.2 * mean) - 1.0).abs() < 0.02, "{lift} N, {mean} Pa");
+}
+
+#[test]
+fn a_thin_plate_that_lies_on_the_floor_is_told_of() {
+    let told = |shape: &str| {
+        let mut sim = simulation(&tank(shape, r#"conditions: [Fix(on: Select(body: "stone"))]"#));
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("`stone` lies along `tank` and is thinner"))
+    };
+    assert!(told("Box(min: (0.1, 0.0), max: (0.2, 0.02))"));
+    // One that stands on it, one between, and one that is thick.
+    assert!(!told("Box(min: (0.14, 0.0), max: (0.16, 0.18))"));
+    assert!(!told("Box(min: (0.1, 0.1), max: (0.2, 0.12))"));
+    assert!(!told("Box(min: (0.1, 0.0), max: (0.2, 0.06))"));
+}
+
+/// A dam on the floor with water on one side: the pressure below it is between that of the water and none.
+#[test]
+fn the_pressure_below_a_dam_ends_where_it_is_dry() {
+    let shape = "Box(min: (0.1, 0.0), max: (0.2, 0.22))";
+    let text = tank(shape, r#"conditions: [Fix(on: Select(body: "stone"))]"#).replace(
+        &format!("Difference(Box(min: (0, 0), max: (0.3, 0.2)), {shape})"),
+        "Box(min: (0, 0), max: (0.1, 0.2))",
+    );
+    let on_dam = force(&mut simulation(&text), 2);
+    let (push, all_wet) = (0.5 * 1000.0 * GRAVITY * 0.04, 1000.0 * GRAVITY * 0.2 * 0.1);
+    assert!((on_dam.x / push - 1.0).abs() < 0.03, "{on_dam}");
+    assert!((0.3..0.7).contains(&(on_dam.y / all_wet)), "{on_dam}");
+}
+
+#[test]
+fn a_cube_on_the_floor_has_its_buoyancy_in_space() {
+    let mut sim = simulation(
+        r#"(dimension: Three, gravity: (0.0, -9.81, 0.0),
+            materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0), "stone": NeoHookean(density: 2500.0, young: 1.0e6, poisson: 0.3)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.02, formulation: Fluid(support: 2.8),
+                 shape: Difference(Box(min: (0, 0, 0), max: (0.24, 0.2, 0.24)), Box(min: (0.08, 0, 0.08), max: (0.16, 0.08, 0.16)))),
+                (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(),
+                 shape: Difference(Box(min: (-0.06, -0.06, -0.06), max: (0.3, 0.22, 0.3)), Box(min: (0, 0, 0), max: (0.24, 1, 0.24)))),
+                (name: "stone", material: "stone", spacing: 0.02, formulation: Rigid(), shape: Box(min: (0.08, 0, 0.08), max: (0.16, 0.08, 0.16))),
+            ],
+            conditions: [Fix(on: Select(body: "stone"))], time: (end: 0.01))"#,
+    );
+    let lift = force(&mut sim, 2);
+    let expected = 1000.0 * GRAVITY * 0.08_f64.powi(3);
+    assert!((lift - expected * DVec3::Y).length() < 0.1 * expected, "{lift} and {expected}");
+}

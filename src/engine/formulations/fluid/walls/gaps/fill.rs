@@ -1,0 +1,131 @@
+//! The pressure in gaps, continued from where the fluid is.
+//!
+//! A particle with fluid in its support has the pressure of a wall. From there, and from where a dry gap is open to the air, pressures are continued along the body in steps of a
+//! support: each particle takes the mean of those near it that are known, with the weight of the fluid between the two. In a gap that is wet on one side and dry on the other, the
+//! two meet halfway.
+
+use glam::DVec3;
+
+use super::moments::Surrounding;
+use crate::formulations::fluid::cloud::FlowCloud;
+
+/// Share of the fluid below which a particle sees none.
+const LEAST_SHARE: f64 = 1e-10;
+/// Closed share below which a dry gap is at its end.
+const OPEN: f64 = 0.5;
+
+/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rest {
+    pub pressure: f64,
+    pub slope: DVec3,
+}
+
+impl Rest {
+    /// The pressure at that offset, m, Pa.
+    fn at(&self, x: DVec3) -> f64 {
+        self.pressure + self.slope.dot(x)
+    }
+
+    /// Beside a boundary particle, if fluid is in its support.
+    pub fn of_wet(cloud: &FlowCloud, gravity: DVec3, row: u32) -> Option<Self> {
+        let (mut total, mut slope) = (0.0, DVec3::ZERO);
+        let near = cloud.near_row(row as usize);
+        for pair in near.iter().filter_map(|&j| cloud.gap_pair(row as usize, j)) {
+            let density = cloud.groups.iter().find(|group| group.cloud.contains(&pair.row));
+            let density = density.and_then(|group| group.fluid()).map_or(0.0, |state| state.density);
+            total += pair.value;
+            slope += pair.value * density * (gravity + cloud.load(pair.row));
+        }
+        let pressure = cloud.records[row as usize].pressure();
+        (total > LEAST_SHARE).then(|| Self { pressure, slope: slope / total })
+    }
+}
+
+/// A particle of a gap.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gap {
+    /// Its rows in the cloud and in the lists of gaps.
+    pub particle: [u32; 2],
+    pub around: Surrounding,
+    /// Share of the empty space around it that is a gap.
+    pub closed: f64,
+    /// The fluid there; none before it is known.
+    pub fluid: Option<Rest>,
+}
+
+/// Finds the fluid at the particles beside gaps that are joined to the fluid or to the air.
+#[derive(Debug, Default)]
+pub struct Fill {
+    /// Number of every boundary particle among those beside gaps.
+    numbers: Vec<u32>,
+    found: Vec<(usize, Rest)>,
+    /// Sums of weights and of pressures with them at particles on the other side of gaps.
+    beyond: Vec<[f64; 2]>,
+}
+
+impl Fill {
+    /// Continues what is known of the gaps to the others, and to their other sides.
+    pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap]) {
+        self.numbers.clear();
+        self.numbers.resize(cloud.records.len() - cloud.fluid, u32::MAX);
+        for (k, gap) in (0..).zip(gaps.iter_mut()) {
+            self.numbers[gap.particle[0] as usize - cloud.fluid] = k;
+            if gap.fluid.is_none() && gap.closed < OPEN {
+                gap.fluid = Some(Rest::default());
+            }
+        }
+        let mut found = std::mem::take(&mut self.found);
+        loop {
+            found.clear();
+            let unknown = (0..gaps.len()).filter(|&k| gaps[k].fluid.is_none());
+            found.extend(unknown.filter_map(|k| Some((k, self.continued(cloud, gaps, k)?))));
+            found.iter().for_each(|&(k, fluid)| gaps[k].fluid = Some(fluid));
+            if found.is_empty() {
+                break;
+            }
+        }
+        self.found = found;
+        self.go_beyond(cloud, gaps);
+    }
+
+    /// The fluid at particle `k` by those near it.
+    fn continued(&self, cloud: &FlowCloud, gaps: &[Gap], k: usize) -> Option<Rest> {
+        let [row, list] = gaps[k].particle;
+        let (mut total, mut sum) = (0.0, Rest::default());
+        for &j in cloud.pairs.gaps.list.row(list as usize) {
+            let number = self.numbers[j as usize - cloud.fluid] as usize;
+            let Some(there) = gaps.get(number).and_then(|gap| gap.fluid) else { continue };
+            let Some(pair) = cloud.gap_pair(row as usize, j) else { continue };
+            total += pair.value;
+            sum.pressure += pair.value * there.at(-pair.x);
+            sum.slope += pair.value * there.slope;
+        }
+        // A floor of zero keeps a gap above the surface dry.
+        let mean = || Rest { pressure: (sum.pressure / total).max(0.0), slope: sum.slope / total };
+        (total > LEAST_SHARE).then(mean)
+    }
+
+    /// Continues pressures to the other sides of gaps.
+    fn go_beyond(&mut self, cloud: &FlowCloud, gaps: &[Gap]) {
+        self.beyond.clear();
+        self.beyond.resize(cloud.records.len() - cloud.fluid, [0.0; 2]);
+        for gap in gaps {
+            let Some(fluid) = gap.fluid else { continue };
+            for pair in cloud.across_gap(gap.particle) {
+                let sum = &mut self.beyond[pair.row - cloud.fluid];
+                sum[0] += pair.value;
+                sum[1] += pair.value * fluid.at(pair.x).max(0.0);
+            }
+        }
+    }
+
+    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support.
+    pub fn beyond(&self, cloud: &FlowCloud, row: usize) -> Option<f64> {
+        if !cloud.near_row(row).is_empty() {
+            return Some(cloud.records[row].pressure());
+        }
+        let [total, pressure] = self.beyond[row - cloud.fluid];
+        (total > LEAST_SHARE).then(|| pressure / total)
+    }
+}

@@ -1,0 +1,112 @@
+//! The system that gives bodies the pressure of gaps that no particle of the fluid fits into.
+
+use glam::DVec3;
+
+use super::fill::{Fill, Gap, Rest};
+use super::moments::{Pair, Surrounding, of_surface};
+use super::share::give;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
+use crate::parallel::{for_each_block, for_each_heavy_block};
+use crate::schedule::{Run, Step, StepError};
+use crate::world::Force;
+
+/// Finds the forces of the pressure in gaps.
+#[derive(Default)]
+pub struct GapPressure {
+    /// Acceleration of gravity, m/s2.
+    gravity: DVec3,
+    /// Spacing of the fluid, m.
+    spacing: f64,
+    gaps: Vec<Gap>,
+    fill: Fill,
+    across: Vec<Pair>,
+}
+
+type Rows<'a> = (&'a mut [Gap], &'a [[u32; 2]]);
+
+impl GapPressure {
+    /// Under this gravity, m/s2, beside a fluid of this spacing, m.
+    pub fn new(gravity: DVec3, spacing: f64) -> Self {
+        Self { gravity, spacing, ..Self::default() }
+    }
+
+    /// Looks at what surrounds the particles beside gaps, and finds the fluid there; says whether there is any pressure.
+    fn measure(&mut self, cloud: &FlowCloud) -> bool {
+        let Self { gravity, spacing, gaps, fill, .. } = self;
+        let particles = &cloud.pairs.gaps.particles[..];
+        gaps.resize(particles.len(), Gap::default());
+        let rows = (&mut gaps[..], particles);
+        for_each_block(rows, &mut Vec::new(), &|_, (gaps, particles): Rows<'_>| {
+            for (gap, &particle) in gaps.iter_mut().zip(particles) {
+                *gap = Gap { particle, ..Gap::default() };
+                gap.fluid = Rest::of_wet(cloud, *gravity, particle[0]);
+            }
+        });
+        if gaps.iter().all(|gap| gap.fluid.is_none_or(|fluid| fluid.pressure == 0.0)) {
+            return false;
+        }
+        let surface = of_surface(cloud, *spacing);
+        for_each_heavy_block(&mut gaps[..], &mut Vec::new(), &|_, gaps: &mut [Gap]| {
+            for gap in gaps {
+                gap.around = Surrounding::of(cloud, gap.particle);
+                gap.closed = gap.around.closed(surface);
+            }
+        });
+        fill.run(cloud, gaps);
+        true
+    }
+
+    /// Finds the forces on all boundary particles beside gaps.
+    fn press(&mut self, cloud: &FlowCloud, forces: &mut [DVec3]) {
+        let Self { gaps, fill, across, .. } = self;
+        for gap in gaps {
+            let Some(Rest { pressure, slope }) = gap.fluid else { continue };
+            let row = gap.particle[0] as usize;
+            across.clear();
+            across.extend(cloud.across_gap(gap.particle));
+            let of_pair = |pair: &Pair| {
+                let there = fill.beyond(cloud, pair.row).unwrap_or(pressure);
+                (pressure + there) * pair.weight * pair.x
+            };
+            let mut force = -across.iter().map(of_pair).sum::<DVec3>();
+            // A thin body has its other side within the support: what is empty there is no gap.
+            if pressure != 0.0 && !cloud.pairs.gaps.side_of(row).is_thin {
+                force += gap.closed * gap.around.force(pressure, slope);
+            }
+            give(cloud, row, cloud.records[row].volume() * force, across, forces);
+        }
+    }
+}
+
+impl Run for GapPressure {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let mut forces = std::mem::take(&mut cloud.gap_forces);
+        forces.clear();
+        if !cloud.pairs.gaps.particles.is_empty() && self.measure(&cloud) {
+            forces.resize(cloud.records.len() - cloud.fluid, DVec3::ZERO);
+            self.press(&cloud, &mut forces);
+        }
+        cloud.gap_forces = forces;
+        Ok(())
+    }
+}
+
+impl FlowCloud {
+    /// Adds the pressure of gaps to the forces on the particles of a group, and to the part of them that is due to boundaries.
+    pub(in crate::formulations::fluid) fn press_gaps(
+        &self,
+        group: &Group,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) {
+        if group.fluid().is_some() || self.gap_forces.is_empty() {
+            return;
+        }
+        let forces = &self.gap_forces[group.cloud.start - self.fluid..group.cloud.end - self.fluid];
+        for (k, &force) in forces.iter().enumerate() {
+            total[k].0 += force;
+            parts[PARTS * k + 1] += force;
+        }
+    }
+}
