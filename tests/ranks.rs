@@ -103,6 +103,23 @@ fn flows() {
 fn flows_with_bodies() {
     assert_equal_bits("coupled", &coupled(), 150);
     assert_equal_bits("wearing", &wearing(), 60);
+    assert_equal_bits("a gap", &gap(), 100);
+}
+
+/// A box on the floor of a tank, under water that has no room below it, and a probe of the force on the walls.
+fn gap() -> Source {
+    let text = r#"(dimension: Two, gravity: (0.0, -9.81),
+        materials: {"water": Fluid(density: 1000.0, viscosity: 0.1, sound_speed: 20.0), "wood": NeoHookean(density: 600, young: 1e9, poisson: 0.3)},
+        bodies: [
+            (name: "water", material: "water", shape: Difference(Box(min: (0, 0), max: (0.6, 0.3)), Box(min: (0.2, 0), max: (0.4, 0.1))), spacing: 0.02,
+             formulation: Fluid, plugins: [density_diffusion()]),
+            (name: "box", material: "wood", shape: Box(min: (0.2, 0), max: (0.4, 0.1)), spacing: 0.02, formulation: Rigid()),
+            (name: "tank", material: "wall", shape: Difference(Box(min: (-0.1, -0.1), max: (0.7, 0.5)), Box(min: (0, 0), max: (0.6, 1))),
+             spacing: 0.02, formulation: Wall(slip: No)),
+        ],
+        contacts: [Contact(between: ("tank", "box"), law: Penalty())],
+        time: (end: 10.0))"#;
+    Source::new("gap.ron", text)
 }
 
 #[test]

@@ -12,7 +12,9 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_picked};
+use crate::parallel::{
+    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
+};
 use crate::ranks;
 
 /// Least sum of V_f W for which there is fluid beside a wall.
@@ -41,16 +43,24 @@ impl WallPressure<'_> {
     /// Writes what is beside every particle of a boundary, and its neighbours within the support.
     pub fn run(&self, out: &mut [Beside], near: &mut NearRows) {
         let cloud = self.cloud;
+        // Who looks at gaps asks every particle beside one for its neighbours.
+        let looks_at_all = !cloud.pairs.gaps.particles.is_empty();
         let bodies = cloud.groups.iter().filter(|group| group.fluid().is_none());
         let mut rest = (&mut *out, near.writer());
         for Range { start, end } in bodies.map(|group| group.cloud.clone()) {
             let (rows, behind) = rest.split(end - start);
             rest = behind;
-            for_each_own_block(rows, &mut Vec::new(), &|first, (out, near): (&mut [Beside], _)| {
+            let body = |first, (out, near): (&mut [Beside], NearWriter<'_>)| {
                 run_hot_in(cloud.plane, Rows { cloud, first: start - cloud.fluid + first, out, near });
-            });
+            };
+            match looks_at_all {
+                true => for_each_block(rows, &mut Vec::new(), &body),
+                false => for_each_own_block(rows, &mut Vec::new(), &body),
+            }
         }
-        share_wetted(cloud, out);
+        if !looks_at_all {
+            share_wetted(cloud, out);
+        }
     }
 }
 
