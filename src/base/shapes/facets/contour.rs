@@ -1,9 +1,9 @@
-//! Triangles on the surface of any region of space, including combinations whose parts intersect: dual contouring (Ju, Losasso, Schaefer and
+//! Facets on the surface of any region, including combinations whose parts intersect or go over into each other: dual contouring (Ju, Losasso, Schaefer and
 //! Warren, ACM Trans. Graph. 21, 2002).
 //!
 //! Every grid cell that the surface crosses contains a vertex, at the point nearest to the tangent planes at the intersections of the surface with the edges of the
 //! cell. This holds on smooth surfaces, on sharp edges and in corners. Every grid edge that the surface cuts joins the vertices of the four cells
-//! around it.
+//! around it, in two dimensions those of the two cells beside it.
 
 use std::collections::BTreeMap;
 
@@ -19,11 +19,13 @@ use crate::shapes::tiling::Tiling;
 const HALVINGS: usize = 34;
 /// Step of the differences that give the normal, over the length of a cell.
 const STEP: f64 = 1e-5;
+/// Distance over the length of a cell within which a point is on the surface of a part.
+const ON: f64 = 1e-9;
 /// Eigenvalue over the largest one, below which tangent planes do not say where the vertex is in that direction.
 const FLAT: f64 = 0.05;
 
-/// The surface of `region` in triangles of about `length`; none if it has no end.
-pub(super) fn of_region(region: &dyn Region, length: f64) -> Option<Facets> {
+/// The surface of `region` in facets of about `length`; none if it has no end, or if two pieces of an outline go through one cell.
+pub(super) fn of_region(region: &dyn Region, axes: usize, length: f64) -> Option<Facets> {
     let bounds = region.bounds();
     if !bounds.is_bounded() {
         return None;
@@ -31,7 +33,7 @@ pub(super) fn of_region(region: &dyn Region, length: f64) -> Option<Facets> {
     // Planes of the grid stand half a cell away from the sides of the box, which are often faces of the shape.
     let cell = bounds.extent() / (bounds.extent() / length).round().max(DVec3::ONE);
     let frame = Aabb { min: bounds.min - 0.5 * cell, max: bounds.max + 0.5 * cell };
-    let grid = Tiling::new(&frame, &frame, cell, 3);
+    let grid = Tiling::new(&frame, &frame, cell, axes);
     let blocks = grid.blocks(region, 4, 4);
     let cells: Vec<[usize; 3]> =
         blocks.iter().filter(|block| !block.inside).flat_map(|block| block.cells()).collect();
@@ -44,46 +46,91 @@ pub(super) fn of_region(region: &dyn Region, length: f64) -> Option<Facets> {
             points.push(place);
         }
     }
-    let mut corners = Vec::new();
-    for cell in cells.iter().filter(|cell| numbers.contains_key(*cell)) {
-        for axis in 0..3 {
-            let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-            let step = |by: &[usize]| {
-                let mut other = *cell;
-                by.iter().for_each(|&k| other[k] += 1);
-                other
-            };
-            let around =
-                [*cell, step(&[u]), step(&[u, v]), step(&[v])].map(|cell| numbers.get(&cell).copied());
-            let [Some(a), Some(b), Some(c), Some(d)] = around else { continue };
-            let ends = [step(&[u, v]), step(&[u, v, axis])].map(|node| is_inside(region, &grid, node));
-            let quad = match ends {
-                [true, false] => [a, b, c, d],
-                [false, true] => [a, d, c, b],
-                _ => continue,
-            };
-            corners.extend(halves(region, &points, quad));
-        }
+    let net = Net { region, grid: &grid, numbers: &numbers };
+    let cells = cells.iter().filter(|cell| numbers.contains_key(*cell));
+    let corners: Vec<[u32; 3]> = if axes == 2 {
+        cells.flat_map(|cell| net.lines(*cell)).collect()
+    } else {
+        cells.flat_map(|cell| net.quads(*cell)).flat_map(|quad| halves(region, &points, quad)).collect()
+    };
+    let facets = Facets { axes, points, corners };
+    (!facets.corners.is_empty() && (axes == 3 || facets.is_closed_line())).then_some(facets)
+}
+
+/// The vertices of the cells that the surface crosses.
+struct Net<'a> {
+    region: &'a dyn Region,
+    grid: &'a Tiling,
+    numbers: &'a BTreeMap<[usize; 3], u32>,
+}
+
+impl Net<'_> {
+    /// Whether the surface leaves the region along the edge from the corner of a cell that is farthest along `across` on along `axis`, or enters it.
+    fn leaves(&self, cell: [usize; 3], across: &[usize], axis: usize) -> Option<bool> {
+        let corner = beyond(cell, across);
+        let ends = [corner, beyond(corner, &[axis])].map(|node| is_inside(self.region, self.grid, node));
+        (ends[0] != ends[1]).then_some(ends[0])
     }
-    (!corners.is_empty()).then_some(Facets { axes: 3, points, corners })
+
+    /// The vertices around the edges at the upper corner of a cell, counter-clockwise seen from outside.
+    fn quads(&self, cell: [usize; 3]) -> impl Iterator<Item = [u32; 4]> {
+        (0..3).filter_map(move |axis| {
+            let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+            let leaves = self.leaves(cell, &[u, v], axis)?;
+            let number = |by: &[usize]| self.numbers.get(&beyond(cell, by)).copied();
+            let (a, b, c, d) = (number(&[])?, number(&[u])?, number(&[u, v])?, number(&[v])?);
+            Some(if leaves { [a, b, c, d] } else { [a, d, c, b] })
+        })
+    }
+
+    /// The lines through the edges at the upper corner of a cell, outside to their right.
+    fn lines(&self, cell: [usize; 3]) -> impl Iterator<Item = [u32; 3]> {
+        (0..2).filter_map(move |axis| {
+            let across = 1 - axis;
+            let leaves = self.leaves(cell, &[across], axis)?;
+            let (a, b) = (*self.numbers.get(&cell)?, *self.numbers.get(&beyond(cell, &[across]))?);
+            Some(if leaves == (axis == 0) { [a, b, b] } else { [b, a, a] })
+        })
+    }
+}
+
+/// The cell or node that is one farther along these axes.
+fn beyond(mut index: [usize; 3], axes: &[usize]) -> [usize; 3] {
+    axes.iter().for_each(|&axis| index[axis] += 1);
+    index
 }
 
 fn is_inside(region: &dyn Region, grid: &Tiling, node: [usize; 3]) -> bool {
-    region.distance(grid.point(node, DVec3::ZERO)) < 0.0
+    holds(region, grid.point(node, DVec3::ZERO), smallest(grid))
+}
+
+/// Whether a point is inside. Where two parts meet face to face neither has it: what is around it tells.
+fn holds(region: &dyn Region, x: DVec3, cell: f64) -> bool {
+    let distance = region.distance(x);
+    if distance.abs() > ON * cell {
+        return distance < 0.0;
+    }
+    let around = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+    around.into_iter().all(|axis| region.distance(x + STEP * cell * axis) <= ON * cell)
+}
+
+/// The least side of a cell \[m\].
+fn smallest(grid: &Tiling) -> f64 {
+    (0..grid.axes).map(|axis| grid.cell[axis]).fold(f64::INFINITY, f64::min)
 }
 
 /// The vertex of a cell, if the surface cuts its edges.
 fn vertex(region: &dyn Region, grid: &Tiling, cell: [usize; 3]) -> Option<DVec3> {
     let node = |k: usize| [0, 1, 2].map(|axis| cell[axis] + (k >> axis & 1));
-    let inside: [bool; 8] = std::array::from_fn(|k| is_inside(region, grid, node(k)));
+    let inside: [bool; 8] = std::array::from_fn(|k| k < 1 << grid.axes && is_inside(region, grid, node(k)));
     let mut cuts: Vec<(DVec3, DVec3)> = Vec::new();
-    for k in 0..8 {
-        for axis in (0..3).filter(|axis| k >> axis & 1 == 0) {
+    for k in 0..1 << grid.axes {
+        for axis in (0..grid.axes).filter(|axis| k >> axis & 1 == 0) {
             let other = k | 1 << axis;
             if inside[k] != inside[other] {
                 let (within, without) = if inside[k] { (k, other) } else { (other, k) };
                 let ends = [within, without].map(|k| grid.point(node(k), DVec3::ZERO));
-                cuts.push(cut(region, ends, grid.cell.min_element()));
+                cuts.push(cut(region, ends, smallest(grid)));
             }
         }
     }
@@ -107,7 +154,7 @@ fn vertex(region: &dyn Region, grid: &Tiling, cell: [usize; 3]) -> Option<DVec3>
 fn cut(region: &dyn Region, [mut inside, mut outside]: [DVec3; 2], cell: f64) -> (DVec3, DVec3) {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (inside + outside);
-        if region.distance(middle) < 0.0 {
+        if holds(region, middle, cell) {
             inside = middle;
         } else {
             outside = middle;

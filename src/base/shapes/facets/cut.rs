@@ -96,11 +96,6 @@ fn welded(lines: &[[DVec3; 2]], tolerance: f64) -> Option<Facets> {
         .filter(|[a, b]| a != b)
         .map(|[a, b]| [a, b, b])
         .collect();
-    let mut ends = vec![[0; 2]; points.len()];
-    for [a, b, _] in &corners {
-        ends[*a as usize][0] += 1;
-        ends[*b as usize][1] += 1;
-    }
-    let is_closed = !corners.is_empty() && ends.iter().all(|of| *of == [1, 1]);
-    is_closed.then_some(Facets { axes: 2, points, corners })
+    let facets = Facets { axes: 2, points, corners };
+    (!facets.corners.is_empty() && facets.is_closed_line()).then_some(facets)
 }

@@ -39,6 +39,16 @@ impl Facets {
         (directed.normalize_or_zero(), measure)
     }
 
+    /// Whether segments join in closed lines that do not meet: each point is the end of one and the start of another.
+    pub(super) fn is_closed_line(&self) -> bool {
+        let mut ends = vec![[0; 2]; self.points.len()];
+        for [a, b, _] in &self.corners {
+            ends[*a as usize][0] += 1;
+            ends[*b as usize][1] += 1;
+        }
+        ends.iter().all(|of| *of == [1, 1])
+    }
+
     /// Puts another surface beside this one; turned inside out if it bounds a hole.
     pub(super) fn join(&mut self, other: &Self, is_hole: bool) {
         let first = self.points.len() as u32;

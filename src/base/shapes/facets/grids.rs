@@ -22,7 +22,7 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
     }
     let is_combination = matches!(shape, Shape::Union(_) | Shape::Difference(..) | Shape::Intersection(_));
     let region = is_combination.then(|| shape.region(Dimension::Three, folder, "shape"))?.ok()?;
-    contour::of_region(&*region, length)
+    contour::of_region(&*region, 3, length)
 }
 
 /// The surface of a single shape, and of combinations whose parts are apart or hollow.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Facets, cut};
+use super::{Facets, contour, cut};
 use crate::shapes::check::Check;
 use crate::shapes::region::Aabb;
 use crate::shapes::shape::Shape;
@@ -40,7 +40,11 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
         }
     }
     let leaves = leaves(shape, &bounds, length)?;
-    if is_single(shape) { Some(leaves) } else { cut::boundary(&leaves, &*region, length) }
+    if is_single(shape) {
+        return Some(leaves);
+    }
+    // Where curves go over into each other, as at rounded corners, it is not clear from points beside them which is the outline.
+    cut::boundary(&leaves, &*region, length).or_else(|| contour::of_region(&*region, 2, length))
 }
 
 /// Whether a shape is no combination.

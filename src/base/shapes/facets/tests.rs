@@ -91,6 +91,36 @@ fn outlines_of_combinations_close_around_their_area() {
 }
 
 #[test]
+fn outlines_that_go_over_into_each_other_close_around_their_area() {
+    use std::f64::consts::PI;
+    let two = |text: &str, expected: f64, tolerance: f64| check(text, Dimension::Two, expected, tolerance);
+    let stadium = "Union([Box(min: (0, 0), max: (1, 0.5)), Sphere(center: (0, 0.25), radius: 0.25), Sphere(center: (1, 0.25), radius: 0.25)])";
+    two(stadium, 0.5 + PI / 16.0, 2e-3);
+    two(&format!("Difference(Box(min: (-1, -1), max: (2, 1)), {stadium})"), 5.5 - PI / 16.0, 2e-3);
+    let belt = "Intersection([Ring(center: (0, 0), inner: 0.8, outer: 1.0), Box(min: (-1, 0), max: (1, 1))])";
+    two(
+        &format!("Union([{belt}, Box(min: (0.8, -1), max: (1, 0)), Box(min: (-1, -1), max: (-0.8, 0))])"),
+        0.18 * PI + 0.4,
+        2e-3,
+    );
+    // A rounded corner.
+    two(
+        "Difference(Box(min: (0, 0), max: (1, 1)), Difference(Box(min: (0.8, 0.8), max: (1.1, 1.1)), Sphere(center: (0.8, 0.8), radius: 0.2)))",
+        1.0 - 0.04 * (1.0 - 0.25 * PI),
+        2e-3,
+    );
+}
+
+/// The planes of the grid of 5 cells stand at the odd tenths of the length, the faces at which the boxes meet on one of them.
+#[test]
+fn parts_that_meet_on_a_plane_of_the_grid_are_one() {
+    let boxes = "Union([Box(min: (0, 0, 0), max: (0.125, 0.2, 0.2)), Box(min: (0.125, 0, 0), max: (0.25, 0.2, 0.2))])";
+    check(boxes, Dimension::Three, 0.01, 1e-5);
+    let hole = "Difference(Box(min: (0, 0, 0), max: (0.25, 0.25, 0.25)), Union([Box(min: (0.05, 0.05, -1), max: (0.125, 0.2, 1)), Box(min: (0.125, 0.05, -1), max: (0.2, 0.2, 1))]))";
+    check(hole, Dimension::Three, 0.01, 1e-5);
+}
+
+#[test]
 fn surfaces_close_around_the_volume_of_their_shapes() {
     use std::f64::consts::PI;
     let three =
