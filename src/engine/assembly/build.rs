@@ -56,7 +56,7 @@ fn build_in(
         return Err(misplaced);
     }
     crate::formulations::fluid::estimate_sound_speeds(&mut bodies, scene)?;
-    let overlaps = overlap::problems(&bodies, scene);
+    let overlaps = overlap::problems(&bodies, scene, source.folder());
     if !overlaps.is_empty() {
         return Err(overlaps);
     }

@@ -1,19 +1,20 @@
-//! Bodies that overlap: no two particles of different bodies may start closer than half their spacing.
+//! Bodies that overlap. Without a contact no two particles of different bodies may start closer than half their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever
+//! their spacings: no particle of one may start in the shape of the other; where both touch with their particles the first rule stays. Two rigid bodies are left to their contact.
+
+use std::collections::BTreeMap;
+use std::path::Path;
 
 use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
 use crate::notation::place;
 use crate::plugin::{BodyKind, BodyPlan};
-use crate::scene::{Problem, Scene};
+use crate::scene::{Contact, ContactSurface, Problem, Scene};
+use crate::shapes::Region;
 
-/// One problem for every pair of bodies that overlap. Rigid bodies with a contact are left to that: it knows their surfaces.
-pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene) -> Vec<Problem> {
-    let touching = scene.touching_pairs();
-    let is_left = |first: &BodyPlan, second: &BodyPlan| {
-        [first, second].iter().all(|body| body.kind == BodyKind::Rigid)
-            && touching.has(&first.name, &second.name)
-    };
+/// One problem for every pair of bodies that overlap. Files of shapes are looked for in `folder`.
+pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec<Problem> {
+    let contacts: Vec<Contact> = scene.contact_pairs().map(|(_, contact)| contact).collect();
     let owners: Vec<usize> = bodies.iter().flat_map(|body| vec![body.id.0; body.sites.len()]).collect();
     if bodies.len() < 2 {
         return Vec::new();
@@ -26,22 +27,94 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene) -> Vec<Problem> {
     let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Vec::new() };
     let mut reported = Vec::new();
     let mut problems = Vec::new();
+    let mut shapes = Shapes { scene, folder, regions: BTreeMap::new() };
     for i in 0..positions.len() {
         for &j in list.row(i) {
             let pair = (owners[i], owners[j as usize]);
-            if pair.0 < pair.1 && !reported.contains(&pair) {
-                reported.push(pair);
-                if is_left(&bodies[pair.0], &bodies[pair.1]) {
-                    continue;
-                }
-                let (first, second) = (&bodies[pair.0].name, &bodies[pair.1].name);
-                let message = format!("body `{second}` overlaps body `{first}` at {}", place(positions[i]));
-                problems.push(
-                    Problem::at_path(format!("bodies[{}].shape", pair.1), message)
-                        .help("leave a gap of about the mean spacing between particles of different bodies"),
-                );
+            if pair.0 >= pair.1 || reported.contains(&pair) {
+                continue;
             }
+            let (first, second) = (&bodies[pair.0], &bodies[pair.1]);
+            let names = (&first.name, &second.name);
+            let contact = contacts.iter().find(|contact| {
+                let (a, b) = &contact.between;
+                [(a, b), (b, a)].contains(&names)
+            });
+            let is_left = contact.is_some_and(|contact| {
+                match [first, second].map(|body| body.kind == BodyKind::Rigid) {
+                    [true, true] => true,
+                    [false, false] if contact.surface == ContactSurface::Particles => false,
+                    _ => shapes.part(pair, [positions[i], positions[j as usize]]),
+                }
+            });
+            if is_left {
+                continue;
+            }
+            reported.push(pair);
+            let message =
+                format!("body `{}` overlaps body `{}` at {}", second.name, first.name, place(positions[i]));
+            problems.push(
+                Problem::at_path(format!("bodies[{}].shape", pair.1), message)
+                    .help("leave a gap of about the mean spacing between particles of different bodies"),
+            );
         }
     }
     problems
+}
+
+/// The shapes of bodies, made where they are asked for; none of those that are lists of particles.
+struct Shapes<'a> {
+    scene: &'a Scene,
+    folder: &'a Path,
+    regions: BTreeMap<usize, Option<Box<dyn Region>>>,
+}
+
+impl Shapes<'_> {
+    /// Whether neither of two points, one of each body, is in the shape of the other one.
+    fn part(&mut self, pair: (usize, usize), at: [DVec3; 2]) -> bool {
+        !self.holds(pair.0, at[1]) && !self.holds(pair.1, at[0])
+    }
+
+    /// Whether a point is in a body; also where its shape is not known.
+    fn holds(&mut self, body: usize, x: DVec3) -> bool {
+        let (scene, folder) = (self.scene, self.folder);
+        let make = || scene.bodies[body].shape.region(scene.dimension, folder, "shape").ok();
+        let region = self.regions.entry(body).or_insert_with(make);
+        region.as_ref().is_none_or(|region| region.distance(x) < 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::assembly::build;
+    use crate::plugin::Registry;
+    use crate::scene::{Source, parse};
+
+    /// What is said of a ring that is filled finely about a disc of another radius that is filled coarsely.
+    fn error(radius: f64, disc: &str, contact: &str) -> Option<String> {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e7, poisson: 0.3)}},
+                bodies: [
+                    (name: "ring", material: "m", shape: Ring(center: (0, 0), inner: 0.1, outer: 0.11), spacing: 0.0025, lattice: Concentric, formulation: TotalLagrangian),
+                    (name: "disc", material: "m", shape: Sphere(center: (0, 0), radius: {radius:?}), spacing: 0.01, formulation: {disc}),
+                ],
+                contacts: [{contact}], time: (end: 1))"#
+        );
+        let (scene, source) = parse(Source::new("overlap.ron", &text)).unwrap_or_else(|e| panic!("{e}"));
+        build(&scene, &source, &Registry::standard()).err().map(|error| error.to_string())
+    }
+
+    #[test]
+    fn surfaces_that_meet_may_be_filled_with_any_two_spacings() {
+        let contact = r#"Contact(between: ("ring", "disc"))"#;
+        let particles = r#"Contact(between: ("ring", "disc"), surface: Particles)"#;
+        for disc in ["Rigid()", "TotalLagrangian"] {
+            assert_eq!(error(0.1, disc, contact), None, "{disc}");
+            let deep = error(0.104, disc, contact).unwrap_or_default();
+            assert!(deep.contains("body `disc` overlaps body `ring`"), "{disc}: {deep}");
+            assert!(error(0.1, disc, "").is_some(), "{disc}");
+        }
+        assert_eq!(error(0.1, "Rigid()", particles), None);
+        assert!(error(0.1, "TotalLagrangian", particles).is_some());
+    }
 }
