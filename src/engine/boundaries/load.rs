@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::field::Field;
 use super::flow_load;
+use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
@@ -21,6 +22,11 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
 
     /// Whether the forces are the same in every step.
     fn is_constant(&self) -> bool;
+
+    /// From the particles of part `k` of a rigid body to where the forces act, in the reference configuration, m; none where they act on the particles.
+    fn arms(&self, _: usize) -> &[DVec3] {
+        &[]
+    }
 }
 
 /// A load that does not follow the motion: a field of the reference position and time, times a share per particle.
@@ -31,6 +37,8 @@ pub(super) struct DeadLoad {
     pub field: Field,
     /// Area, mass or share of every particle of every part, in the order of the start.
     pub shares: Vec<Vec<f64>>,
+    /// Of every part, see [`LoadLaw::arms`].
+    pub arms: Vec<Vec<DVec3>>,
 }
 
 impl LoadLaw for DeadLoad {
@@ -45,6 +53,10 @@ impl LoadLaw for DeadLoad {
 
     fn is_constant(&self) -> bool {
         !self.field.depends_on_time()
+    }
+
+    fn arms(&self, k: usize) -> &[DVec3] {
+        &self.arms[k]
     }
 }
 
@@ -114,7 +126,7 @@ impl Run for Load {
             let next: &[DVec3] = if changes { &self.next } else { last };
             let rows = (Picked::new(&part.rows, &mut force), &last[..], next);
             type Rows<'a> = (Picked<'a, Force>, &'a [DVec3], &'a [DVec3]);
-            let power = sum_over_blocks(rows, &|_, (mut loaded, last, next): Rows<'_>| {
+            let mut power = sum_over_blocks(rows, &|_, (mut loaded, last, next): Rows<'_>| {
                 let mut power = 0.0;
                 for (k, (last, next)) in last.iter().zip(next).enumerate() {
                     let row = loaded.number(k);
@@ -125,6 +137,10 @@ impl Run for Load {
                 }
                 power
             });
+            let arms = self.law.arms(k);
+            if !arms.is_empty() {
+                power += push_beside(part.body, arms, [last, next], step);
+            }
             step.ledger.add(account, part.body, power * step.clock.dt);
             if changes {
                 std::mem::swap(last, &mut self.next);

@@ -15,6 +15,7 @@ mod load;
 mod mean_velocity;
 #[cfg(test)]
 mod mean_velocity_tests;
+mod on_rigid;
 mod part;
 mod prescribed;
 mod pressure;

@@ -6,12 +6,13 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::Field;
 use super::load::{self, DeadLoad};
+use super::on_rigid::arms_of;
 use super::skin_load::{self, Kind, LoadedSurface, skins_of};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
 /// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the surface itself, a `face` or `surface` of a
-/// total-Lagrangian body whose shape is known; else on the selected particles, in equal shares of the loaded area.
+/// Lagrangian or rigid body whose shape is known; else on the selected particles, in equal shares of the loaded area.
 ///
 /// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as `"1e5*smoothstep(t/0.01)"`,
 /// over several periods of the slowest oscillation, or use `local_damping`.
@@ -57,7 +58,8 @@ impl Plugin for Traction {
             None => vec![loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64; rows.len()],
         };
         let shares = selection.parts.iter().map(share).collect();
-        let law = DeadLoad { name: Self::NAME, field, shares };
+        let arms = arms_of(&self.on, &selection, sim);
+        let law = DeadLoad { name: Self::NAME, field, shares, arms };
         load::apply("traction", law, &selection, sim, |system| system);
         Ok(())
     }
