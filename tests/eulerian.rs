@@ -95,10 +95,13 @@ impl Naive {
         let deformation = |i: usize| self.all[i].deformation + by * rates[i] * self.all[i].deformation;
         let of_pair = |(i, j): (usize, usize)| {
             let (original, x) = (reference[j] - reference[i], place(j) - place(i));
-            let error = |k: usize| (deformation(k) * original - x).dot(x) / x.length();
+            let square = |k: usize| {
+                let error = deformation(k) * original - x;
+                0.9 * error.dot(x).powi(2) / x.length_squared() + 0.1 * error.length_squared()
+            };
             let known = (4.0 * h * h / original.length_squared()).min(1.0).powi(2);
             let weight = self.all[i].volume * self.all[j].volume * self.kernel.pair_weight(x.length(), h);
-            0.25 * xi * weight * known * (error(i).powi(2) + error(j).powi(2))
+            0.25 * xi * weight * known * (square(i) + square(j))
         };
         (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(of_pair).sum()
     }

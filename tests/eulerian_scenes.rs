@@ -7,7 +7,7 @@ use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, si
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, PlasticStrain, ReferencePosition};
+use meshless::world::{BodyId, PlasticStrain, Position, ReferencePosition};
 
 #[test]
 fn bits_do_not_depend_on_threads_or_on_a_restart() {
@@ -124,6 +124,69 @@ fn drawn(formulation: &str) -> f64 {
 fn metal_that_is_drawn_by_its_sides_yields_as_in_a_fixed_reference() {
     let (eulerian, fixed) = (drawn("Eulerian()"), drawn("TotalLagrangian"));
     assert!(fixed > 0.08 && (eulerian / fixed - 1.0).abs() < 0.03, "{eulerian} {fixed}");
+}
+
+/// A square bar of 8 particles across and twice as long, whose ends are turned against each other by an angle of 0.02 and may warp; its torque over G J of the angle over
+/// the length, where J = 0.1406 a^4 (Timoshenko and Goodier 1951, section 94).
+#[test]
+fn a_twisted_bar_bears_the_torque_of_its_section() {
+    let end = |face: &str, angle: f64| {
+        format!(
+            r#"Displacement(on: Select(face: {face}), value: ("-y*{angle:?}*smoothstep(t/0.02)", "x*{angle:?}*smoothstep(t/0.02)", None))"#
+        )
+    };
+    let text = format!(
+        r#"(dimension: Three,
+            materials: {{"soft": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)}},
+            bodies: [(name: "bar", material: "soft", shape: Box(min: (-0.05, -0.05, 0), max: (0.05, 0.05, 0.2)), spacing: 0.0125,
+                      formulation: Eulerian(), plugins: [hourglass_control()])],
+            conditions: [{}, {}],
+            plugins: [local_damping(mode: Relaxation(after: 0.02, tolerance: 1e-3))],
+            time: (end: 0.1))"#,
+        end("MinZ", -0.01),
+        end("MaxZ", 0.01)
+    );
+    let mut sim = simulation(&Source::new("twisted.ron", text));
+    sim.run(|_| true).expect("a run");
+    // The energy is half of torque times angle.
+    let energy = sim.ledger().total_named("strain") + sim.ledger().total_named("hourglass");
+    let (shear, angle) = (1e7 / 2.6, 0.02);
+    let expected = 0.5 * shear * 0.1406 * 0.1_f64.powi(4) * angle * angle / 0.2;
+    assert!((energy / expected - 1.0).abs() < 0.07, "{energy} J instead of {expected} J");
+}
+
+/// A strip of 8 particles across that is bent by tractions that grow linearly over its ends: its middle line is an arc of the curvature M / E', whose sagitta is x^2 M / 2 E'.
+#[test]
+fn a_bent_strip_has_the_curvature_of_its_section() {
+    let load = |face: &str, sign: f64| {
+        format!(r#"Traction(on: Select(face: {face}), value: ("{:?}*y*smoothstep(t/0.05)", 0))"#, sign * 2e5)
+    };
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"soft": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)}},
+            bodies: [(name: "strip", material: "soft", shape: Box(min: (-0.2, -0.05), max: (0.2, 0.05)), spacing: 0.0125,
+                      formulation: Eulerian(), plugins: [hourglass_control()])],
+            conditions: [{}, {}],
+            plugins: [local_damping(mode: Relaxation(after: 0.05, tolerance: 1e-3))],
+            time: (end: 0.4))"#,
+        load("MinX", -1.0),
+        load("MaxX", 1.0)
+    );
+    let mut sim = simulation(&Source::new("bent.ron", text));
+    sim.run(|_| true).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let reference = view.read::<ReferencePosition>().expect("places");
+    let x = view.read::<Position>().expect("places");
+    let deflection = |at: f64| {
+        let near =
+            |row: &usize| (reference[*row].0.x.abs() - at).abs() < 1e-6 && reference[*row].0.y.abs() < 0.01;
+        let rows: Vec<usize> = rows.clone().filter(near).collect();
+        rows.iter().map(|&row| x[row].0.y - reference[row].0.y).sum::<f64>() / rows.len() as f64
+    };
+    let (near, far) = (0.00625, 0.11875);
+    let curvature = 2.0 * (deflection(near) - deflection(far)) / (far * far - near * near);
+    let expected = 2e5 * (1.0 - 0.09) / 1e7;
+    assert!((curvature / expected - 1.0).abs() < 0.03, "{curvature} instead of {expected}");
 }
 
 /// What is wrong with a scene.

@@ -43,7 +43,7 @@ pub struct HourglassControl {
     pub form: Form,
     /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in Lagrangian bodies. Default: 5, 25 of the last.
     pub alpha: Option<f64>,
-    /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 10, and 20 of `Combined` and `MohseniMofidi2020`.
+    /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 7 of `Variational`, 14 of `Combined`, 10 of `Stiffness` and 20 of `MohseniMofidi2020`.
     pub xi: Option<f64>,
     /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`.
     pub zeta: f64,
@@ -72,7 +72,7 @@ pub enum Form {
     /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically.
     Default,
     /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation gradient, in Lagrangian bodies; of the error along
-    /// the bond, with the kernel of the present places, in Eulerian ones.
+    /// the bond and a tenth of that across it, with the kernel of the present places, in Eulerian ones.
     Variational,
     /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of Lagrangian bodies.
     Ganzenmueller2015,
@@ -91,8 +91,8 @@ pub enum Form {
 const WORK: &str = "hourglass_work";
 /// Account of what the viscous form takes.
 const VISCOSITY: &str = "hourglass_viscosity";
-/// Coefficient xi of a form without a viscous part where the scene gives none.
-const USUAL_XI: f64 = 10.0;
+/// Coefficient xi where the scene gives none, of the form with an energy and of that of the paper, without a viscous part.
+const USUAL_XI: [f64; 2] = [7.0, 10.0];
 
 impl Plugin for HourglassControl {
     const NAME: &'static str = "hourglass_control";
@@ -183,10 +183,13 @@ impl HourglassControl {
             form => form,
         };
         // Half of twice the coefficient where the other half is viscous.
+        let [with_energy, of_paper] = USUAL_XI;
         let (share, viscous, usual) = match form {
-            Form::Stiffness | Form::Variational => (1.0, 0.0, USUAL_XI),
+            Form::Variational => (1.0, 0.0, with_energy),
+            Form::Stiffness => (1.0, 0.0, of_paper),
             Form::Viscous => (0.0, 1.0, 0.0),
-            _ => (1.0 - self.chi, self.chi, 2.0 * USUAL_XI),
+            Form::MohseniMofidi2020 => (1.0 - self.chi, self.chi, 2.0 * of_paper),
+            _ => (1.0 - self.chi, self.chi, 2.0 * with_energy),
         };
         let elastic = Elastic {
             xi: share * self.xi.unwrap_or(usual),

@@ -7,6 +7,10 @@ use super::near::Near;
 use super::rows::Point;
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
+/// Resistance to the error across a pair, over that to the error along it. Where a body is twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar of 8 particles across is twisted
+/// by 11 % too small a torque, and a plate of 8 bends by 5 % too much.
+const ACROSS: f64 = 0.1;
+
 /// The pairs of a body.
 pub(super) struct ControlPairs<'a> {
     /// Support radius, m.
@@ -142,17 +146,27 @@ impl ControlPairs<'_> {
         let (own_pull, other_pull) = (volume * own_modulus * own_share, volume * other_modulus * other_share);
         let errors = own_pull * own_share + other_pull * other_share;
         let half = 0.5 * weight;
+        // The whole errors, of which a part is resisted, and the rest of the error along the pair.
+        let (own_error, other_error) = (own_guess - arm, other_guess - arm);
+        let (part, rest) = (ACROSS, 1.0 - ACROSS);
+        let (own_square, other_square) =
+            (own_error.length_squared() * over, other_error.length_squared() * over);
+        let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);
+        let all_errors = rest * errors + own_whole * own_square + other_whole * other_square;
         // From w = -W' / r the slope of the weight is -(W'' + w) / r.
-        let slope = half * (2.0 * (own_pull + other_pull) + errors) + 0.25 * (curvature + weight) * errors;
-        let own_force = half * own_pull;
-        let guess = own_guess.mul_add(own_force, other_guess * (half * other_pull));
-        sums.force += guess - arm * slope;
-        sums.couple[0] = arm.mul_add(own_force * original.x, sums.couple[0]);
-        sums.couple[1] = arm.mul_add(own_force * original.y, sums.couple[1]);
+        let slope =
+            rest * half * (2.0 * (own_pull + other_pull) + errors) + 0.25 * (curvature + weight) * all_errors;
+        let own_force = rest * half * own_pull;
+        let guess = own_guess.mul_add(own_force, other_guess * (rest * half * other_pull));
+        let own_push = own_error * (half * own_whole);
+        sums.force += guess - arm * slope - own_push - other_error * (half * other_whole);
+        let couple = arm.mul_add(own_force, own_push);
+        sums.couple[0] = couple.mul_add(original.x, sums.couple[0]);
+        sums.couple[1] = couple.mul_add(original.y, sums.couple[1]);
         if A::AXES == 3 {
-            sums.couple[2] = arm.mul_add(own_force * original.z, sums.couple[2]);
+            sums.couple[2] = couple.mul_add(original.z, sums.couple[2]);
         }
-        let error = weight * volume * own_share.squared() * square;
+        let error = weight * volume * (rest * own_share.squared() + part * own_square) * square;
         sums.stiffness += half * volume * (own_modulus + other_modulus);
         sums.energy = error.mul_add(own_modulus, sums.energy);
         sums.energy_before = error.mul_add(own_before, sums.energy_before);
