@@ -15,6 +15,8 @@ use crate::{VISCOSITY, WORK};
 pub struct Elastic {
     /// Coefficient xi; none at all where it is zero.
     pub xi: f64,
+    /// Coefficient of the error across a pair over xi.
+    pub across: f64,
     /// What it resists with after yield.
     pub after_yield: AfterYield,
     /// The exact gradient of an energy, or the form of the paper.
@@ -24,7 +26,7 @@ pub struct Elastic {
 /// Adds an elastic part, and the viscous form with the coefficient zeta, to a body. The deformation gradient is a state of its particles, so that it needs
 /// no other fit beside cracks.
 pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-    let Elastic { xi, after_yield, has_energy } = elastic;
+    let Elastic { xi, across, after_yield, has_energy } = elastic;
     let (bodies, fails) = (BodySet::new([id]), can_fail(sim, id)?);
     if xi > 0.0 {
         sim.add_column_to::<HourglassModulus>(&bodies);
@@ -32,7 +34,7 @@ pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) ->
         FoldedTermOfBodies { account: None, released: None, term }.add(bodies.clone(), sim);
         let term = Stiffness { xi, density: sim.body(id).material.density };
         if has_energy {
-            PairControl { xi }.add(bodies.clone(), sim);
+            PairControl { xi, across: across * xi }.add(bodies.clone(), sim);
         } else if fails {
             sim.add_pair_term(bodies.clone(), WORK, OffCracks(term));
         } else {

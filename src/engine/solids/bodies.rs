@@ -127,8 +127,10 @@ impl SolidBodies {
         });
         let is_damped = |id| damped.iter().any(|damped| damped.bodies.contains(id));
         let body = |&id: &BodyId| {
-            let mut own = control.iter().filter(|own| own.bodies.contains(id)).map(|own| own.value.xi);
-            let control = own.next().map(|first| PairControl { xi: own.fold(first, |sum, xi| sum + xi) });
+            let own = control.iter().filter(|own| own.bodies.contains(id)).map(|own| *own.value);
+            let sum =
+                |a: PairControl, b: PairControl| PairControl { xi: a.xi + b.xi, across: a.across + b.across };
+            let control = own.reduce(sum);
             let body = SolidBody::new(id, sim, &terms, &hessian, is_damped(id));
             body.map(|body| SolidBody { control, ..body }).map_err(|error| error.of_formulation(id))
         };

@@ -1,10 +1,10 @@
 //! Hourglass control along pairs: the exact gradient of an energy of positions and deformation gradients.
 //!
 //! ```text
-//! U = sum_i xi/4 E_i V_0,i sum_j V_0,j m_ij w_ij [s_ij^2 + 0.1 (|e_ij|^2 - s_ij^2)] ,   e_ij = F_i X_ij - x_ij ,   s_ij = e_ij . x_ij / |x_ij| ,   m_ij = min(1, H^2 / |X_ij|^2)^2
+//! U = sum_i xi/4 E_i V_0,i sum_j V_0,j m_ij w_ij [s_ij^2 + q (|e_ij|^2 - s_ij^2)] ,   e_ij = F_i X_ij - x_ij ,   s_ij = e_ij . x_ij / |x_ij| ,   m_ij = min(1, H^2 / |X_ij|^2)^2
 //! ```
 //!
-//! The error along the pair s_ij is what draws particles apart in tension. The rest of the error counts for a tenth: in a twisted body, u = a (-z y, z x, 0), it is all there is, since u . x = 0.
+//! The error along the pair s_ij is what draws particles apart in tension. The rest of the error may count for a share q: in a twisted body, u = a (-z y, z x, 0), it is all there is, since u . x = 0.
 //!
 //! F is a state and not a function of the positions. U therefore changes in two ways: by the motion of the pairs at fixed F, which gives a force on the
 //! pair, and by dF/dt = L F, which gives the Kirchhoff stress `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L turns the latter into forces, as it does for the stress of the material. The
@@ -89,6 +89,8 @@ pub(super) struct ControlRows {
 #[derive(Clone, Copy)]
 pub(super) struct BodyControl {
     pub xi: f64,
+    /// Coefficient of the error across a pair over xi.
+    pub across: f64,
     /// Density rho_0, kg/m3.
     pub density: f64,
 }
@@ -122,7 +124,7 @@ pub(super) fn run(
     let (divergence, support, offsets) = (kernels[k].divergence, lists.bodies[k].support, &lists.offsets[..]);
     let sum = for_each_own_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
-        let pairs = ControlPairs { support, offsets, near, points, carried };
+        let pairs = ControlPairs { support, offsets, near, points, carried, across: control.across };
         let pass = ControlPass { control, divergence, pairs, mass, first };
         let mut sum = FoldedEnergy::default();
         run_hot_on(*plane, ControlLoop { pass, block, sum: &mut sum });
@@ -165,7 +167,7 @@ impl HotLoop for ControlLoop<'_, '_> {
     fn run<A: FourLanes>(self, a: A) {
         let Self { pass, block, sum } = self;
         let ControlBlock { force, stiffness, stresses, energy } = block;
-        let BodyControl { xi, density } = pass.control;
+        let BodyControl { xi, density, .. } = pass.control;
         for k in 0..force.len() {
             let own = &pass.pairs.carried[pass.first + k];
             let sums = pass.pairs.of_row(a, pass.first + k);

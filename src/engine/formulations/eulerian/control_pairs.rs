@@ -7,10 +7,6 @@ use super::near::Near;
 use super::rows::Point;
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
-/// Resistance to the error across a pair, over that to the error along it. Where a body is twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar of 8 particles across is twisted
-/// by 11 % too small a torque, and a plate of 8 bends by 5 % too much.
-const ACROSS: f64 = 0.1;
-
 /// The pairs of a body.
 pub(super) struct ControlPairs<'a> {
     /// Support radius, m.
@@ -19,6 +15,8 @@ pub(super) struct ControlPairs<'a> {
     pub near: &'a Near,
     pub points: &'a [Point],
     pub carried: &'a [Carried],
+    /// Resistance to the error across a pair, over that to the error along it.
+    pub across: f64,
 }
 
 /// Sums over the pairs of a particle, without xi and its volume.
@@ -148,7 +146,7 @@ impl ControlPairs<'_> {
         let half = 0.5 * weight;
         // The whole errors, of which a part is resisted, and the rest of the error along the pair.
         let (own_error, other_error) = (own_guess - arm, other_guess - arm);
-        let (part, rest) = (ACROSS, 1.0 - ACROSS);
+        let (part, rest) = (self.across, 1.0 - self.across);
         let (own_square, other_square) =
             (own_error.length_squared() * over, other_error.length_squared() * over);
         let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);

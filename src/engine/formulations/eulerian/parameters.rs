@@ -126,7 +126,11 @@ impl Formulation for Eulerian {
         solids.require_terms_that_look(sim)?;
         for (own, of) in solids.iter().zip(&mut kernels) {
             let density = sim.body(own.id).material.density;
-            of.control = own.control.map(|control| BodyControl { xi: control.xi, density });
+            of.control = own.control.map(|control| BodyControl {
+                xi: control.xi,
+                across: control.across / control.xi,
+                density,
+            });
             if of.control.is_some() {
                 sim.add_column_to::<HourglassEnergy>(&BodySet::new([own.id]));
             }
