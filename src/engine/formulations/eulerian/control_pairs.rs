@@ -131,8 +131,7 @@ impl ControlPairs<'_> {
         let square = arm.length_squared().max(f64::MIN_POSITIVE);
         // s over |x| of both.
         let over = 1.0 / square;
-        let own_share = own_guess.dot(arm) * over - 1.0;
-        let other_share = other_guess.dot(arm) * over - 1.0;
+        let (own_share, other_share) = (own_guess.dot(arm) * over - 1.0, other_guess.dot(arm) * over - 1.0);
         // Pairs that have met on the way.
         let apart = original.length_squared().max(f64::MIN_POSITIVE);
         let known = (self.support * self.support / apart).min(1.0);
@@ -143,10 +142,9 @@ impl ControlPairs<'_> {
         let own_before = (-before).if_below(0.0, Number::splat(a, own.modulus_before));
         let (own_pull, other_pull) = (volume * own_modulus * own_share, volume * other_modulus * other_share);
         let errors = own_pull * own_share + other_pull * other_share;
-        let half = 0.5 * weight;
         // The whole errors, of which a part is resisted, and the rest of the error along the pair.
         let (own_error, other_error) = (own_guess - arm, other_guess - arm);
-        let (part, rest) = (self.across, 1.0 - self.across);
+        let (half, part, rest) = (0.5 * weight, self.across, 1.0 - self.across);
         let (own_square, other_square) =
             (own_error.length_squared() * over, other_error.length_squared() * over);
         let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);
