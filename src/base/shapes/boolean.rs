@@ -11,6 +11,9 @@ use super::surface::{Surface, SurfacePoint};
 /// Cells that the faces of boxes may make before the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
 
+/// Distance of two faces up to which they are one, over the extent of the hole.
+const COMMON: f64 = 1e-9;
+
 /// What is in any of the parts.
 pub(super) struct Union<R: ?Sized> {
     pub parts: Vec<Box<R>>,
@@ -45,9 +48,41 @@ impl<R: Region + ?Sized> Difference<R> {
     }
 }
 
+impl<R: Region + ?Sized> Difference<R> {
+    /// Whether the nearest face of the hole is one of the whole too: the hole opens there, as a pipe at its ends, and nothing is between the two.
+    fn opens_at(&self, whole: f64, hole: f64) -> bool {
+        (whole - hole).abs() < COMMON * self.hole.bounds().extent().max_element()
+    }
+
+    /// Distance of a point before an opening from the sides of the hole: that farther inside, where the opening is no longer the nearest.
+    fn distance_in_opening(&self, point: DVec3) -> f64 {
+        let extent = self.hole.bounds().extent().max_element();
+        let across = |axis: DVec3| {
+            let step = 1e-6 * extent * axis;
+            self.whole.distance(point + step) - self.whole.distance(point - step)
+        };
+        let axes = &DVec3::AXES[..self.axes];
+        let out = axes.iter().map(|&axis| across(axis) * axis).sum::<DVec3>().normalize_or_zero();
+        let from_face = -self.hole.distance(point);
+        let (mut depth, mut farthest) = (2.0 * from_face.abs(), f64::MIN_POSITIVE);
+        loop {
+            depth *= 2.0;
+            let inside = -self.hole.distance(point - depth * out);
+            farthest = farthest.max(inside);
+            if inside < 0.99 * (from_face + depth) || depth > 0.5 * extent {
+                return farthest;
+            }
+        }
+    }
+}
+
 impl<R: Region + ?Sized> Region for Union<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.parts.iter().map(|part| part.distance(point)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.parts.iter().map(|part| part.clearance(point)).fold(f64::INFINITY, f64::min)
     }
 
     fn bounds(&self) -> Aabb {
@@ -99,6 +134,12 @@ impl Region for Intersection {
 impl<R: Region + ?Sized> Region for Difference<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.whole.distance(point).max(-self.hole.distance(point))
+    }
+
+    fn clearance(&self, point: DVec3) -> f64 {
+        let (whole, hole) = (self.whole.clearance(point), self.hole.distance(point));
+        let distance = whole.max(-hole);
+        if distance > 0.0 && self.opens_at(whole, hole) { self.distance_in_opening(point) } else { distance }
     }
 
     fn bounds(&self) -> Aabb {

@@ -83,6 +83,11 @@ pub trait Region: Send + Sync {
     /// than the true distance (boolean combinations may give less).
     fn distance(&self, point: DVec3) -> f64;
 
+    /// The same of a point before an opening, where the end of a hole coincides with that of the body it is cut out of: from the sides of the hole, as there is no lid. Elsewhere the distance.
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.distance(point)
+    }
+
     /// A box that holds the region, the smallest one except for rotated shapes and for combinations.
     fn bounds(&self) -> Aabb;
 

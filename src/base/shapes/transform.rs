@@ -38,6 +38,10 @@ impl<R: Region + ?Sized> Region for Translated<R> {
         self.region.distance(point - self.by)
     }
 
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.region.clearance(point - self.by)
+    }
+
     fn bounds(&self) -> Aabb {
         let Aabb { min, max } = self.region.bounds();
         Aabb { min: min + self.by, max: max + self.by }
@@ -71,6 +75,10 @@ impl<R: Region + ?Sized> Region for Rotated<R> {
         self.region.distance(turned(self.turn.inverse(), self.about, point))
     }
 
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.region.clearance(turned(self.turn.inverse(), self.about, point))
+    }
+
     fn bounds(&self) -> Aabb {
         let inner = self.region.bounds();
         if !inner.is_bounded() {
@@ -88,11 +96,25 @@ impl<R: Region + ?Sized> Region for Rotated<R> {
     }
 }
 
+impl<R: ?Sized> Scaled<R> {
+    /// Where a point was before.
+    fn before(&self, point: DVec3) -> DVec3 {
+        self.about + (point - self.about) / self.by
+    }
+
+    /// The smallest factor, which makes a distance a lower bound of that after; the sign is exact.
+    fn smallest(&self) -> f64 {
+        if self.axes == 3 { self.by.min_element() } else { self.by.truncate().min_element() }
+    }
+}
+
 impl<R: Region + ?Sized> Region for Scaled<R> {
     fn distance(&self, point: DVec3) -> f64 {
-        // The smallest factor makes this a lower bound of the distance; the sign is exact.
-        let smallest = if self.axes == 3 { self.by.min_element() } else { self.by.truncate().min_element() };
-        self.region.distance(self.about + (point - self.about) / self.by) * smallest
+        self.region.distance(self.before(point)) * self.smallest()
+    }
+
+    fn clearance(&self, point: DVec3) -> f64 {
+        self.region.clearance(self.before(point)) * self.smallest()
     }
 
     fn bounds(&self) -> Aabb {

@@ -123,3 +123,37 @@ fn volumes_of_nested_boxes_are_exact() {
     let both = format!("Intersection([{moved}, {moved}])");
     assert!((region(&both, Three).volume().unwrap() - 120.0).abs() < 1e-10);
 }
+
+/// A hole that ends where the body ends is open there: nothing is between the two faces.
+#[test]
+fn a_hole_through_a_body_has_no_lid() {
+    let channel = region("Difference(Box(min: (0, -2), max: (8, 3)), Box(min: (0, 0), max: (8, 1)))", Two);
+    let pipe = region(
+        "Difference(Cylinder(from: (0, 0, 0), to: (6, 0, 0), radius: 2), Cylinder(from: (0, 0, 0), to: (6, 0, 0), radius: 1))",
+        Three,
+    );
+    let turned = region(
+        "Rotate(shape: Difference(Box(min: (0, -2), max: (8, 3)), Box(min: (0, 0), max: (8, 1))), angle_degrees: 30)",
+        Two,
+    );
+    let turn = |x: f64, y: f64| {
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        DVec3::new(x * cos - y * sin, x * sin + y * cos, 0.0)
+    };
+    // Before, at and behind the ends, and far from them.
+    for x in [1e-4, 0.03, 0.3, 4.0, 7.97, 7.9999, 8.0001, 8.03, -0.02] {
+        for y in [0.02, 0.3, 0.5, 0.9] {
+            let side = f64::min(y, 1.0 - y);
+            let found = [channel.clearance(DVec3::new(x, y, 0.0)), turned.clearance(turn(x, y))];
+            assert!(found.iter().all(|d| (d - side).abs() < 1e-6), "{x} {y}: {found:?} and {side}");
+        }
+    }
+    for x in [1e-4, 0.02, 3.0, 5.99, 6.01] {
+        for r in [0.0, 0.5, 0.97] {
+            let found = pipe.clearance(DVec3::new(x, 0.6 * r, 0.8 * r));
+            assert!((found - (1.0 - r)).abs() < 1e-6, "{x} {r}: {found}");
+        }
+    }
+    // In the material nothing changes.
+    assert_eq!(channel.clearance(DVec3::new(0.5, -1.0, 0.0)), -0.5);
+}

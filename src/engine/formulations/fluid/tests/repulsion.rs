@@ -178,3 +178,20 @@ fn particles_between_a_turned_body_and_its_periodic_image_are_not_pushed() {
     assert!(column::<Velocity>(&sim, 0).iter().all(|v| v.0 == DVec3::ZERO));
     assert!(!sim.warnings().iter().any(|text| text.contains(" is inside of ")), "{:?}", sim.warnings());
 }
+
+/// The walls of the channel are one shape whose hole ends where the domain repeats itself: water passes as if there were no end.
+#[test]
+fn a_channel_that_is_cut_out_of_a_block_is_open_where_the_domain_repeats_itself() {
+    let mut sim = simulation(
+        r#"(dimension: Two, domain: (min: (0, -0.1), max: (0.2, 0.3), periodic: [X]), materials: {"water": Fluid(density: 1000.0, sound_speed: 10.0)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.02, velocity: (0.3, 0.0), formulation: Fluid, shape: Box(min: (0, 0), max: (0.2, 0.2))),
+                (name: "wall", material: "wall", spacing: 0.02, formulation: Wall(suction: true),
+                 shape: Difference(Box(min: (0, -0.06), max: (0.2, 0.26)), Box(min: (0, 0), max: (0.2, 0.2)))),
+            ], time: (end: 0.3))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    for velocity in column::<Velocity>(&sim, 0) {
+        assert!((velocity.0 - 0.3 * DVec3::X).length() < 1e-3, "{}", velocity.0);
+    }
+}

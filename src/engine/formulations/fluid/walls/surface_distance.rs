@@ -139,11 +139,11 @@ impl Shape {
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
     fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
         if !cloud.periods.any() {
-            return self.region.distance(at);
+            return self.region.clearance(at);
         }
         let periodic = cloud.pairs.periodic();
         let (lengths, inside) = (periodic.lengths(), periodic.wrap(at));
-        let mut distance = self.region.distance(inside);
+        let mut distance = self.region.clearance(inside);
         // Beyond a side of the domain that is near, the body may go on.
         let from_low = inside - periodic.min();
         let side = |axis: usize, low: bool| {
@@ -154,7 +154,7 @@ impl Shape {
             let digits = [n % 3, n / 3 % 3, n / 9];
             if (0..3).all(|axis| digits[axis] == 0 || side(axis, digits[axis] == 1)) {
                 let turns = DVec3::from_array(digits.map(|digit| [0.0, 1.0, -1.0][digit]));
-                distance = distance.min(self.region.distance(inside + turns * lengths));
+                distance = distance.min(self.region.clearance(inside + turns * lengths));
             }
         }
         distance
