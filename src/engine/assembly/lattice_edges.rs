@@ -8,13 +8,16 @@ use crate::scene::{Edge, Scene};
 const NOTABLE: f64 = 0.01;
 /// How far inside of a side the support acts, over the spacing, where particles stay in their lattice: measured on strips of 16 and 32 spacings, whose outermost layers hardly strain.
 const OF_SIDE: f64 = 1.0;
+/// The same in a lattice beside a fluid, whose particles are the surface of the body: half a spacing.
+const OF_WET_SIDE: f64 = 0.5;
 /// How far before the edge of a shape it ends.
 const OF_PART: f64 = 0.5;
 
-/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a side where the formulation leaves particles in their lattice. Where kernels follow
+/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a side where the formulation or a fluid leaves particles in their lattice. Where kernels follow
 /// the present configuration, a part that is held as deep as they reach ends where its shape does: 0.3 % too soft on a strip of 25 spacings.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     let mut warnings = Vec::new();
+    let is_wet = sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid);
     for item in scene.conditions.iter().filter(|item| item.name() == "Fix") {
         registry.support(item, |support| {
             // What is wrong with a selection is told where the condition is built.
@@ -30,6 +33,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
                 }
                 warnings.extend(match support.on.face {
                     Some(face) if !body.offers(Offer::Sides) => of_side(body, face.outward().0),
+                    Some(face) if is_wet => of_wet_side(body, face.outward().0),
                     None if some && support.on.within.is_some() && body.offers(Offer::Supports) => {
                         of_part(body)
                     }
@@ -51,6 +55,14 @@ fn of_side(body: &BodyPlan, axis: usize) -> Option<String> {
     Some(format!(
         "body `{}` moves by `{}`, which holds a side by its outermost particles: the support acts up to {way} inside of it, and the body is up to {percent:.0} % stiffer for each side; use `TotalLagrangian`, or a smaller spacing",
         body.name, body.formulation
+    ))
+}
+
+fn of_wet_side(body: &BodyPlan, axis: usize) -> Option<String> {
+    let (way, percent) = share(OF_WET_SIDE * body.spacing, body.bounds.extent()[axis])?;
+    Some(format!(
+        "body `{}` is held by a side in a scene with fluids, where its particles stay in their lattice: the support acts {way} inside of it, and the body is {percent:.1} % stiffer for each side, three times that in bending; let the body go on behind the side for a support radius of its kernel and hold that part by `within`, or use a smaller spacing",
+        body.name
     ))
 }
 

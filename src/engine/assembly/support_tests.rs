@@ -162,6 +162,24 @@ fn supports_that_end_in_the_lattice_are_told() {
 }
 
 #[test]
+fn a_side_that_is_held_beside_a_fluid_is_told() {
+    let told = |condition: &str, more: &str| {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3), "water": Fluid(density: 1000, sound_speed: 10)}},
+                bodies: [(name: "strip", material: "soft", shape: Box(min: (0, 0), max: (0.2, 0.04)), spacing: 0.01, formulation: TotalLagrangian), {more}],
+                conditions: [{condition}], time: (end: 0.05))"#
+        );
+        let (scene, source) = parse(Source::new("supports.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.warnings().iter().any(|text| text.contains("`strip` is held by a side in a scene with fluids"))
+    };
+    let water = r#"(name: "water", material: "water", shape: Box(min: (0, 0.04), max: (0.2, 0.1)), spacing: 0.01, formulation: Fluid)"#;
+    let (side, part) =
+        ("Fix(on: Select(face: MinX))", "Fix(on: Select(within: Box(min: (0, 0), max: (0.03, 1))))");
+    assert!(told(side, water) && !told(side, "") && !told(part, water));
+}
+
+#[test]
 fn metal_that_a_side_draws_along_its_normal_alone_is_warned_of() {
     let metal = "J2(density: 7850, young: 2e11, poisson: 0.3, hardening: Perfect(yield_stress: 4e8))";
     let rubber = "NeoHookean(density: 1000, young: 1e6, poisson: 0.3)";
