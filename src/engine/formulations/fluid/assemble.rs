@@ -10,15 +10,18 @@ use crate::formulations::fluid::cloud::{
     FlowCloud, FluidState, Group, Neighborhood, Role, Surface, Viscosities,
 };
 use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
-use crate::formulations::fluid::lists::{FlowPairs, GapPairs, NearRows, Side, Skins, Thickness, ThinBody};
+use crate::formulations::fluid::lists::{
+    FlowPairs, GapPairs, Moves, NearRows, Side, Skins, Thickness, ThinBody,
+};
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
 use crate::formulations::fluid::walls::{Repulsion, Slip, WallBody};
 use crate::neighbors::Periodic;
 use crate::parallel::Lanes4;
 use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
+use crate::rigid::RigidBodies;
 use crate::scene::{Dimension, Problem};
-use crate::world::{BodyId, Column, Damage};
+use crate::world::BodyId;
 
 /// What all fluids of a scene have in common.
 struct Common {
@@ -75,6 +78,9 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));
+        if let Some(bodies) = setup.resources.try_get::<RigidBodies>() {
+            bodies.iter().filter(|body| body.is_driven()).for_each(|body| cloud.pairs.gaps.hold(body.id));
+        }
         checks::flow_is_slow(&mut cloud, setup.world)?;
         advice::sinking(&cloud, &walls, &touching, gravity, setup);
         setup.resources.insert(cloud);
@@ -210,21 +216,16 @@ fn cloud(
     })
 }
 
-/// The boundaries as the search for gaps sees them. A deformable body that a symmetry plane cuts goes on behind it, where a wall ends the fluid: there is no gap between the two. In a body
-/// that can fail, empty space may be a crack.
+/// The boundaries as the search for gaps sees them. The pressure of a gap does not answer to its volume, as that of a fluid would, and would feed vibrations of deformable bodies.
 fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<Side> {
-    let is_cut = sim.scene().conditions.iter().any(|item| item.name() == "Symmetry");
     let copies = |body: BodyId| groups.iter().filter(|group| group.body == body).count();
     let side = |group: &Group| {
         let Role::Boundary(surface) = &group.role else { return None };
-        let ends_at_plane = is_cut && sim.body(group.body).kind == BodyKind::Solid;
-        let can_fail = sim.columns(group.phase).get(Damage::NAME).is_some();
         Some(Side {
             body: group.body,
             rows: group.cloud.clone(),
-            is_moved: surface.moved,
-            is_thin: copies(group.body) > 1,
-            is_closed: ends_at_plane || can_fail,
+            moves: if surface.moved { Moves::Free } else { Moves::Wall },
+            is_closed: copies(group.body) > 1 || sim.body(group.body).kind == BodyKind::Solid,
         })
     };
     groups.iter().filter_map(side).collect()

@@ -2,6 +2,7 @@
 //!
 //! Their lists hold all boundary particles around them, those of their own body too. They are built with the lists of the flow, and are good for as long as these.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -10,17 +11,25 @@ use super::drift::Drift;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::world::BodyId;
 
+/// What moves a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Moves {
+    /// It is a wall.
+    Wall,
+    /// It is a rigid body whose motion is prescribed.
+    Prescribed,
+    /// Forces.
+    Free,
+}
+
 /// A boundary as the search for gaps sees it. A thin body has one for each of its sides.
 #[derive(Clone, Debug)]
 pub struct Side {
     pub body: BodyId,
     /// Its rows in the cloud.
     pub rows: Range<usize>,
-    /// Whether its gaps are looked for: those of bodies that the fluid moves, not of walls.
-    pub is_moved: bool,
-    /// Whether it is one side of a thin body.
-    pub is_thin: bool,
-    /// Whether there is no gap beside it.
+    pub moves: Moves,
+    /// Whether the fluid has no pressure in gaps beside it: those of deformable and of thin bodies.
     pub is_closed: bool,
 }
 
@@ -51,7 +60,24 @@ impl GapPairs {
     /// Whether there may ever be a gap.
     pub fn are_possible(&self) -> bool {
         let open = || self.sides.iter().filter(|side| !side.is_closed);
-        open().any(|side| side.is_moved && open().any(|other| other.body != side.body))
+        open().any(|side| side.moves > Moves::Wall && open().any(|other| other.body != side.body))
+    }
+
+    /// Takes the motion of a body for prescribed.
+    pub fn hold(&mut self, body: BodyId) {
+        self.sides
+            .iter_mut()
+            .filter(|side| side.body == body)
+            .for_each(|side| side.moves = Moves::Prescribed);
+    }
+
+    /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: the freer of the two bodies looks at it, or both.
+    pub fn share_of(&self, i: usize, j: usize) -> f64 {
+        match self.side_of(i).moves.cmp(&self.side_of(j).moves) {
+            Ordering::Less => 0.0,
+            Ordering::Equal => 0.5,
+            Ordering::Greater => 1.0,
+        }
     }
 
     /// The boundary of a particle.
@@ -59,14 +85,12 @@ impl GapPairs {
         side_of(&self.sides, row)
     }
 
-    /// Builds the lists; the first `fluid` positions are those of fluids. They hold what is within `support` and `skin`, m, and of other bodies what a particle `sees`. The particles have been
-    /// sorted into the cells of their `drift`.
+    /// Builds the lists; the first `fluid` positions are those of fluids. They hold what is within `support` and `skin`, m. The particles have been sorted into the cells of their `drift`.
     pub fn build(
         &mut self,
         (positions, fluid): (&[DVec3], usize),
         (support, skin): (f64, f64),
         (periodic, drift): (&Periodic, &Drift),
-        sees: impl Fn(usize, usize) -> bool,
     ) -> Result<(), NeighborError> {
         self.particles.clear();
         if !self.are_possible() {
@@ -76,7 +100,7 @@ impl GapPairs {
         let is_open = |row: usize| Some(side_of(sides, row)).filter(|side| !side.is_closed);
         let label = |row| is_open(row).map_or(u32::MAX, |side| side.body.0 as u32);
         drift.rows_beside_others(fluid, label, rows);
-        rows.retain(|&row| side_of(sides, row).is_moved);
+        rows.retain(|&row| side_of(sides, row).moves > Moves::Wall);
         if rows.is_empty() {
             return Ok(());
         }
@@ -87,7 +111,7 @@ impl GapPairs {
         list.shift(fluid as u32);
         let is_other = |i: usize, j: usize| {
             let (own, side) = (side_of(sides, i), side_of(sides, j));
-            !side.is_closed && side.body != own.body && sees(i, j)
+            !side.is_closed && side.body != own.body
         };
         list.retain(|k, j| {
             side_of(sides, rows[k]).rows.contains(&(j as usize)) || is_other(rows[k], j as usize)

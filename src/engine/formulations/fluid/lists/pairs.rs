@@ -103,12 +103,11 @@ impl FlowPairs {
         self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
         self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
-        let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
-        let faces = |i, j| sides.sees(i, j, &self.walls) && sides.sees(j, i, &self.walls);
         self.drift.sort(positions, CELL * support, &self.periodic);
-        self.gaps.build((positions, fluid), (support, wall_skin), (&self.periodic, &self.drift), faces)?;
+        self.gaps.build((positions, fluid), (support, wall_skin), (&self.periodic, &self.drift))?;
         let mut hides = None;
         if !self.thin.is_empty() {
+            let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
             let walls = self.walls.clone();
             self.fluid.retain(|i, j| sides.sees(i, j as usize, &walls));
             self.walls.retain(|i, j| sides.sees(i, j as usize, &walls));

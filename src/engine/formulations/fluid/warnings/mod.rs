@@ -12,7 +12,7 @@ mod compression;
 
 mod filling;
 
-mod thin_gap;
+mod no_gap_pressure;
 
 mod fit;
 

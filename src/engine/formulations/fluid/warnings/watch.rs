@@ -7,14 +7,14 @@ use super::friction::Friction;
 use super::half_space;
 use super::held_down::HeldDown;
 use super::intrusion::Intrusion;
+use super::no_gap_pressure;
 use super::passing::Passing;
-use super::thin_gap;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
 use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
-use crate::world::{ParticleId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed};
+use crate::world::{Mobility, ParticleId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed};
 
 /// Steps between two looks for particles inside of something: what has entered stays for some time.
 const INTERVAL: u64 = 50;
@@ -24,8 +24,8 @@ struct FlowWatch {
     passing: Passing,
     /// Whether the user has been told of a half-space that a fluid falls into.
     is_through: bool,
-    /// The same of a thin body that lies along another one.
-    is_flat: bool,
+    /// The same of a body beside a gap without pressure.
+    lies: bool,
     held_down: HeldDown,
     /// Spacing of the fluid, m.
     spacing: f64,
@@ -48,7 +48,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
         intrusion: Intrusion::new(sim, spacing),
         passing: Passing::new(sim),
         is_through: false,
-        is_flat: false,
+        lies: false,
         held_down: HeldDown::new(sim.gravity(), spacing),
         spacing,
         compression: Compression::default(),
@@ -68,6 +68,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
             .reads_near::<ReferencePosition>()
             .reads::<ReferenceVolume>()
             .reads::<ParticleId>()
+            .reads::<Mobility>()
             .reads::<Removed>(),
     );
 }
@@ -87,7 +88,7 @@ impl Run for FlowWatch {
         }
         if is_frame {
             self.held_down.look(&cloud, step)?;
-            thin_gap::look(&mut self.is_flat, &cloud, step);
+            no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
@@ -97,7 +98,7 @@ impl Run for FlowWatch {
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let bodies = (self.is_through, self.is_flat, &self.held_down.seen);
+        let bodies = (self.is_through, self.lies, &self.held_down.seen);
         postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
             .unwrap_or_default()
     }
@@ -106,7 +107,7 @@ impl Run for FlowWatch {
         let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
             return false;
         };
-        (self.is_through, self.is_flat, self.held_down.seen) = bodies;
+        (self.is_through, self.lies, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);

@@ -62,14 +62,6 @@ impl FlowCloud {
     }
 }
 
-impl FlowCloud {
-    /// A particle of another body near a particle beside a gap; both are rows of the cloud.
-    pub(in crate::formulations::fluid) fn across_gap_of(&self, row: usize) -> Option<usize> {
-        let particle = self.pairs.gaps.particles.iter().find(|particle| particle[0] as usize == row)?;
-        self.across_gap(*particle).map(|pair| pair.row).next()
-    }
-}
-
 impl Surrounding {
     /// Of a particle in the lists of gaps.
     pub fn of(cloud: &FlowCloud, [row, k]: [u32; 2]) -> Self {

@@ -14,11 +14,9 @@ const OUTSIDE: f64 = 16.0;
 /// Least determinant of the moments of the particles that fixes a change, over that of a full support.
 const FLAT: f64 = 1e-9;
 
-/// Gives a force on a particle, N, to itself and its opposite to those across the gap. Two bodies that the fluid moves both look at the gap between them: each of the two views counts half.
+/// Gives a force on a particle, N, to itself and its opposite to those across the gap, as far as the gap is looked at from this side.
 pub fn give(cloud: &FlowCloud, row: usize, force: DVec3, across: &[Pair], out: &mut [DVec3]) {
-    let weight = |pair: &Pair| {
-        if cloud.pairs.gaps.side_of(pair.row).is_moved { 0.5 * pair.value } else { pair.value }
-    };
+    let weight = |pair: &Pair| cloud.pairs.gaps.share_of(row, pair.row) * pair.value;
     let total: f64 = across.iter().map(weight).sum();
     let whole: f64 = across.iter().map(|pair| pair.value).sum();
     let Some(direction) = force.try_normalize().filter(|_| total > 0.0) else { return };

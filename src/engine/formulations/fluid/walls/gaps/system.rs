@@ -69,8 +69,7 @@ impl GapPressure {
                 (pressure + there) * pair.weight * pair.x
             };
             let mut force = -across.iter().map(of_pair).sum::<DVec3>();
-            // A thin body has its other side within the support: what is empty there is no gap.
-            if pressure != 0.0 && !cloud.pairs.gaps.side_of(row).is_thin {
+            if pressure != 0.0 {
                 force += gap.closed * gap.around.force(pressure, slope);
             }
             give(cloud, row, cloud.records[row].volume() * force, across, forces);

@@ -1,0 +1,95 @@
+//! Deformable and thin bodies that lie on other bodies or walls in a fluid: it has no pressure in the gap.
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::{FlowCloud, Group, Role};
+use crate::formulations::fluid::lanes::Record;
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch};
+use crate::notation::place;
+use crate::rigid::RigidBodies;
+use crate::schedule::{Step, StepError};
+use crate::world::Mobility;
+
+/// Distance of two particles that touch, over the mean of their spacings.
+const TOUCH: f64 = 1.25;
+/// Width of what is dry and touches something, over the spacing of the fluid, from which on a body is told of.
+const LEAST: f64 = 3.0;
+
+/// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the fluid, m.
+pub fn look(
+    is_told: &mut bool,
+    cloud: &FlowCloud,
+    spacing: f64,
+    step: &mut Step<'_>,
+) -> Result<(), StepError> {
+    if *is_told {
+        return Ok(());
+    }
+    let across = if cloud.plane { 1 } else { 2 };
+    for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
+        let Role::Boundary(surface) = &group.role else { continue };
+        let is_wet = |row: usize| !cloud.near_row(row).is_empty();
+        if !surface.moved || !cloud.pairs.gaps.side_of(group.cloud.start).is_closed {
+            continue;
+        }
+        let view = step.world.phase(group.phase);
+        let mobility = &view.read::<Mobility>()?[group.rows.clone()];
+        let copies = || cloud.groups.iter().filter(|other| other.body == group.body);
+        let is_dry = |k: usize| copies().any(|copy| !is_wet(copy.cloud.start + k));
+        let rows = 0..group.rows.len();
+        // The particles of rigid bodies move with these.
+        let is_rigid = step.resources.try_get::<RigidBodies>();
+        let is_rigid = is_rigid.is_some_and(|bodies| bodies.iter().any(|body| body.id == group.body));
+        let is_free = |k: usize| is_rigid || mobility[k].0 != DVec3::ZERO;
+        let free: Vec<usize> = rows.filter(|&k| is_free(k) && is_dry(k)).collect();
+        if free.len() == group.rows.len() && copies().all(|copy| !copy.cloud.clone().any(is_wet)) {
+            continue;
+        }
+        let place_of = |row: usize| cloud.records[row].position();
+        let targets: Vec<DVec3> = free.iter().map(|&k| place_of(group.cloud.start + k)).collect();
+        let own = width(cloud, &cloud.records[group.cloud.start]);
+        let touching = touching(cloud, group, (&targets, own), spacing).map_err(|error| {
+            StepError::System { system: "fluid_watch".to_owned(), message: error.to_string() }
+        })?;
+        let Some(&first) =
+            touching.first().filter(|_| touching.len() as f64 >= (LEAST * spacing / own).powi(across))
+        else {
+            continue;
+        };
+        step.warnings.push(format!(
+            "`{}` lies on another body or a wall at {}, and the fluid has no pressure in the gap between the two: what acts on it there is missing, and the rest presses it on; leave two \
+             spacings of the fluid between them, or make it `Rigid` and thicker than the support of the fluid",
+            step.world.body(group.body).name,
+            place(targets[first])
+        ));
+        *is_told = true;
+        return Ok(());
+    }
+    Ok(())
+}
+
+/// Width of a particle, m.
+fn width(cloud: &FlowCloud, record: &Record) -> f64 {
+    record.volume().powf(if cloud.plane { 0.5 } else { 1.0 / 3.0 })
+}
+
+/// Numbers of the places that have a particle of another boundary beside them; particles there have the width `own`, m, and none is wider than `spacing`, m.
+fn touching(
+    cloud: &FlowCloud,
+    group: &Group,
+    (targets, own): (&[DVec3], f64),
+    spacing: f64,
+) -> Result<Vec<usize>, NeighborError> {
+    let others = cloud.groups.iter().filter(|other| other.fluid().is_none() && other.body != group.body);
+    let others = others.flat_map(|other| cloud.records[other.cloud.clone()].iter());
+    let others: Vec<&Record> = others.filter(|record| record.volume() > 0.0).collect();
+    let sources: Vec<DVec3> = others.iter().map(|record| record.position()).collect();
+    let mut list = NeighborList::default();
+    let (from, to) = (Cloud::uniform(targets, TOUCH * spacing), Cloud::uniform(&sources, TOUCH * spacing));
+    NeighborSearch::default().between(from, to, 0.0, cloud.pairs.periodic(), &mut list)?;
+    let touches = |k: usize, j: u32| {
+        let reach = 0.5 * TOUCH * (own + width(cloud, others[j as usize]));
+        cloud.offset(targets[k], sources[j as usize]).length() < reach
+    };
+    Ok((0..targets.len()).filter(|&k| list.row(k).iter().any(|&j| touches(k, j))).collect())
+}
