@@ -2,7 +2,7 @@
 
 use meshless_engine::formulations::fluid::FlowCloud;
 use meshless_engine::glam::DVec3;
-use meshless_engine::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic, Support};
+use meshless_engine::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic, SupportRadii};
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, ReferencePosition, SupportRadius};
 
@@ -34,7 +34,7 @@ impl Neighbors {
         };
         let positions: Vec<DVec3> = positions[rows.clone()].iter().map(|position| position.0).collect();
         let support: Vec<f64> = support[rows].iter().map(|radius| radius.0).collect();
-        let cloud = Cloud { positions: &positions, support: Support::PerParticle(&support) };
+        let cloud = Cloud { positions: &positions, support: SupportRadii::PerParticle(&support) };
         let mut list = NeighborList::default();
         NeighborSearch::default()
             .within(cloud, 0.0, &Periodic::NONE, &mut list)

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::notation::{number, quantity};
 use crate::ranks::{self, Cut};
-use crate::record::probe::Probe;
+use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, StateHash};
 use crate::scene::{self, Scene, Source};
 use crate::schedule::{
@@ -33,7 +33,7 @@ pub struct Simulation {
     schedule: Schedule,
     clock: Clock,
     end: f64,
-    step_rule: scene::Step,
+    step_rule: scene::StepRule,
     ledger: Ledger,
     limits: TimeStepLimits,
     next_limit: Option<Limit>,
@@ -45,7 +45,7 @@ pub struct Simulation {
     references: Vec<String>,
     started: bool,
     output: Option<Shared<Output>>,
-    probes: Vec<Probe>,
+    probes: Vec<ResolvedProbe>,
     checkpoint_at_end: bool,
     source: Source,
     title: String,
@@ -53,7 +53,7 @@ pub struct Simulation {
     parameters: BTreeMap<String, f64>,
     inputs: Inputs,
     failure: Option<String>,
-    pace: summary::Pace,
+    pace: summary::Throughput,
 }
 
 /// What a simulation is put together from.
@@ -66,7 +66,7 @@ pub(crate) struct SimulationParts {
     /// What it writes; none if it writes nothing.
     pub output: Option<Shared<Output>>,
     /// Probes of the scene.
-    pub probes: Vec<Probe>,
+    pub probes: Vec<ResolvedProbe>,
     /// The text of its scene.
     pub source: Source,
     pub warnings: Vec<String>,
@@ -178,7 +178,7 @@ impl Simulation {
             sound_speeds,
             parameters: scene.parameter_values(),
             failure: None,
-            pace: summary::Pace::default(),
+            pace: summary::Throughput::default(),
         }
     }
 
@@ -389,8 +389,8 @@ impl Simulation {
 
     fn choose_step(&self) -> Result<f64, RunError> {
         let dt = match &self.step_rule {
-            scene::Step::Fixed(dt) => *dt,
-            scene::Step::Adaptive { factor } => {
+            scene::StepRule::Fixed(dt) => *dt,
+            scene::StepRule::Adaptive { factor } => {
                 let limit = self.next_limit.as_ref().ok_or(RunError::NoLimit)?;
                 let (dt, by) = (limit.dt, || limit.by.clone());
                 let fell = dt <= LEAST_STEP * self.end && dt < SHRUNK * self.first_dt;
@@ -409,7 +409,7 @@ impl Simulation {
     }
 
     fn check_fixed_step(&mut self) {
-        if let (scene::Step::Fixed(dt), Some(limit)) = (&self.step_rule, &self.next_limit)
+        if let (scene::StepRule::Fixed(dt), Some(limit)) = (&self.step_rule, &self.next_limit)
             && *dt > limit.dt
         {
             self.warnings.push(format!(

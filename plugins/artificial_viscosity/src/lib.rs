@@ -53,7 +53,7 @@ impl Plugin for ArtificialViscosity {
                 self.warn_where_it_drowns(id, sim);
             }
             let material = &sim.body(id).material;
-            let term = Friction {
+            let term = ViscousTerm {
                 alpha: self.alpha,
                 beta: self.beta,
                 density: material.density,
@@ -89,7 +89,7 @@ impl ArtificialViscosity {
 }
 
 /// The pair force within one body.
-struct Friction {
+struct ViscousTerm {
     /// Whether pairs that part feel it too.
     parting: bool,
     alpha: f64,
@@ -98,7 +98,7 @@ struct Friction {
     sound_speed: f64,
 }
 
-impl PairTerm for Friction {
+impl PairTerm for ViscousTerm {
     type ReadI = ();
     type ReadJ = ();
 

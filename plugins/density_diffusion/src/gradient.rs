@@ -42,7 +42,7 @@ impl Run for Gradient {
             let density = view.read_near::<Density>()?;
             let mut gradient = view.write::<DensityGradient>()?;
             let at_rest = cloud.state(id).map_or(0.0, |state| state.density);
-            let pass = GradientPass { cloud: &cloud, rows: rows.clone(), density: &density, at_rest };
+            let pass = DensityGradientPass { cloud: &cloud, rows: rows.clone(), density: &density, at_rest };
             cloud.for_each_row(rows.start, &mut gradient[rows], &mut self.sums, &pass);
         }
         Ok(())
@@ -50,7 +50,7 @@ impl Run for Gradient {
 }
 
 /// The pass over the particles of one body.
-struct GradientPass<'a> {
+struct DensityGradientPass<'a> {
     cloud: &'a FlowCloud,
     rows: Range<usize>,
     density: &'a [Density],
@@ -58,7 +58,7 @@ struct GradientPass<'a> {
     at_rest: f64,
 }
 
-impl RowPass<1, 4> for GradientPass<'_> {
+impl RowPass<1, 4> for DensityGradientPass<'_> {
     type Output = DensityGradient;
 
     fn among(&self) -> Range<usize> {

@@ -103,7 +103,7 @@ impl Diffusion {
             if volumes[row] > 0.0 { 1.0 / deformation[row].0.determinant() } else { 0.0 }
         });
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
-        let field = Field { pairs, densities, axes: self.axes };
+        let field = DensityField { pairs, densities, axes: self.axes };
         if self.corrected {
             fill_rows(&mut gradients[rows.clone()], rows.start, |row| field.gradient(row));
         }
@@ -127,14 +127,14 @@ impl Diffusion {
 }
 
 /// The density of a body.
-struct Field<'a> {
+struct DensityField<'a> {
     pairs: PresentPairs<'a>,
     /// Over that of the start.
     densities: &'a [f64],
     axes: usize,
 }
 
-impl Field<'_> {
+impl DensityField<'_> {
     /// Calls `f` with every neighbour of a row that is there.
     fn of(&self, row: usize, f: impl FnMut(PresentPair)) {
         if self.pairs.volumes[row] > 0.0 {

@@ -41,7 +41,7 @@ impl Criterion {
 }
 
 /// A criterion and what it can read of the state of the law.
-pub(crate) struct Watch {
+pub(crate) struct WatchedCriterion {
     criterion: Criterion,
     /// Whether the criterion sums plastic strain.
     pub plastic: bool,
@@ -50,7 +50,7 @@ pub(crate) struct Watch {
 }
 
 /// What a criterion looks at in one particle.
-pub(crate) struct Seen<'a> {
+pub(crate) struct CriterionInput<'a> {
     pub deformation: &'a DMat3,
     /// Cauchy stress, Pa.
     pub stress: &'a Sym3,
@@ -61,7 +61,7 @@ pub(crate) struct Seen<'a> {
     pub dt: f64,
 }
 
-impl Watch {
+impl WatchedCriterion {
     /// # Errors
     /// The law of the body has no plastic flow to be summed.
     pub fn new(criterion: Criterion, law: &dyn SolidLaw, body: &str) -> Result<Self, SetupError> {
@@ -83,7 +83,7 @@ impl Watch {
     }
 
     /// The index of failure after this step, `index` being that before, and whether the criterion is met now.
-    pub fn index(&self, index: f64, seen: &Seen<'_>) -> (f64, bool) {
+    pub fn index(&self, index: f64, seen: &CriterionInput<'_>) -> (f64, bool) {
         let now = match &self.criterion {
             Criterion::MaximumPrincipalStrain { limit } => {
                 0.5 * largest_eigenvalue(&Sym3::gram(seen.deformation.transpose())).ln() / limit

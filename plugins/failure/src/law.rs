@@ -15,12 +15,12 @@ use meshless_engine::materials::{ElasticConstants, SolidLaw, StateRows, StressRo
 use meshless_engine::parallel::BLOCK;
 use meshless_engine::world::{ColumnSet, Damage, PlasticStrain, Temperature};
 
-use crate::criterion::{Seen, Watch};
+use crate::criterion::{CriterionInput, WatchedCriterion};
 use crate::softening::{Then, at_volume, cauchy, cofactor};
 use crate::{DamagedDeformation, DamagedEnergy, FailedStress, FailedVolume, FailureIndex, FractureEnergy};
 
 pub(crate) struct FailingLaw {
-    watch: Watch,
+    watch: WatchedCriterion,
     inner: Arc<dyn SolidLaw>,
     /// Growth of the cube root of damage where the criterion is met, 1/s.
     growth: f64,
@@ -28,7 +28,7 @@ pub(crate) struct FailingLaw {
 }
 
 /// The columns of the law, block by block.
-struct Own<'a> {
+struct LawColumns<'a> {
     damage: &'a mut [Damage],
     index: &'a mut [FailureIndex],
     fracture: &'a mut [FractureEnergy],
@@ -38,7 +38,7 @@ struct Own<'a> {
     mean: &'a mut [FailedStress],
 }
 
-impl<'a> Own<'a> {
+impl<'a> LawColumns<'a> {
     fn take(state: &mut StateRows<'a>) -> Self {
         Self {
             damage: state.take(),
@@ -53,7 +53,7 @@ impl<'a> Own<'a> {
 }
 
 impl FailingLaw {
-    pub fn new(watch: Watch, inner: Arc<dyn SolidLaw>, growth: f64, then: Then) -> Self {
+    pub fn new(watch: WatchedCriterion, inner: Arc<dyn SolidLaw>, growth: f64, then: Then) -> Self {
         Self { watch, inner, growth, then }
     }
 
@@ -63,7 +63,7 @@ impl FailingLaw {
     }
 
     /// A particle that has failed in an earlier step.
-    fn failed(&self, k: usize, given: &DMat3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
+    fn failed(&self, k: usize, given: &DMat3, rows: &mut StressRows<'_>, own: &mut LawColumns<'_>) {
         let f = &rows.deformation[k];
         let (volume, cofactor) = (f.determinant(), cofactor(f));
         (rows.plastic_work[k], rows.modulus[k]) = (0.0, 0.0);
@@ -85,7 +85,7 @@ impl FailingLaw {
     }
 
     /// A particle in which there is damage, below or just at 1.
-    fn soften(&self, k: usize, stress: &Sym3, rows: &mut StressRows<'_>, own: &mut Own<'_>) {
+    fn soften(&self, k: usize, stress: &Sym3, rows: &mut StressRows<'_>, own: &mut LawColumns<'_>) {
         let f = &rows.deformation[k];
         let damage = own.damage[k].0;
         let stored = if damage < 1.0 {
@@ -184,7 +184,7 @@ impl SolidLaw for FailingLaw {
         // Taken out of the rows, so that the loop can hand both on.
         let mut all = std::mem::take(&mut rows.state);
         let mut state = all.reborrow();
-        let mut own = Own::take(&mut state);
+        let mut own = LawColumns::take(&mut state);
         let now = self.watch.plastic.then(|| state.take::<PlasticStrain>());
         let temperature = self.watch.temperature.then(|| state.take::<Temperature>());
         for k in 0..n {
@@ -194,7 +194,7 @@ impl SolidLaw for FailingLaw {
             }
             let stress = cauchy(&rows.stress[k], &given[k]);
             if rows.dt > 0.0 {
-                let seen = Seen {
+                let seen = CriterionInput {
                     deformation: &given[k],
                     stress: &stress,
                     plastic: now.as_deref().map_or(0.0, |now| now[k].0 - strain[k]),

@@ -15,7 +15,7 @@ pub use criterion::Criterion;
 pub use johnson_cook::JohnsonCookFailure;
 pub use softening::Then;
 
-use criterion::Watch;
+use criterion::WatchedCriterion;
 use law::FailingLaw;
 use meshless_engine::column;
 use meshless_engine::materials::ParameterError;
@@ -108,7 +108,7 @@ impl Plugin for Failure {
             };
             let (name, criterion, then) = (body.name.clone(), self.criterion.clone(), self.then);
             sim.wrap_solid_law(id, |inner| {
-                Ok(FailingLaw::new(Watch::new(criterion, &*inner, &name)?, inner, growth, then))
+                Ok(FailingLaw::new(WatchedCriterion::new(criterion, &*inner, &name)?, inner, growth, then))
             })?;
         }
         match self.then {

@@ -7,7 +7,7 @@ use meshless_engine::materials::{
 };
 use meshless_engine::world::{ColumnSet, Damage};
 
-use crate::criterion::{Criterion, Watch};
+use crate::criterion::{Criterion, WatchedCriterion};
 use crate::johnson_cook::JohnsonCookFailure;
 use crate::law::FailingLaw;
 use crate::softening::Then;
@@ -47,7 +47,7 @@ fn rubber() -> Material {
 impl Specimen {
     fn new(material: Material, criterion: Criterion, growth: f64, then: Then) -> Self {
         let inner = inner(material);
-        let watch = Watch::new(criterion, &*inner, "body").unwrap();
+        let watch = WatchedCriterion::new(criterion, &*inner, "body").unwrap();
         let law = FailingLaw::new(watch, inner, growth, then);
         let mut set = ColumnSet::default();
         law.state(&mut set);

@@ -128,7 +128,7 @@ impl Conduction {
         self.shapes.resize(rows.len(), Sym3::ZERO);
         self.gains.resize(rows.len(), Gain::default());
         let pairs = PresentPairs { solid: &*solid, position: bytemuck::cast_slice(&position), volumes };
-        let field = Field { pairs, first: rows.start, axes: self.axes };
+        let field = HeatField { pairs, first: rows.start, axes: self.axes };
         fill_rows(&mut self.shapes, rows.start, |row| field.shape(row));
         let (shapes, temperature) = (&self.shapes[..], &now[..]);
         fill_rows(&mut self.gains, rows.start, |row| field.gain(row, shapes, temperature, of.conductivity));
@@ -162,14 +162,14 @@ impl Conduction {
 }
 
 /// The neighbourhoods of a body.
-struct Field<'a> {
+struct HeatField<'a> {
     pairs: PresentPairs<'a>,
     /// First row of the body.
     first: usize,
     axes: usize,
 }
 
-impl Field<'_> {
+impl HeatField<'_> {
     /// The inverse of the moment matrix of the neighbourhood.
     fn shape(&self, row: usize) -> Sym3 {
         let mut moment = MomentMatrix::new(self.axes);

@@ -27,15 +27,15 @@ pub fn can_fail(sim: &SimBuilder<'_>, id: BodyId) -> Result<bool, SetupError> {
 pub fn add_off_cracks(sim: &mut SimBuilder<'_>, id: BodyId, account: &str, term: impl PairTerm) {
     let bodies = BodySet::new([id]);
     sim.add_column_to::<HourglassGradient>(&bodies);
-    let measure = FoldedTermOfBodies { account: None, released: None, term: Box::new(Measure) };
+    let measure = FoldedTermOfBodies { account: None, released: None, term: Box::new(MeasureFit) };
     measure.add(bodies.clone(), sim);
     sim.add_pair_term(bodies, account, term);
 }
 
 /// Writes the fit to the neighbours that hold to its column.
-struct Measure;
+struct MeasureFit;
 
-impl FoldedTerm for Measure {
+impl FoldedTerm for MeasureFit {
     fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
         for (column, gradient) in rows.memory.gradient.iter_mut().zip(rows.displacement_gradient) {
             *column = DMat3::IDENTITY + *gradient;

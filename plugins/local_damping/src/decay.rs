@@ -26,9 +26,9 @@ impl Window {
 
 /// Energy that a block has lost, J.
 #[derive(Clone, Copy, Default)]
-struct Loss(f64);
+struct DampedEnergy(f64);
 
-impl BlockSum for Loss {
+impl BlockSum for DampedEnergy {
     fn add(&mut self, next: &Self) {
         self.0 += next.0;
     }
@@ -53,7 +53,7 @@ pub fn damp(step: &mut Step<'_>, id: BodyId, factor: f64) -> Result<(), StepErro
             }
             twice += m.0 * (before - v.0.length_squared());
         }
-        Loss(0.5 * twice)
+        DampedEnergy(0.5 * twice)
     });
     let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
     let damped = step.ledger.account(ACCOUNT, AccountKind::Dissipated);

@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use decay::{Decay, Window};
-use relaxation::Relaxation;
+use relaxation::RelaxationSystem;
 use stiffness::PreviousForce;
 
 /// Registers the plugin.
@@ -32,7 +32,7 @@ pub struct LocalDamping {
     /// period T is critically damped at 4 pi / T.
     pub rate: Option<f64>,
     /// Constant rate, or relaxation until rest.
-    pub mode: Mode,
+    pub mode: DampingMode,
     /// Time \[s\] from which it acts. Default: the start.
     pub from: Option<f64>,
     /// Time \[s\] until which it acts, so that it is off before anything dynamic is recorded. Default: the end.
@@ -42,7 +42,7 @@ pub struct LocalDamping {
 /// How the rate is found.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub enum Mode {
+pub enum DampingMode {
     /// The rate that is given.
     #[default]
     Constant,
@@ -79,14 +79,14 @@ impl Plugin for LocalDamping {
         let window = self.window()?;
         let bodies = sim.scope().clone();
         let system = match self.mode {
-            Mode::Constant => {
+            DampingMode::Constant => {
                 let rate = self.constant_rate()?;
                 System::new(Stage::PostStep, Self::NAME, Decay { bodies: bodies.clone(), window, rate })
             }
-            Mode::Relaxation { tolerance, after, stop } => {
+            DampingMode::Relaxation { tolerance, after, stop } => {
                 self.check_relaxation(tolerance, after)?;
                 sim.add_column::<PreviousForce>();
-                let relaxation = Relaxation::new(bodies.clone(), window, tolerance, after, stop);
+                let relaxation = RelaxationSystem::new(bodies.clone(), window, tolerance, after, stop);
                 System::new(Stage::PostStep, Self::NAME, relaxation)
                     .reads::<Force>()
                     .writes::<PreviousForce>()

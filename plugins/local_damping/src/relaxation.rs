@@ -9,11 +9,11 @@ use meshless_engine::schedule::{AccountKind, Run, Step, StepError};
 use meshless_engine::world::BodySet;
 
 use crate::decay::{Window, damp, name_undamped, open_account};
-use crate::stiffness::{Motion, look};
+use crate::stiffness::{LastMotion, look};
 use meshless_engine::parallel::BlockSum;
 
 /// The relaxation of a set of bodies, which share one rate.
-pub struct Relaxation {
+pub struct RelaxationSystem {
     bodies: BodySet,
     window: Window,
     tolerance: f64,
@@ -25,13 +25,13 @@ pub struct Relaxation {
     slow: f64,
 }
 
-impl Relaxation {
+impl RelaxationSystem {
     pub fn new(bodies: BodySet, window: Window, tolerance: f64, after: f64, stop: bool) -> Self {
         Self { bodies, window, tolerance, after, stop, looked: false, slow: f64::INFINITY }
     }
 
     /// Squared frequency of the last step, 1/s2; zero where the motion meets no resistance.
-    fn measure(&mut self, motion: &Motion, dt: f64) -> f64 {
+    fn measure(&mut self, motion: &LastMotion, dt: f64) -> f64 {
         let squared = if motion.inertia > 0.0 { (motion.resistance / motion.inertia).max(0.0) } else { 0.0 };
         // It falls at once and rises slowly: at a turning point of the slow motion only fast ones are seen.
         if squared > 0.0 {
@@ -41,7 +41,7 @@ impl Relaxation {
         squared
     }
 
-    fn at_rest(&self, motion: &Motion, step: &Step<'_>) -> bool {
+    fn at_rest(&self, motion: &LastMotion, step: &Step<'_>) -> bool {
         let stored =
             step.ledger.accounts().iter().filter(|a| a.kind == AccountKind::Stored && a.name != "kinetic");
         let elastic: f64 =
@@ -52,11 +52,11 @@ impl Relaxation {
     }
 }
 
-impl Run for Relaxation {
+impl Run for RelaxationSystem {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         open_account(step);
         name_undamped(step, &self.bodies);
-        let mut motion = Motion::default();
+        let mut motion = LastMotion::default();
         for body in self.bodies.iter() {
             motion.add(&look(step, body)?);
         }

@@ -12,7 +12,7 @@ meshless_engine::column! {
 
 /// What the last step tells about the motion of some particles, along their free axes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Motion {
+pub struct LastMotion {
     /// Work of the change of force on the displacement, with the sign of a resistance: - sum dx . df, J.
     pub resistance: f64,
     /// sum m dx^2, kg m2.
@@ -23,7 +23,7 @@ pub struct Motion {
     pub unbalance: f64,
 }
 
-impl BlockSum for Motion {
+impl BlockSum for LastMotion {
     fn add(&mut self, next: &Self) {
         self.resistance += next.resistance;
         self.inertia += next.inertia;
@@ -33,7 +33,7 @@ impl BlockSum for Motion {
 }
 
 /// Looks at the last step of a body, and keeps its forces for the next look.
-pub fn look(step: &Step<'_>, id: BodyId) -> Result<Motion, StepError> {
+pub fn look(step: &Step<'_>, id: BodyId) -> Result<LastMotion, StepError> {
     let (view, rows) = step.world.body_view(id);
     let force = view.read::<Force>()?;
     let velocity = view.read::<Velocity>()?;
@@ -50,7 +50,7 @@ pub fn look(step: &Step<'_>, id: BodyId) -> Result<Motion, StepError> {
     );
     type Rows<'a> = (&'a mut [PreviousForce], &'a [Force], &'a [Velocity], &'a [Mass], &'a [Mobility]);
     Ok(sum_over_blocks(slices, &|_, (previous, f, v, m, mobility): Rows<'_>| {
-        let mut motion = Motion::default();
+        let mut motion = LastMotion::default();
         for k in 0..f.len() {
             let free = DVec3::select(mobility[k].0.cmpgt(DVec3::ZERO), DVec3::ONE, DVec3::ZERO);
             // The drift of this step: the velocity before the last half kick.

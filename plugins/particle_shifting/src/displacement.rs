@@ -18,14 +18,14 @@ pub struct Shift {
 }
 
 /// What the shifts of a body depend on beside its neighbourhoods.
-pub struct Displacements {
+pub struct ShiftInput {
     /// Displacement over strain rate and first moment, `-4 s h^2 dt`, m2 s.
     factor: f64,
     /// Largest displacement, m.
     largest: f64,
 }
 
-impl Displacements {
+impl ShiftInput {
     /// Those of a strength, a speed of sound, m/s, and a length of the step, s.
     pub fn new(cloud: &FlowCloud, strength: f64, sound_speed: f64, dt: f64) -> Self {
         let h = cloud.kernel.smoothing_length();

@@ -18,9 +18,9 @@ use meshless_engine::world::{BodyId, Density, Mass, Position, Removed, Velocity}
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use displacement::{Displacements, Shift};
+use displacement::{Shift, ShiftInput};
 use local::{Local, Locals};
-use response::{Response, Responses};
+use response::{Responses, ShiftResponse};
 
 meshless_engine::column! {
     /// Change of volume by shifting, over the volume, that the density has not followed yet.
@@ -73,7 +73,7 @@ impl Plugin for ParticleShifting {
         let work = Shifting {
             gravity: sim.gravity(),
             bodies: shifted,
-            fields: Fields::default(),
+            fields: ShiftingFields::default(),
             repayment: Repayment::default(),
         };
         sim.extend(shifted);
@@ -99,29 +99,29 @@ impl Plugin for ParticleShifting {
 struct Shifting {
     gravity: DVec3,
     bodies: Shared<Shifted>,
-    fields: Fields,
+    fields: ShiftingFields,
     repayment: Repayment,
 }
 
 /// What the passes compute, row by row of the fluids: scratch memory.
 #[derive(Default)]
-struct Fields {
+struct ShiftingFields {
     locals: Vec<Local>,
     interior: Interior,
     shifts: Vec<Shift>,
     moves: Vec<DVec3>,
     pending: Vec<f64>,
-    responses: Vec<Response>,
+    responses: Vec<ShiftResponse>,
     sums: RowSums,
 }
 
-impl Fields {
+impl ShiftingFields {
     fn resize(&mut self, fluid: usize) {
         self.locals.resize(fluid, Local::default());
         self.shifts.resize(fluid, Shift::default());
         self.moves.resize(fluid, DVec3::ZERO);
         self.pending.resize(fluid, 0.0);
-        self.responses.resize(fluid, Response::default());
+        self.responses.resize(fluid, ShiftResponse::default());
     }
 }
 
@@ -132,7 +132,7 @@ impl Run for Shifting {
         let cloud: &FlowCloud = &cloud;
         let bodies = resources.of(self.bodies);
         self.fields.resize(cloud.fluid);
-        let Fields { locals, interior, shifts, moves, pending, responses, sums } = &mut self.fields;
+        let ShiftingFields { locals, interior, shifts, moves, pending, responses, sums } = &mut self.fields;
         let dt = step.clock.dt;
         let spacing = bodies.iter().map(|(id, _)| step.world.body(*id).spacing).fold(0.0, f64::max);
         cloud.for_each_row(0, locals, sums, &Locals::new(cloud, spacing));
@@ -140,7 +140,7 @@ impl Run for Shifting {
         for &(id, strength) in bodies.iter() {
             let (view, rows) = step.world.body_view(id);
             let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
-            let displacements = Displacements::new(cloud, strength, sound_speed, dt);
+            let displacements = ShiftInput::new(cloud, strength, sound_speed, dt);
             let old = view.read_near::<PendingDilation>()?;
             for row in rows {
                 shifts[row] = displacements.of(&locals[row], interior.has(row));

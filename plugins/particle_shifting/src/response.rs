@@ -21,7 +21,7 @@ const RETURN: f64 = 1.0;
 
 /// What the displacements of a neighbourhood do to a particle.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Response {
+pub struct ShiftResponse {
     /// Change of its velocity, m/s: its new place has another.
     pub velocity: DVec3,
     /// Change of volume over volume by the displacements, `sum_j V_j (dx_j - dx_i) . grad_i W` halfway along them.
@@ -42,7 +42,7 @@ pub struct Responses<'a> {
 }
 
 impl RowPass<4, 3> for Responses<'_> {
-    type Output = Response;
+    type Output = ShiftResponse;
 
     fn among(&self) -> Range<usize> {
         self.cloud.everything()
@@ -81,9 +81,9 @@ impl RowPass<4, 3> for Responses<'_> {
     }
 
     #[inline(always)]
-    fn output(&self, i: usize, &[velocity, dilation_and_excess, shared]: &[DVec3; 3]) -> Response {
+    fn output(&self, i: usize, &[velocity, dilation_and_excess, shared]: &[DVec3; 3]) -> ShiftResponse {
         let is_inside = self.shifts[i].inside;
-        Response {
+        ShiftResponse {
             velocity,
             dilation: if is_inside { dilation_and_excess.x } else { 0.0 },
             excess: if is_inside { self.locals[i].excess + dilation_and_excess.y } else { 0.0 },
@@ -93,12 +93,12 @@ impl RowPass<4, 3> for Responses<'_> {
 }
 
 /// Changes the velocities of a body; returns the kinetic energy that they lose, J.
-pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[Response]) -> Result<f64, StepError> {
+pub fn change_velocity(step: &Step<'_>, id: BodyId, responses: &[ShiftResponse]) -> Result<f64, StepError> {
     let (view, rows) = step.world.body_view(id);
     let mut velocity = view.write::<Velocity>()?;
     let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
     let slices = (&mut velocity[rows.clone()], &responses[rows.clone()], &mass[rows.clone()], &removed[rows]);
-    type Rows<'a> = (&'a mut [Velocity], &'a [Response], &'a [Mass], &'a [Removed]);
+    type Rows<'a> = (&'a mut [Velocity], &'a [ShiftResponse], &'a [Mass], &'a [Removed]);
     Ok(sum_over_blocks(slices, &|_, (velocity, responses, mass, removed): Rows<'_>| {
         let mut lost = 0.0;
         for k in (0..velocity.len()).filter(|&k| removed[k] == Removed::NO) {
@@ -116,7 +116,7 @@ pub fn change_density(
     cloud: &FlowCloud,
     id: BodyId,
     locals: &[Local],
-    responses: &[Response],
+    responses: &[ShiftResponse],
 ) -> Result<(), StepError> {
     let (view, rows) = step.world.body_view(id);
     let density = view.read::<Density>()?;
@@ -127,7 +127,7 @@ pub fn change_density(
     // In a step of the usual length neighbours take a mean: what they share does not depend on the number of steps.
     let mixing = (FOLLOWS * share / 0.4).min(1.0);
     for row in rows {
-        let Response { dilation, excess, shared, .. } = responses[row];
+        let ShiftResponse { dilation, excess, shared, .. } = responses[row];
         let due = pending[row].0 + mixing * shared + dilation;
         pending[row].0 = due * (1.0 - share);
         let beyond = excess.signum() * (excess.abs() - DEAD).max(0.0);

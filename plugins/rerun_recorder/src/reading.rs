@@ -103,7 +103,7 @@ pub fn read_frame(path: &Path, at: Option<f64>) -> Result<RecordedFrame, ReadErr
     let messages =
         DecoderApp::decode_eager(BufReader::new(file)).map_err(|error| damaged(error.to_string()))?;
     // Times are kept to the nanosecond.
-    let mut reader = Reader::new(at.map_or(i64::MAX, |time| (time * 1e9).round() as i64));
+    let mut reader = RecordingReader::new(at.map_or(i64::MAX, |time| (time * 1e9).round() as i64));
     for message in messages {
         let chunk = message.map_err(|error| error.to_string()).and_then(chunk_of);
         match chunk {
@@ -129,7 +129,7 @@ fn chunk_of(message: LogMsg) -> Result<Option<Chunk>, String> {
 }
 
 /// What has been read so far.
-struct Reader {
+struct RecordingReader {
     at: i64,
     first: i64,
     frame: RecordedFrame,
@@ -138,7 +138,7 @@ struct Reader {
     extremes_time: i64,
 }
 
-impl Reader {
+impl RecordingReader {
     fn new(at: i64) -> Self {
         let frame = RecordedFrame {
             title: String::new(),

@@ -48,7 +48,7 @@ impl Plugin for Xsph {
             return Ok(());
         }
         let gravity = sim.gravity();
-        let work = Smoothing {
+        let work = XsphSystem {
             epsilon: self.epsilon,
             gravity,
             bodies: bodies.clone(),
@@ -69,7 +69,7 @@ impl Plugin for Xsph {
     }
 }
 
-struct Smoothing {
+struct XsphSystem {
     epsilon: f64,
     gravity: DVec3,
     bodies: BodySet,
@@ -77,7 +77,7 @@ struct Smoothing {
     sums: RowSums,
 }
 
-impl Run for Smoothing {
+impl Run for XsphSystem {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
         let cloud = resources.get::<FlowCloud>();

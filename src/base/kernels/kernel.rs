@@ -53,14 +53,14 @@ impl Kernel {
 
     /// `W(r, h)` (1/m^d).
     pub fn w(&self, r: f64, smoothing_length: f64) -> f64 {
-        struct Value(f64, f64);
-        impl KernelVisitor for Value {
+        struct ValueOf(f64, f64);
+        impl KernelVisitor for ValueOf {
             type Output = f64;
             fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) -> f64 {
                 kernel.scaled(self.1).w(self.0)
             }
         }
-        self.dispatch(Value(r, smoothing_length))
+        self.dispatch(ValueOf(r, smoothing_length))
     }
 
     /// `dW/dr <= 0` (1/m^(d+1)).

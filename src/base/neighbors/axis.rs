@@ -10,7 +10,7 @@ const ROOM: f64 = 1e-6;
 /// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which particles share a cell, and the order of cells, do not hang on
 /// which particles there are.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Axis {
+pub(super) struct CellAxis {
     /// Start of a period, m; zero where there is none.
     origin: f64,
     /// Number of the first cell, counted from the origin.
@@ -26,7 +26,7 @@ pub(super) struct Axis {
     pub buckets: i64,
 }
 
-impl Axis {
+impl CellAxis {
     /// Bound of the round-off in distances between coordinates from `min` to `max`, m.
     pub fn round_off(min: f64, max: f64, radius: f64, period: Option<(f64, f64)>) -> f64 {
         let reach = match period {
@@ -146,7 +146,7 @@ fn whole(x: f64) -> i64 {
 }
 
 /// Numbers of buckets: the cells themselves, or fewer so that their product stays in proportion to the particles.
-pub(super) fn fold_into_buckets(axes: &mut [Axis; 3], particles: usize) {
+pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
     let mut room = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
     let mut order = [0, 1, 2];
     order.sort_by_key(|&a| axes[a].cells);
@@ -172,12 +172,12 @@ fn greatest_common_divisor(a: i64, b: i64) -> i64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Axis, fold_into_buckets};
+    use super::{CellAxis, fold_into_buckets};
 
     #[test]
     fn folded_diagonals_meet_every_bucket() {
         for particles in (0..100_000).step_by(37) {
-            let mut axes = [Axis { cells: 1 << 40, ..Axis::default() }; 3];
+            let mut axes = [CellAxis { cells: 1 << 40, ..CellAxis::default() }; 3];
             fold_into_buckets(&mut axes, particles);
             let buckets = axes.map(|axis| axis.buckets);
             let product: i64 = buckets.iter().product();

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// Support radii of a set of particles.
 #[derive(Debug, Clone, Copy)]
-pub enum Support<'a> {
+pub enum SupportRadii<'a> {
     /// One support radius (m) for all: the faster case.
     Uniform(f64),
     /// One support radius (m) a particle. Cells are as large as the largest: the cost grows with the cube of the ratio
@@ -20,25 +20,27 @@ pub struct Cloud<'a> {
     /// Positions (m).
     pub positions: &'a [DVec3],
     /// Support radii (m).
-    pub support: Support<'a>,
+    pub support: SupportRadii<'a>,
 }
 
 impl<'a> Cloud<'a> {
     /// Particles that share one support radius (m).
     pub const fn uniform(positions: &'a [DVec3], support_radius: f64) -> Self {
-        Self { positions, support: Support::Uniform(support_radius) }
+        Self { positions, support: SupportRadii::Uniform(support_radius) }
     }
 
     /// Particles with a support radius (m) each.
     pub const fn per_particle(positions: &'a [DVec3], support_radii: &'a [f64]) -> Self {
-        Self { positions, support: Support::PerParticle(support_radii) }
+        Self { positions, support: SupportRadii::PerParticle(support_radii) }
     }
 
     /// The first `count` particles.
     pub(super) fn first(&self, count: usize) -> Self {
         let support = match self.support {
-            Support::PerParticle(radii) => Support::PerParticle(radii.get(..count).unwrap_or(radii)),
-            uniform @ Support::Uniform(_) => uniform,
+            SupportRadii::PerParticle(radii) => {
+                SupportRadii::PerParticle(radii.get(..count).unwrap_or(radii))
+            }
+            uniform @ SupportRadii::Uniform(_) => uniform,
         };
         Self { positions: &self.positions[..count], support }
     }
@@ -46,16 +48,16 @@ impl<'a> Cloud<'a> {
     #[inline]
     pub(super) fn support_of(&self, index: usize) -> f64 {
         match self.support {
-            Support::Uniform(radius) => radius,
-            Support::PerParticle(radii) => radii[index],
+            SupportRadii::Uniform(radius) => radius,
+            SupportRadii::PerParticle(radii) => radii[index],
         }
     }
 
     /// Largest support radius, zero for an empty set.
     pub(super) fn largest_support(&self) -> f64 {
         match self.support {
-            Support::Uniform(radius) => radius,
-            Support::PerParticle(radii) => radii.par_iter().copied().reduce(|| 0.0, f64::max),
+            SupportRadii::Uniform(radius) => radius,
+            SupportRadii::PerParticle(radii) => radii.par_iter().copied().reduce(|| 0.0, f64::max),
         }
     }
 
@@ -74,11 +76,11 @@ impl<'a> Cloud<'a> {
         }
         let bad = |radius: &f64| !(*radius > 0.0 && radius.is_finite());
         let wrong = match self.support {
-            Support::Uniform(radius) => bad(&radius).then_some((0, radius)),
-            Support::PerParticle(radii) if radii.len() != count => {
+            SupportRadii::Uniform(radius) => bad(&radius).then_some((0, radius)),
+            SupportRadii::PerParticle(radii) if radii.len() != count => {
                 return Err(NeighborError::Length { set, positions: count, supports: radii.len() });
             }
-            Support::PerParticle(radii) => radii.iter().position(bad).map(|index| (index, radii[index])),
+            SupportRadii::PerParticle(radii) => radii.iter().position(bad).map(|index| (index, radii[index])),
         };
         wrong.map_or(Ok(()), |(index, value)| Err(NeighborError::SupportRadius { set, index, value }))
     }

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::axis::{Axis, fold_into_buckets};
+use super::axis::{CellAxis, fold_into_buckets};
 use super::buckets::Buckets;
 use super::{Cloud, Periodic};
 
@@ -17,7 +17,7 @@ const PADDING: usize = 3;
 /// Source particles in cell order; buffers are kept from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
-    axes: [Axis; 3],
+    axes: [CellAxis; 3],
     /// Cells are buckets, side by side along each axis.
     plain: bool,
     buckets: Buckets,
@@ -30,7 +30,7 @@ pub(super) struct Grid {
 
 /// Sorted particles one after another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
+pub(super) struct CellRun {
     pub first: u32,
     pub end: u32,
     /// Whether the place around which was looked may be among them.
@@ -40,7 +40,7 @@ pub(super) struct Run {
 /// Ranges of the sorted particles, and what it takes to find them.
 #[derive(Debug, Default)]
 pub(super) struct Ranges {
-    pub found: Vec<Run>,
+    pub found: Vec<CellRun>,
     /// Number of particles, those that fill up fours included.
     pub room: usize,
     lists: [Vec<i64>; 3],
@@ -59,19 +59,20 @@ impl Grid {
     ) {
         let count = sources.positions.len();
         let period = |a: usize| periodic.axes()[a].then(|| (periodic.min()[a], periodic.lengths()[a]));
-        let round_off = |a: usize| Axis::round_off(bounds.0[a], bounds.1[a], radius, period(a));
+        let round_off = |a: usize| CellAxis::round_off(bounds.0[a], bounds.1[a], radius, period(a));
         // Cells are the same along all axes that are not periodic.
         let round_off = round_off(0).max(round_off(1)).max(round_off(2));
-        self.axes = [0, 1, 2].map(|a| Axis::new((bounds.0[a], bounds.1[a]), radius, period(a), round_off));
+        self.axes =
+            [0, 1, 2].map(|a| CellAxis::new((bounds.0[a], bounds.1[a]), radius, period(a), round_off));
         fold_into_buckets(&mut self.axes, particles);
-        self.plain = self.axes.iter().all(Axis::is_plain);
+        self.plain = self.axes.iter().all(CellAxis::is_plain);
         let [x, y, z] = self.axes;
         let key = |p: DVec3| {
             ((z.bucket_of(p.z) * y.buckets + y.bucket_of(p.y)) * x.buckets + x.bucket_of(p.x)) as u32
         };
         self.buckets.sort(sources.positions, (x.buckets * y.buckets * z.buckets) as usize, key);
         self.cells.clear();
-        if self.axes.iter().any(Axis::is_folded) {
+        if self.axes.iter().any(CellAxis::is_folded) {
             self.cells
                 .extend(sources.positions.iter().map(|p| [z.cell_of(p.z), y.cell_of(p.y), x.cell_of(p.x)]));
         }
@@ -176,7 +177,7 @@ impl Ranges {
     #[inline(always)]
     fn add(&mut self, first: u32, end: u32, holds_own: bool) {
         if first < end {
-            self.found.push(Run { first, end, holds_own });
+            self.found.push(CellRun { first, end, holds_own });
             self.room += (end - first) as usize + PADDING + 1;
         }
     }

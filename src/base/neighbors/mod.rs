@@ -28,7 +28,7 @@ pub use beside::CellBlock;
 pub use buckets::Buckets;
 pub use cells::sort_into_cells;
 pub use cloud::bounds;
-pub use cloud::{Cloud, Support};
+pub use cloud::{Cloud, SupportRadii};
 pub use error::NeighborError;
 pub use list::NeighborList;
 pub use parting::{Parted, Parting};

@@ -21,8 +21,8 @@ pub struct Parting {
     cells: Buckets,
     /// In the order of cells, m.
     then: Vec<DVec3>,
-    boxes: Vec<Displacements>,
-    window: Vec<Displacements>,
+    boxes: Vec<DisplacementBox>,
+    window: Vec<DisplacementBox>,
 }
 
 /// How far particles have moved against each other, m.
@@ -36,12 +36,12 @@ pub struct Parted {
 
 /// The box around displacements, m; inverted where there are none, without end where one is no number.
 #[derive(Clone, Copy, Debug)]
-struct Displacements {
+struct DisplacementBox {
     low: DVec3,
     high: DVec3,
 }
 
-impl Displacements {
+impl DisplacementBox {
     const NONE: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     fn with(self, other: Self) -> Self {
@@ -83,15 +83,15 @@ impl Parting {
             return Parted { near: f64::INFINITY, all: f64::INFINITY };
         }
         let Self { cells, then, boxes, .. } = self;
-        boxes.resize(cells.count(), Displacements::NONE);
+        boxes.resize(cells.count(), DisplacementBox::NONE);
         boxes.par_iter_mut().with_min_len(CELLS_OF_TASK).enumerate().for_each(|(cell, own)| {
             let range = cells.range(cell);
             let places = cells.rows[range.clone()].iter().zip(&then[range]);
             let moved = places.map(|(&row, then)| positions[row as usize] - *then);
-            *own = moved.fold(Displacements::NONE, Displacements::and);
+            *own = moved.fold(DisplacementBox::NONE, DisplacementBox::and);
         });
-        let all = boxes.iter().fold(Displacements::NONE, |all, own| all.with(*own)).diagonal();
-        self.grid.join_beside(&mut self.boxes, &mut self.window, &Displacements::with);
+        let all = boxes.iter().fold(DisplacementBox::NONE, |all, own| all.with(*own)).diagonal();
+        self.grid.join_beside(&mut self.boxes, &mut self.window, &DisplacementBox::with);
         let near = self.boxes.iter().map(|own| own.diagonal()).fold(0.0, f64::max);
         Parted { near, all }
     }

@@ -5,7 +5,7 @@
 
 use super::grid::{Grid, Ranges};
 use super::periodic::SHIFT;
-use super::{Cloud, NeighborList, Periodic, Support};
+use super::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -19,12 +19,12 @@ const WAVE: usize = 1024;
 /// Memory of one wave, kept from one build to the next.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    blocks: Vec<Block>,
+    blocks: Vec<RowBlock>,
 }
 
 /// Rows of one block, one after another.
 #[derive(Debug, Default)]
-struct Block {
+struct RowBlock {
     ends: Vec<usize>,
     /// Longer than what is used: four candidates are written at once, and those kept that are near.
     found: Vec<u32>,
@@ -62,7 +62,8 @@ pub(super) enum Order<'a> {
 impl Query<'_> {
     /// Replaces what the list holds.
     pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
-        let uniform = matches!(self.targets.support, Support::Uniform(_)) && self.grid.supports.is_empty();
+        let uniform =
+            matches!(self.targets.support, SupportRadii::Uniform(_)) && self.grid.supports.is_empty();
         match (self.periodic.any(), uniform) {
             (false, true) if self.halves.is_some() => self.fill_as::<3, false, true, true>(buffers, list),
             (true, true) if self.halves.is_some() => self.fill_as::<3, true, true, true>(buffers, list),
@@ -81,7 +82,7 @@ impl Query<'_> {
     ) {
         let rows = self.targets.positions.len();
         let blocks = &mut buffers.blocks;
-        blocks.resize_with(blocks.len().max(rows.div_ceil(BLOCK).min(WAVE)), Block::default);
+        blocks.resize_with(blocks.len().max(rows.div_ceil(BLOCK).min(WAVE)), RowBlock::default);
         list.offsets.clear();
         list.offsets.push(0);
         list.offsets.reserve(rows);
@@ -126,7 +127,7 @@ impl Query<'_> {
 struct BlockRows<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> {
     query: &'a Query<'a>,
     rows: Range<usize>,
-    block: &'a mut Block,
+    block: &'a mut RowBlock,
 }
 
 impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: bool> HotLoop
@@ -140,7 +141,7 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
         let test = Test::<D, PERIODIC, UNIFORM, BOXES>::new(self.query);
         let halves = self.query.halves.unwrap_or_default();
         let sorted = grid.rows();
-        let Block { ends, found, ranges } = self.block;
+        let RowBlock { ends, found, ranges } = self.block;
         ends.clear();
         let mut used = 0;
         for i in self.rows {
@@ -231,13 +232,13 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
         sorted: &'a [u32],
         first: usize,
         fours: usize,
-    ) -> (Candidates<'a, D>, &'a [[u32; 4]]) {
+    ) -> (CandidateFours<'a, D>, &'a [[u32; 4]]) {
         let mut coordinates: [&[[f64; 4]]; D] = [&[]; D];
         for axis in 0..D {
             coordinates[axis] = fours_of(self.coordinates[axis], first, fours);
         }
         let supports = if UNIFORM { &[] } else { fours_of(self.supports, first, fours) };
-        (Candidates { coordinates, supports }, fours_of(sorted, first, fours))
+        (CandidateFours { coordinates, supports }, fours_of(sorted, first, fours))
     }
 
     /// Which of the k-th four candidates are near a place: a bit for each.
@@ -245,7 +246,7 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
     fn near<A: FourLanes>(
         &self,
         a: A,
-        candidates: &Candidates<'_, D>,
+        candidates: &CandidateFours<'_, D>,
         k: usize,
         (x_i, half, support_i): (DVec3, DVec3, f64),
     ) -> usize {
@@ -276,7 +277,7 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
 }
 
 /// Fours of sorted particles.
-struct Candidates<'a, const D: usize> {
+struct CandidateFours<'a, const D: usize> {
     coordinates: [&'a [[f64; 4]]; D],
     supports: &'a [[f64; 4]],
 }

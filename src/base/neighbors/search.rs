@@ -5,19 +5,19 @@ use glam::DVec3;
 use super::grid::Grid;
 use super::periodic::AXIS_NAMES;
 use super::rows::{Buffers, Order, Query};
-use super::{Cloud, NeighborError, NeighborList, Periodic, Support};
+use super::{Cloud, NeighborError, NeighborList, Periodic, SupportRadii};
 
 /// Neighbour search with buffers that are kept: from the second build of like size on it does not allocate.
 #[derive(Debug, Default)]
 pub struct NeighborSearch {
     grid: Grid,
     buffers: Buffers,
-    sources: Sources,
+    sources: GridSources,
 }
 
 /// What is known of the particles in the grid.
 #[derive(Debug, Default)]
-struct Sources {
+struct GridSources {
     count: usize,
     largest_support: f64,
     bounds: (DVec3, DVec3),
@@ -25,7 +25,7 @@ struct Sources {
 
 /// What is looked for, beside the targets.
 #[derive(Clone, Copy)]
-struct Wanted<'a> {
+struct SearchTask<'a> {
     same_set: bool,
     skin: f64,
     /// Where the groups of sources end that order a row; none for ascending rows.
@@ -48,7 +48,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: true, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None };
         self.build(cloud, cloud, wanted, list)
     }
 
@@ -65,7 +65,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: true, skin, groups: Some(groups), periodic, halves: None };
+        let wanted = SearchTask { same_set: true, skin, groups: Some(groups), periodic, halves: None };
         self.build(cloud.first(targets), cloud, wanted, list)
     }
 
@@ -82,7 +82,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: false, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: false, skin, groups: None, periodic, halves: None };
         self.build(targets, sources, wanted, list)
     }
 
@@ -101,7 +101,7 @@ impl NeighborSearch {
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(positions, self.sources.largest_support);
         targets.check("target")?;
-        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic, halves: None };
+        let wanted = SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: None };
         let radius = self.radius(targets, wanted)?;
         self.fill(targets, radius, wanted, list);
         Ok(())
@@ -112,7 +112,7 @@ impl NeighborSearch {
     /// # Errors
     /// See [`NeighborError`].
     pub fn sort(&mut self, sources: Cloud<'_>, skin: f64, periodic: &Periodic) -> Result<(), NeighborError> {
-        let wanted = Wanted { same_set: true, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None };
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
@@ -129,7 +129,8 @@ impl NeighborSearch {
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(centers, self.sources.largest_support);
-        let wanted = Wanted { same_set: false, skin, groups: Some(groups), periodic, halves: Some(halves) };
+        let wanted =
+            SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: Some(halves) };
         let radius = self.radius(targets, wanted)?;
         self.fill(targets, radius, wanted, list);
         Ok(())
@@ -139,7 +140,7 @@ impl NeighborSearch {
         &mut self,
         targets: Cloud<'_>,
         sources: Cloud<'_>,
-        wanted: Wanted<'_>,
+        wanted: SearchTask<'_>,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let radius = self.grid_of(targets, sources, wanted)?;
@@ -152,15 +153,15 @@ impl NeighborSearch {
         &mut self,
         targets: Cloud<'_>,
         sources: Cloud<'_>,
-        wanted: Wanted<'_>,
+        wanted: SearchTask<'_>,
     ) -> Result<f64, NeighborError> {
-        let Wanted { same_set, periodic, .. } = wanted;
+        let SearchTask { same_set, periodic, .. } = wanted;
         sources.check(if same_set { "target" } else { "source" })?;
         if !same_set {
             targets.check("target")?;
         }
         let count = sources.positions.len();
-        self.sources = Sources {
+        self.sources = GridSources {
             count,
             largest_support: sources.largest_support(),
             bounds: if count == 0 { Default::default() } else { sources.bounds() },
@@ -174,8 +175,10 @@ impl NeighborSearch {
                 bounds.1[a] = bounds.1[a].max(more.1[a]);
             }
         }
-        let uniform =
-            matches!((targets.support, sources.support), (Support::Uniform(_), Support::Uniform(_)));
+        let uniform = matches!(
+            (targets.support, sources.support),
+            (SupportRadii::Uniform(_), SupportRadii::Uniform(_))
+        );
         let particles = targets.positions.len().max(count);
         self.grid.build((sources, !uniform), bounds, radius, periodic, particles);
         Ok(radius)
@@ -185,7 +188,7 @@ impl NeighborSearch {
     fn radius(
         &self,
         targets: Cloud<'_>,
-        Wanted { skin, periodic, .. }: Wanted<'_>,
+        SearchTask { skin, periodic, .. }: SearchTask<'_>,
     ) -> Result<f64, NeighborError> {
         if !(skin >= 0.0 && skin.is_finite()) {
             return Err(NeighborError::Skin(skin));
@@ -201,9 +204,9 @@ impl NeighborSearch {
     }
 
     /// Lists the neighbours of the targets in the grid.
-    fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: Wanted<'_>, list: &mut NeighborList) {
-        let Wanted { same_set, skin, groups, periodic, halves } = wanted;
-        let Sources { count, bounds: (low, high), .. } = self.sources;
+    fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: SearchTask<'_>, list: &mut NeighborList) {
+        let SearchTask { same_set, skin, groups, periodic, halves } = wanted;
+        let GridSources { count, bounds: (low, high), .. } = self.sources;
         let more = if same_set { (low, high) } else { targets.bounds() };
         let solid = low.z.min(more.0.z) < high.z.max(more.1.z);
         let order = match groups {

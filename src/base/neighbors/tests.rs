@@ -1,6 +1,6 @@
 //! Case K5: lists against brute force.
 
-use super::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support, VerletList};
+use super::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii, VerletList};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -42,8 +42,8 @@ fn distance_squared(x_i: DVec3, x_j: DVec3, lengths: DVec3) -> f64 {
 
 fn support(cloud: Cloud<'_>, i: usize) -> f64 {
     match cloud.support {
-        Support::Uniform(h) => h,
-        Support::PerParticle(h) => h[i],
+        SupportRadii::Uniform(h) => h,
+        SupportRadii::PerParticle(h) => h[i],
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::Pod;
 
-use super::group::{self, Group};
+use super::group::{self, RankGroup};
 
 /// Exchanges the rows of one body, of which every rank has computed its blocks of `block` rows.
 pub fn share<T: Pod>(rows: &mut [T], block: usize) {
@@ -45,7 +45,7 @@ pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl 
     });
 }
 
-fn of_one_body(group: &mut Group, bytes: &mut [u8], size: usize, block: usize) {
+fn of_one_body(group: &mut RankGroup, bytes: &mut [u8], size: usize, block: usize) {
     let len = bytes.len() / size;
     let mut cuts = std::mem::take(&mut group.cuts);
     cuts.clear();
@@ -56,7 +56,7 @@ fn of_one_body(group: &mut Group, bytes: &mut [u8], size: usize, block: usize) {
 }
 
 fn of_several_bodies(
-    group: &mut Group,
+    group: &mut RankGroup,
     bytes: &mut [u8],
     size: usize,
     block: usize,
@@ -66,7 +66,7 @@ fn of_several_bodies(
     cuts.clear();
     parts.clear();
     cuts.push(0);
-    let place = |group: &Group, rank: usize, body: &Range<usize>| {
+    let place = |group: &RankGroup, rank: usize, body: &Range<usize>| {
         let part = group.part(rank, body.len(), block);
         (body.start + part.start) * size..(body.start + part.end) * size
     };

@@ -16,7 +16,7 @@ pub struct Traffic {
     pub bytes: u64,
 }
 
-pub(super) struct Group {
+pub(super) struct RankGroup {
     pub ranks: Rc<dyn Ranks>,
     pub cut: Cut,
     pub traffic: Traffic,
@@ -29,7 +29,7 @@ pub(super) struct Group {
     pub cuts: Vec<usize>,
 }
 
-impl Group {
+impl RankGroup {
     /// Rows of rank `rank`, counted from the first of a body of `len` rows, in blocks of `block`.
     pub fn part(&self, rank: usize, len: usize, block: usize) -> Range<usize> {
         let blocks = self.cut.blocks(rank, len.div_ceil(block));
@@ -53,7 +53,7 @@ impl Group {
 }
 
 thread_local! {
-    static GROUP: RefCell<Option<Group>> = const { RefCell::new(None) };
+    static GROUP: RefCell<Option<RankGroup>> = const { RefCell::new(None) };
 }
 
 /// Leaves the ranks when dropped, also where what was carried out has panicked.
@@ -69,7 +69,7 @@ impl Drop for Leave {
 pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
     let cut = Cut::even(ranks.size());
     let several = ranks.size() > 1;
-    GROUP.set(several.then(|| Group {
+    GROUP.set(several.then(|| RankGroup {
         ranks,
         cut,
         traffic: Traffic::default(),
@@ -83,7 +83,7 @@ pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
 }
 
 /// What `f` returns of the group, or `None` for a program that runs alone.
-pub(super) fn with<T>(f: impl FnOnce(&mut Group) -> T) -> Option<T> {
+pub(super) fn with<T>(f: impl FnOnce(&mut RankGroup) -> T) -> Option<T> {
     GROUP.with_borrow_mut(|group| group.as_mut().map(f))
 }
 

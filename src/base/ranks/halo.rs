@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::Pod;
 
 use super::Cut;
-use super::group::{self, Group};
+use super::group::{self, RankGroup};
 
 /// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs alone.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ impl Halo {
         group::with(|group| Self::in_group(group, bodies, block, wanted)).unwrap_or_default()
     }
 
-    fn in_group(group: &mut Group, bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
+    fn in_group(group: &mut RankGroup, bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
         let (rank, size) = (group.ranks.rank(), group.ranks.size());
         let (mut receive, mut receive_cuts) = (Vec::new(), vec![0]);
         for other in 0..size {

@@ -8,8 +8,8 @@ use crate::shapes::{Lattice, Shape};
 
 /// A shape filled with particles of one material, which move by one formulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Body {
+#[serde(deny_unknown_fields, rename = "Body")]
+pub struct BodyDescription {
     /// Name by which conditions, contacts, probes and files refer to the body.
     pub name: String,
     /// Name of one of the scene's materials. The name is ignored for a `Wall`, which has none.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::contact::ANY;
 use super::names::unknown;
-use super::{Axis, Dimension, Face, Problem, Scene, Select, Step, probe_check};
+use super::{Axis, Dimension, Face, Problem, Scene, Select, StepRule, probe_check};
 use crate::notation::number;
 
 /// All that is wrong with the values of a scene.
@@ -37,14 +37,14 @@ fn check_time(scene: &Scene, problems: &mut Vec<Problem>) {
         );
     }
     match scene.time.step {
-        Step::Adaptive { factor } if !(factor > 0.0 && factor <= 2.0) => problems.push(
+        StepRule::Adaptive { factor } if !(factor > 0.0 && factor <= 2.0) => problems.push(
             Problem::at_path(
                 "time.step.factor",
                 format!("`factor` must be greater than 0 and at most 2, found {}", number(factor)),
             )
             .help("it multiplies the stability limit; 1 is the limit itself"),
         ),
-        Step::Fixed(dt) if dt <= 0.0 => problems.push(Problem::at_path(
+        StepRule::Fixed(dt) if dt <= 0.0 => problems.push(Problem::at_path(
             "time.step[0]",
             format!("the time step must be positive, found {} s", number(dt)),
         )),

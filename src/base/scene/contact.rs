@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Item};
+use super::{BodyDescription, Item};
 
 /// Two bodies that touch, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -49,7 +49,7 @@ fn penalty() -> Item {
 
 impl Contact {
     /// The pairs of names that it stands for, each once.
-    pub(super) fn pairs<'s>(&self, bodies: &'s [Body]) -> Vec<(&'s str, &'s str)> {
+    pub(super) fn pairs<'s>(&self, bodies: &'s [BodyDescription]) -> Vec<(&'s str, &'s str)> {
         let named = |name: &str| {
             bodies.iter().map(|body| &*body.name).filter(|known| is_meant(name, known)).collect()
         };

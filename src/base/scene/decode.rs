@@ -16,7 +16,7 @@ use std::sync::Arc;
 use serde::de::DeserializeOwned;
 
 use self::error::Error;
-use self::value::Value;
+use self::value::NodeValue;
 use super::Problem;
 use super::symbols::Symbols;
 use super::tree::Node;
@@ -47,7 +47,7 @@ impl<'a> Context<'a> {
     fn into_problems(self) -> Vec<Problem> {
         let mut problems = self.problems.into_inner();
         problems.sort_by_key(|problem| match &problem.at {
-            super::Place::Span(span) => span.start,
+            super::SourcePlace::Span(span) => span.start,
             _ => 0,
         });
         problems
@@ -82,7 +82,7 @@ pub(super) fn decode<T: DeserializeOwned>(
     for _ in 0..MAX_PASSES {
         let known = context.bad_fields.borrow().len();
         let result: Result<T, Error> =
-            symbols.during(|| T::deserialize(Value { node, context: &context, unnamed }));
+            symbols.during(|| T::deserialize(NodeValue { node, context: &context, unnamed }));
         value = result.map_err(|error| error.report(node, &context)).ok();
         if context.bad_fields.borrow().len() == known {
             break;

@@ -9,7 +9,7 @@ use super::decode::{decode, expression_problem};
 use super::expression::{constant, words};
 use super::symbols::{Symbols, fault_of_name};
 use super::table::Table;
-use super::tree::{Kind, Node};
+use super::tree::{Node, NodeKind};
 
 /// The names that the scene `root` defines; files of tables are found in `folder`.
 ///
@@ -47,12 +47,12 @@ type Entry<'a> = (&'a str, &'a Node, &'a Node);
 
 /// Name, key and value of the entries of a block of the scene; that it is a map is checked where the scene is read.
 fn entries<'a>(root: &'a Node, block: &str, problems: &mut Vec<Problem>) -> Vec<Entry<'a>> {
-    let Some(Kind::Map(entries)) = root.field(block).map(|field| &field.value.kind) else {
+    let Some(NodeKind::Map(entries)) = root.field(block).map(|field| &field.value.kind) else {
         return Vec::new();
     };
     let mut found: Vec<Entry<'a>> = Vec::new();
     for (key, value) in entries {
-        let Kind::Text { value: name, .. } = &key.kind else { continue };
+        let NodeKind::Text { value: name, .. } = &key.kind else { continue };
         if let Some((message, help)) = fault_of_name(name) {
             problems.push(Problem::at_span(key.span.clone(), message).help(help));
         } else if !found.iter().any(|(other, ..)| other == name) {
@@ -74,8 +74,8 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
                 return true;
             }
             let value = match &node.kind {
-                Kind::Number { value, .. } if value.is_finite() => Ok(*value),
-                Kind::Text { value, .. } => {
+                NodeKind::Number { value, .. } if value.is_finite() => Ok(*value),
+                NodeKind::Text { value, .. } => {
                     constant(value, &symbols).map_err(|error| expression_problem(node, &error))
                 }
                 _ => Err(Problem::at_span(
@@ -109,7 +109,7 @@ fn evaluate(parameters: &[Entry<'_>], problems: &mut Vec<Problem>) -> BTreeMap<S
 /// The parameters that the expression of a parameter names.
 fn used<'a>(node: &'a Node, parameters: &'a [Entry<'_>]) -> impl Iterator<Item = &'a str> {
     let text = match &node.kind {
-        Kind::Text { value, .. } => value.as_str(),
+        NodeKind::Text { value, .. } => value.as_str(),
         _ => "",
     };
     words(text).filter(|word| parameters.iter().any(|(name, ..)| name == word))

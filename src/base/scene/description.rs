@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::contact::is_meant;
 use super::{
-    Body, Contact, Dimension, Domain, Expression, Item, Precision, Probe, Record, Table, Time, Vec3,
+    BodyDescription, Contact, Dimension, Domain, Expression, Item, Precision, Probe, Record, Table, Time,
+    Vec3,
 };
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
@@ -38,7 +39,7 @@ pub struct Scene {
     /// Materials by the names that bodies refer to.
     pub materials: BTreeMap<String, Item>,
     /// The bodies, in the order in which their particles are created.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<BodyDescription>,
     /// What is imposed on bodies: supports, motions, loads, initial fields.
     #[serde(default)]
     pub conditions: Vec<Item>,
@@ -60,12 +61,12 @@ pub struct Scene {
 
 impl Scene {
     /// The body with this name.
-    pub fn body(&self, name: &str) -> Option<&Body> {
+    pub fn body(&self, name: &str) -> Option<&BodyDescription> {
         self.bodies.iter().find(|body| body.name == name)
     }
 
     /// The bodies that a name means: one, or with a star at its end all whose names begin like it.
-    pub fn bodies_named(&self, name: &str) -> impl Iterator<Item = &Body> {
+    pub fn bodies_named(&self, name: &str) -> impl Iterator<Item = &BodyDescription> {
         self.bodies.iter().filter(move |body| is_meant(name, &body.name))
     }
 

@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::decode::{self, ITEM};
 use super::symbols::Symbols;
-use super::tree::{Kind, Node};
+use super::tree::{Node, NodeKind};
 use super::{Problem, path, syntax};
 
 /// A name with or without parameters, `NeoHookean(density: 1.0)` or `hourglass_control`, whose type is found by the
@@ -32,7 +32,7 @@ impl Item {
     fn read(text: &str, start: usize) -> Result<Self, Problem> {
         let node = syntax::read(text, start)?;
         match (node.name, node.kind) {
-            (Some(name), Kind::Bare | Kind::Fields(_) | Kind::Tuple(_)) => {
+            (Some(name), NodeKind::Bare | NodeKind::Fields(_) | NodeKind::Tuple(_)) => {
                 Ok(Self { name: name.text, text: text.to_owned(), start, symbols: Symbols::current() })
             }
             _ => Err(Problem::at_span(node.span, "expected a name, with or without parameters")),

@@ -3,10 +3,10 @@
 use super::Problem;
 use super::slips::attached_unit;
 use super::syntax::Reader;
-use super::tree::Kind;
+use super::tree::NodeKind;
 
 impl Reader<'_> {
-    pub(super) fn number(&mut self) -> Result<Kind, Problem> {
+    pub(super) fn number(&mut self) -> Result<NodeKind, Problem> {
         let start = self.at;
         self.at += self.run(|c| matches!(c, '+' | '-'));
         let mut previous = ' ';
@@ -26,7 +26,7 @@ impl Reader<'_> {
         })
     }
 
-    pub(super) fn quoted(&mut self) -> Result<Kind, Problem> {
+    pub(super) fn quoted(&mut self) -> Result<NodeKind, Problem> {
         let start = self.at;
         self.at += 1;
         let mut value = String::new();
@@ -37,7 +37,7 @@ impl Reader<'_> {
                 Some('"') => {
                     self.at += 1;
                     let content = (!escaped).then_some(start + 1 + self.offset);
-                    return Ok(Kind::Text { value, content });
+                    return Ok(NodeKind::Text { value, content });
                 }
                 Some('\\') => {
                     escaped = true;
@@ -51,7 +51,7 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn raw_text(&mut self) -> Result<Kind, Problem> {
+    pub(super) fn raw_text(&mut self) -> Result<NodeKind, Problem> {
         let start = self.at;
         self.at += 1;
         let hashes = self.run(|c| c == '#');
@@ -67,10 +67,10 @@ impl Reader<'_> {
         };
         let value = self.rest()[..length].to_owned();
         self.at += length + close.len();
-        Ok(Kind::Text { value, content: Some(content + self.offset) })
+        Ok(NodeKind::Text { value, content: Some(content + self.offset) })
     }
 
-    pub(super) fn character(&mut self) -> Result<Kind, Problem> {
+    pub(super) fn character(&mut self) -> Result<NodeKind, Problem> {
         let start = self.at;
         self.at += 1;
         let character = match self.peek() {
@@ -84,7 +84,7 @@ impl Reader<'_> {
         match (character, self.peek()) {
             (Some(c), Some('\'')) => {
                 self.at += 1;
-                Ok(Kind::Character(c))
+                Ok(NodeKind::Character(c))
             }
             _ => Err(self
                 .problem(start..start + 1, "expected one character in single quotes")
@@ -147,7 +147,7 @@ impl Reader<'_> {
 }
 
 /// A number of RON: decimal with `_` between digits, or hexadecimal, octal, binary.
-fn parse_number(text: &str) -> Option<Kind> {
+fn parse_number(text: &str) -> Option<NodeKind> {
     let unsigned = text.trim_start_matches(['+', '-']);
     if text.len() - unsigned.len() > 1 {
         return None;
@@ -167,5 +167,5 @@ fn parse_number(text: &str) -> Option<Kind> {
         (None, 10) => body.parse().ok()?,
         _ => return None,
     };
-    Some(Kind::Number { value: if negative { -magnitude } else { magnitude }, integer })
+    Some(NodeKind::Number { value: if negative { -magnitude } else { magnitude }, integer })
 }

@@ -36,7 +36,7 @@ mod touching;
 mod tree;
 
 pub use crate::space::{Dimension, Vec3};
-pub use body::Body;
+pub use body::BodyDescription;
 pub use contact::{Contact, ContactSurface};
 pub use description::Scene;
 pub use domain::{Axis, Domain, Outside};
@@ -48,13 +48,13 @@ pub use names::{nearest, unknown};
 pub use per_axis::PerAxis;
 pub use precision::Precision;
 pub use probe::{Line, Probe, Quantity, RelativeTo, Take};
-pub use problem::{Place, Problem, SceneError};
+pub use problem::{Problem, SceneError, SourcePlace};
 pub use record::Record;
 pub use reference::{Described, Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select, SurfacePart};
 pub use source::Source;
 pub use table::Table;
-pub use time::{Step, StopWhen, Time};
+pub use time::{StepRule, StopWhen, Time};
 pub use touching::TouchingPairs;
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use super::expression::{constant, words};
 use super::names::nearest;
-use super::path::{self, Step};
+use super::path::{self, PathStep};
 use super::symbols::Symbols;
-use super::tree::{Kind, Node};
+use super::tree::{Node, NodeKind};
 use super::{Problem, Source, syntax};
 
 /// Blocks of a scene that may be left out as a whole and are begun when a field of theirs is set.
@@ -32,7 +32,7 @@ impl Source {
                     node = found.value();
                 }
                 // A parameter that nothing uses would change nothing.
-                None if i == 1 && steps[0] == Step::Name("parameters".into()) => {
+                None if i == 1 && steps[0] == PathStep::Name("parameters".into()) => {
                     return Err(not_there(node, step, &setting));
                 }
                 None => {
@@ -68,10 +68,10 @@ impl Source {
 /// The value as the scene has to say it: a text that replaces a text may lack its quotes.
 fn written(value: &str, replaced: Option<&Node>, setting: &str) -> Result<String, Problem> {
     let parsed = syntax::read(value, 0);
-    let replaces_number = replaced.is_some_and(|node| matches!(node.kind, Kind::Number { .. }));
-    let replaces_text = replaced.is_some_and(|node| matches!(node.kind, Kind::Text { .. }));
+    let replaces_number = replaced.is_some_and(|node| matches!(node.kind, NodeKind::Number { .. }));
+    let replaces_text = replaced.is_some_and(|node| matches!(node.kind, NodeKind::Text { .. }));
     match parsed {
-        Ok(Node { kind: Kind::Text { .. } | Kind::Number { .. }, .. }) => Ok(value.to_owned()),
+        Ok(Node { kind: NodeKind::Text { .. } | NodeKind::Number { .. }, .. }) => Ok(value.to_owned()),
         _ if replaces_text => Ok(format!("\"{}\"", value.replace('\\', "\\\\").replace('"', "\\\""))),
         Ok(_) => Ok(value.to_owned()),
         // `10*dx` is no RON, but it may stand for a number in quotes.
@@ -94,33 +94,33 @@ fn is_expression(text: &str) -> bool {
 }
 
 /// Where the rest of a path is to be added, and the text.
-fn insertion(node: &Node, rest: &[Step], value: &str) -> Option<(usize, String)> {
+fn insertion(node: &Node, rest: &[PathStep], value: &str) -> Option<(usize, String)> {
     let text = match rest {
-        [Step::Name(name)] => match node.kind {
-            Kind::Map(_) => format!("{name:?}: {value}"),
+        [PathStep::Name(name)] => match node.kind {
+            NodeKind::Map(_) => format!("{name:?}: {value}"),
             _ => format!("{name}: {value}"),
         },
-        [Step::Name(block), Step::Name(name)] if OPTIONAL_BLOCKS.contains(&block.as_str()) => {
+        [PathStep::Name(block), PathStep::Name(name)] if OPTIONAL_BLOCKS.contains(&block.as_str()) => {
             format!("{block}: ({name}: {value})")
         }
         _ => return None,
     };
     match &node.kind {
-        Kind::Fields(_) => Some((node.open, format!("{text}, "))),
-        Kind::Map(entries) if entries.is_empty() => Some((node.open, text)),
-        Kind::Map(_) => Some((node.open, format!("{text}, "))),
-        Kind::Tuple(entries) if entries.is_empty() => Some((node.open, text)),
-        Kind::Bare if !["None", "true", "false"].iter().any(|word| node.is_bare(word)) => {
+        NodeKind::Fields(_) => Some((node.open, format!("{text}, "))),
+        NodeKind::Map(entries) if entries.is_empty() => Some((node.open, text)),
+        NodeKind::Map(_) => Some((node.open, format!("{text}, "))),
+        NodeKind::Tuple(entries) if entries.is_empty() => Some((node.open, text)),
+        NodeKind::Bare if !["None", "true", "false"].iter().any(|word| node.is_bare(word)) => {
             Some((node.span.end, format!("({text})")))
         }
         _ => None,
     }
 }
 
-fn not_there(node: &Node, step: &Step, setting: &str) -> Problem {
+fn not_there(node: &Node, step: &PathStep, setting: &str) -> Problem {
     let children = path::children(node);
     match step {
-        Step::Name(name) => {
+        PathStep::Name(name) => {
             let problem = Problem::at_span(node.head(), format!("`{setting}`: there is no `{name}` here"));
             let problem = match nearest(name, &children) {
                 Some(near) => problem.help(format!("did you mean `{near}`?")),
@@ -128,7 +128,7 @@ fn not_there(node: &Node, step: &Step, setting: &str) -> Problem {
             };
             if children.is_empty() {
                 problem
-            } else if let Kind::List(entries) = &node.kind {
+            } else if let NodeKind::List(entries) = &node.kind {
                 let last = entries.len().saturating_sub(1);
                 problem.help(format!(
                     "here are: {}; entries can be counted too, from [0] to [{last}]",
@@ -138,10 +138,10 @@ fn not_there(node: &Node, step: &Step, setting: &str) -> Problem {
                 problem.help(format!("here are: {}", children.join(", ")))
             }
         }
-        Step::Index(index) => {
+        PathStep::Index(index) => {
             let count = match &node.kind {
-                Kind::List(entries) | Kind::Tuple(entries) => entries.len(),
-                Kind::Map(entries) => entries.len(),
+                NodeKind::List(entries) | NodeKind::Tuple(entries) => entries.len(),
+                NodeKind::Map(entries) => entries.len(),
                 _ => 0,
             };
             Problem::at_span(node.head(), format!("`{setting}`: there is no entry {index} here"))
@@ -151,8 +151,8 @@ fn not_there(node: &Node, step: &Step, setting: &str) -> Problem {
 }
 
 /// A name that several entries of a list share cannot say which is meant.
-fn unambiguous(node: &Node, step: &Step, setting: &str) -> Result<(), Problem> {
-    if let (Kind::List(_), Step::Name(name)) = (&node.kind, step) {
+fn unambiguous(node: &Node, step: &PathStep, setting: &str) -> Result<(), Problem> {
+    if let (NodeKind::List(_), PathStep::Name(name)) = (&node.kind, step) {
         let count = path::children(node).into_iter().filter(|child| child == name).count();
         if count > 1 {
             return Err(Problem::at_span(

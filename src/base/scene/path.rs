@@ -5,70 +5,72 @@
 
 use std::ops::Range;
 
-use super::tree::{Field, Kind, Node};
+use super::tree::{Node, NodeKind, StructField};
 
 /// One step of a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum PathStep {
     Name(String),
     Index(usize),
 }
 
 /// The steps of a path; none where it is not a path.
-pub(super) fn steps(path: &str) -> Option<Vec<Step>> {
+pub(super) fn steps(path: &str) -> Option<Vec<PathStep>> {
     let mut steps = Vec::new();
     for part in path.split('.') {
         let (name, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
         if !name.is_empty() {
-            steps.push(Step::Name(name.trim().to_owned()));
+            steps.push(PathStep::Name(name.trim().to_owned()));
         } else if indices.is_empty() {
             return None;
         }
         for index in indices.split_terminator(']') {
-            steps.push(Step::Index(index.strip_prefix('[')?.trim().parse().ok()?));
+            steps.push(PathStep::Index(index.strip_prefix('[')?.trim().parse().ok()?));
         }
     }
     Some(steps)
 }
 
 /// What one step from a value leads to.
-pub(super) enum Found<'a> {
+pub(super) enum PathEnd<'a> {
     /// A field and its value.
-    Field(&'a Field),
+    Field(&'a StructField),
     /// An entry of a tuple, list or map.
     Entry(&'a Node),
 }
 
-impl<'a> Found<'a> {
+impl<'a> PathEnd<'a> {
     pub fn value(&self) -> &'a Node {
         match self {
-            Found::Field(field) => &field.value,
-            Found::Entry(node) => node,
+            PathEnd::Field(field) => &field.value,
+            PathEnd::Entry(node) => node,
         }
     }
 }
 
 /// What `step` leads to from `node`.
-pub(super) fn child<'a>(node: &'a Node, step: &Step) -> Option<Found<'a>> {
+pub(super) fn child<'a>(node: &'a Node, step: &PathStep) -> Option<PathEnd<'a>> {
     match (&node.kind, step) {
-        (Kind::Fields(_), Step::Name(name)) => node.field(name).map(Found::Field),
-        (Kind::Map(entries), Step::Name(name)) => {
-            entries.iter().find(|(key, _)| text(key) == Some(name)).map(|(_, value)| Found::Entry(value))
+        (NodeKind::Fields(_), PathStep::Name(name)) => node.field(name).map(PathEnd::Field),
+        (NodeKind::Map(entries), PathStep::Name(name)) => {
+            entries.iter().find(|(key, _)| text(key) == Some(name)).map(|(_, value)| PathEnd::Entry(value))
         }
-        (Kind::Map(entries), Step::Index(index)) => entries.get(*index).map(|(_, value)| Found::Entry(value)),
-        (Kind::List(entries) | Kind::Tuple(entries), Step::Index(index)) => {
-            entries.get(*index).map(Found::Entry)
+        (NodeKind::Map(entries), PathStep::Index(index)) => {
+            entries.get(*index).map(|(_, value)| PathEnd::Entry(value))
         }
-        (Kind::List(entries), Step::Name(name)) => {
+        (NodeKind::List(entries) | NodeKind::Tuple(entries), PathStep::Index(index)) => {
+            entries.get(*index).map(PathEnd::Entry)
+        }
+        (NodeKind::List(entries), PathStep::Name(name)) => {
             let by_place = || name.parse().ok().and_then(|place: usize| entries.get(place));
-            entries.iter().find(|entry| label(entry) == Some(name)).or_else(by_place).map(Found::Entry)
+            entries.iter().find(|entry| label(entry) == Some(name)).or_else(by_place).map(PathEnd::Entry)
         }
-        (Kind::Tuple(entries), Step::Name(name)) if (2..=3).contains(&entries.len()) => {
+        (NodeKind::Tuple(entries), PathStep::Name(name)) if (2..=3).contains(&entries.len()) => {
             let axis = ["x", "y", "z"].iter().position(|axis| axis == name)?;
-            entries.get(axis).map(Found::Entry)
+            entries.get(axis).map(PathEnd::Entry)
         }
         // `Some(value)` and a variant around one struct are what they hold.
-        (Kind::Tuple(entries), Step::Name(_)) if entries.len() == 1 => child(&entries[0], step),
+        (NodeKind::Tuple(entries), PathStep::Name(_)) if entries.len() == 1 => child(&entries[0], step),
         _ => None,
     }
 }
@@ -76,9 +78,9 @@ pub(super) fn child<'a>(node: &'a Node, step: &Step) -> Option<Found<'a>> {
 /// The names that a step from `node` may have.
 pub(super) fn children(node: &Node) -> Vec<&str> {
     match &node.kind {
-        Kind::Fields(fields) => fields.iter().map(|field| field.name.text.as_str()).collect(),
-        Kind::Map(entries) => entries.iter().filter_map(|(key, _)| text(key)).collect(),
-        Kind::List(entries) => entries.iter().filter_map(label).collect(),
+        NodeKind::Fields(fields) => fields.iter().map(|field| field.name.text.as_str()).collect(),
+        NodeKind::Map(entries) => entries.iter().filter_map(|(key, _)| text(key)).collect(),
+        NodeKind::List(entries) => entries.iter().filter_map(label).collect(),
         _ => Vec::new(),
     }
 }
@@ -111,7 +113,7 @@ fn label(entry: &Node) -> Option<&str> {
 
 fn text(node: &Node) -> Option<&str> {
     match &node.kind {
-        Kind::Text { value, .. } => Some(value),
+        NodeKind::Text { value, .. } => Some(value),
         _ => None,
     }
 }

@@ -20,9 +20,9 @@ impl<T> Default for PerAxis<T> {
     }
 }
 
-struct Entries<T>(PhantomData<T>);
+struct AxisEntries<T>(PhantomData<T>);
 
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
+impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisEntries<T> {
     type Value = PerAxis<T>;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -42,7 +42,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for PerAxis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_tuple(3, Entries(PhantomData))
+        deserializer.deserialize_tuple(3, AxisEntries(PhantomData))
     }
 }
 

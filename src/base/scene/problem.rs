@@ -14,14 +14,14 @@ pub struct Problem {
     /// What was found, lower case, without a full stop.
     pub message: String,
     /// Where it is.
-    pub at: Place,
+    pub at: SourcePlace,
     /// What would be right, a line each.
     pub help: Vec<String>,
 }
 
 /// A place in a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum SourcePlace {
     /// The scene as a whole.
     Scene,
     /// Bytes of the text.
@@ -34,17 +34,17 @@ pub enum Place {
 impl Problem {
     /// A problem of the scene as a whole.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), at: Place::Scene, help: Vec::new() }
+        Self { message: message.into(), at: SourcePlace::Scene, help: Vec::new() }
     }
 
     /// A problem at bytes of the text.
     pub fn at_span(span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { at: Place::Span(span), ..Self::new(message) }
+        Self { at: SourcePlace::Span(span), ..Self::new(message) }
     }
 
     /// A problem at a value by its path, such as `bodies[1].spacing`.
     pub fn at_path(path: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { at: Place::Path(path.into()), ..Self::new(message) }
+        Self { at: SourcePlace::Path(path.into()), ..Self::new(message) }
     }
 
     /// The same with a line that says what would be right.
@@ -64,9 +64,9 @@ impl Problem {
     /// The bytes of `source` that the problem is about; none if it is about the scene as a whole.
     pub fn span(&self, source: &Source) -> Option<Range<usize>> {
         match &self.at {
-            Place::Scene => None,
-            Place::Span(span) => Some(span.clone()),
-            Place::Path(path) => source.tree().ok().map(|tree| path::nearest(&tree, path)),
+            SourcePlace::Scene => None,
+            SourcePlace::Span(span) => Some(span.clone()),
+            SourcePlace::Path(path) => source.tree().ok().map(|tree| path::nearest(&tree, path)),
         }
     }
 

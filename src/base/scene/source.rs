@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::syntax;
-use super::tree::{Kind, Node};
+use super::tree::{Node, NodeKind};
 use super::{Problem, SceneError};
 
 /// A scene text and its name, usually the path of its file.
@@ -66,18 +66,18 @@ impl Source {
 
 fn collect_files(node: &Node, files: &mut Vec<String>) {
     match &node.kind {
-        Kind::Fields(fields) => {
+        NodeKind::Fields(fields) => {
             for field in fields {
                 match &field.value.kind {
-                    Kind::Text { value, .. } if field.name.text == "file" => files.push(value.clone()),
+                    NodeKind::Text { value, .. } if field.name.text == "file" => files.push(value.clone()),
                     _ => collect_files(&field.value, files),
                 }
             }
         }
-        Kind::Tuple(entries) | Kind::List(entries) => {
+        NodeKind::Tuple(entries) | NodeKind::List(entries) => {
             entries.iter().for_each(|entry| collect_files(entry, files));
         }
-        Kind::Map(entries) => entries.iter().for_each(|(_, value)| collect_files(value, files)),
-        Kind::Bare | Kind::Text { .. } | Kind::Character(_) | Kind::Number { .. } => {}
+        NodeKind::Map(entries) => entries.iter().for_each(|(_, value)| collect_files(value, files)),
+        NodeKind::Bare | NodeKind::Text { .. } | NodeKind::Character(_) | NodeKind::Number { .. } => {}
     }
 }

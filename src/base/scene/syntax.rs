@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Problem;
 use super::slips;
-use super::tree::{Field, Kind, Node, Word};
+use super::tree::{Node, NodeKind, StructField, Word};
 
 /// Deeper nesting than any scene has is refused, so that no text can exhaust the stack.
 const MAX_DEPTH: usize = 100;
@@ -139,7 +139,7 @@ impl<'a> Reader<'a> {
             Some('(') => self.brackets(None, start),
             Some('[') => {
                 let list = self.entries(']', Self::value)?;
-                unnamed(self, start + 1, Kind::List(list))
+                unnamed(self, start + 1, NodeKind::List(list))
             }
             Some('{') => {
                 let map = self.entries('}', |reader| {
@@ -147,7 +147,7 @@ impl<'a> Reader<'a> {
                     reader.expect(':', "`:` and the value of this entry")?;
                     Ok((key, reader.value()?))
                 })?;
-                unnamed(self, start + 1, Kind::Map(map))
+                unnamed(self, start + 1, NodeKind::Map(map))
             }
             Some('"') => {
                 let text = self.quoted()?;
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
                 let word = self.word();
                 if matches!(word.text.as_str(), "inf" | "NaN") {
                     let value = if word.text == "inf" { f64::INFINITY } else { f64::NAN };
-                    return unnamed(self, start, Kind::Number { value, integer: None });
+                    return unnamed(self, start, NodeKind::Number { value, integer: None });
                 }
                 let end = self.at;
                 self.skip_space()?;
@@ -181,7 +181,7 @@ impl<'a> Reader<'a> {
                     span: word.span.clone(),
                     open: word.span.start,
                     name: Some(word),
-                    kind: Kind::Bare,
+                    kind: NodeKind::Bare,
                 })
             }
             _ => Err(self.unexpected("a value")),
@@ -201,7 +201,7 @@ impl<'a> Reader<'a> {
         };
         self.at = back;
         let kind = if named {
-            Kind::Fields(self.entries(')', |reader| {
+            NodeKind::Fields(self.entries(')', |reader| {
                 reader.skip_space()?;
                 if !reader.peek().is_some_and(starts_word) {
                     let problem = reader.unexpected("the name of a field");
@@ -213,10 +213,10 @@ impl<'a> Reader<'a> {
                 }
                 let name = reader.word();
                 reader.expect(':', &format!("`:` and the value of `{}`", name.text))?;
-                Ok(Field { name, value: reader.value()? })
+                Ok(StructField { name, value: reader.value()? })
             })?)
         } else {
-            Kind::Tuple(self.entries(')', Self::value)?)
+            NodeKind::Tuple(self.entries(')', Self::value)?)
         };
         Ok(Node { span: self.span(start..self.at), name, open, kind })
     }

@@ -11,7 +11,7 @@ pub struct Time {
     pub end: f64,
     /// How the time step is chosen.
     #[serde(default)]
-    pub step: Step,
+    pub step: StepRule,
     /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid; they take as many
     /// as their own stability limit asks for. 1: all share one step.
     #[serde(default = "default_sub_steps")]
@@ -45,8 +45,8 @@ fn default_sub_steps() -> u32 {
 
 /// How the time step is chosen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum Step {
+#[serde(deny_unknown_fields, rename = "Step")]
+pub enum StepRule {
     /// The smallest of all stability limits, times a factor.
     Adaptive {
         /// Factor on the stability limit \[-\]; above 1 leaves the range in which the limits are known to be safe.
@@ -57,7 +57,7 @@ pub enum Step {
     Fixed(f64),
 }
 
-impl Default for Step {
+impl Default for StepRule {
     fn default() -> Self {
         Self::Adaptive { factor: one() }
     }

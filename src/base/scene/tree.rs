@@ -18,16 +18,16 @@ pub(super) struct Node {
     pub name: Option<Word>,
     /// The byte after the opening bracket; the start of the value where it has none.
     pub open: usize,
-    pub kind: Kind,
+    pub kind: NodeKind,
 }
 
 /// What a value is made of.
 #[derive(Clone, Debug)]
-pub(super) enum Kind {
+pub(super) enum NodeKind {
     /// A word without brackets: `None`, `true`, `Eulerian`.
     Bare,
     /// `(a: 1, b: 2)`.
-    Fields(Vec<Field>),
+    Fields(Vec<StructField>),
     /// `(1, 2)`, and also `()`.
     Tuple(Vec<Node>),
     List(Vec<Node>),
@@ -46,7 +46,7 @@ pub(super) enum Kind {
 
 /// A field of a struct.
 #[derive(Clone, Debug)]
-pub(super) struct Field {
+pub(super) struct StructField {
     pub name: Word,
     pub value: Node,
 }
@@ -56,7 +56,7 @@ impl Node {
     pub fn head(&self) -> Range<usize> {
         match (&self.name, &self.kind) {
             (Some(name), _) => name.span.clone(),
-            (None, Kind::Fields(_) | Kind::Tuple(_) | Kind::List(_) | Kind::Map(_)) => {
+            (None, NodeKind::Fields(_) | NodeKind::Tuple(_) | NodeKind::List(_) | NodeKind::Map(_)) => {
                 self.span.start..self.span.start + 1
             }
             _ => self.span.clone(),
@@ -64,43 +64,43 @@ impl Node {
     }
 
     /// The fields; none for `()`, for a bare word and for what has no fields.
-    pub fn fields(&self) -> &[Field] {
+    pub fn fields(&self) -> &[StructField] {
         match &self.kind {
-            Kind::Fields(fields) => fields,
+            NodeKind::Fields(fields) => fields,
             _ => &[],
         }
     }
 
     /// The value of a field.
-    pub fn field(&self, name: &str) -> Option<&Field> {
+    pub fn field(&self, name: &str) -> Option<&StructField> {
         self.fields().iter().find(|field| field.name.text == name)
     }
 
     /// Whether this is the bare word `word`.
     pub fn is_bare(&self, word: &str) -> bool {
-        matches!(self.kind, Kind::Bare) && self.name.as_ref().is_some_and(|name| name.text == word)
+        matches!(self.kind, NodeKind::Bare) && self.name.as_ref().is_some_and(|name| name.text == word)
     }
 
     /// What a message calls the value.
     pub fn describe(&self) -> String {
         let name = self.name.as_ref().map(|name| name.text.as_str());
         match &self.kind {
-            Kind::Bare => format!("`{}`", name.unwrap_or_default()),
-            Kind::Fields(_) | Kind::Tuple(_) if name.is_some() => {
+            NodeKind::Bare => format!("`{}`", name.unwrap_or_default()),
+            NodeKind::Fields(_) | NodeKind::Tuple(_) if name.is_some() => {
                 format!("`{}(...)`", name.unwrap_or_default())
             }
-            Kind::Fields(_) => "a struct `(name: ...)`".into(),
-            Kind::Tuple(entries) => match entries.len() {
+            NodeKind::Fields(_) => "a struct `(name: ...)`".into(),
+            NodeKind::Tuple(entries) => match entries.len() {
                 0 => "`()`".into(),
                 1 => "a tuple of 1 entry".into(),
                 n => format!("a tuple of {n} entries"),
             },
-            Kind::List(_) => "a list `[...]`".into(),
-            Kind::Map(_) => "a map `{...}`".into(),
-            Kind::Text { value, .. } => format!("the text {value:?}"),
-            Kind::Character(value) => format!("the character {value:?}"),
-            Kind::Number { value, integer: None } => format!("the number {value:?}"),
-            Kind::Number { integer: Some(integer), .. } => format!("the number {integer}"),
+            NodeKind::List(_) => "a list `[...]`".into(),
+            NodeKind::Map(_) => "a map `{...}`".into(),
+            NodeKind::Text { value, .. } => format!("the text {value:?}"),
+            NodeKind::Character(value) => format!("the character {value:?}"),
+            NodeKind::Number { value, integer: None } => format!("the number {value:?}"),
+            NodeKind::Number { integer: Some(integer), .. } => format!("the number {integer}"),
         }
     }
 }

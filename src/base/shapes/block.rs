@@ -8,12 +8,12 @@ use super::surface::{Facing, Surface, SurfacePoint, behind_all};
 use crate::linalg::Sym3;
 
 /// A box along the axes; in two dimensions a rectangle.
-pub(super) struct Block {
+pub(super) struct BoxRegion {
     pub corners: Aabb,
     pub axes: usize,
 }
 
-impl Region for Block {
+impl Region for BoxRegion {
     fn distance(&self, point: DVec3) -> f64 {
         let mut outside = 0.0;
         let mut nearest = f64::NEG_INFINITY;
@@ -42,7 +42,7 @@ impl Region for Block {
     }
 }
 
-impl Surface for Block {
+impl Surface for BoxRegion {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let nearer_face = |k: usize| {
             let axis = DVec3::AXES[k];

@@ -27,7 +27,7 @@ pub(super) struct Intersection {
 }
 
 /// What is in the first part, but not inside the second.
-pub(super) struct Difference<R: ?Sized> {
+pub(super) struct DifferenceRegion<R: ?Sized> {
     pub whole: Box<R>,
     pub hole: Box<R>,
     pub axes: usize,
@@ -41,14 +41,14 @@ impl<R: Region + ?Sized> Union<R> {
     }
 }
 
-impl<R: Region + ?Sized> Difference<R> {
+impl<R: Region + ?Sized> DifferenceRegion<R> {
     /// Whether all of the hole, with `margin` \[m\] about it, is known to be inside the whole.
     pub fn is_hollow(&self, margin: f64) -> bool {
         holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
     }
 }
 
-impl<R: Region + ?Sized> Difference<R> {
+impl<R: Region + ?Sized> DifferenceRegion<R> {
     /// Whether the nearest face of the hole is one of the whole too: the hole opens there, as a pipe at its ends, and nothing is between the two.
     fn opens_at(&self, whole: f64, hole: f64) -> bool {
         (whole - hole).abs() < COMMON * self.hole.bounds().extent().max_element()
@@ -131,7 +131,7 @@ impl Region for Intersection {
     }
 }
 
-impl<R: Region + ?Sized> Region for Difference<R> {
+impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
     fn distance(&self, point: DVec3) -> f64 {
         self.whole.distance(point).max(-self.hole.distance(point))
     }
@@ -199,7 +199,7 @@ impl<R: Surface + ?Sized> Surface for Union<R> {
 }
 
 /// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no boundary.
-impl<R: Surface + ?Sized> Surface for Difference<R> {
+impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let (outer, inner) = (self.whole.closest(point), self.hole.closest(point));
         if outer.signed_distance >= -inner.signed_distance {

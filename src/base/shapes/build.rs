@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::boolean::{Difference, Intersection, Union};
+use super::boolean::{DifferenceRegion, Intersection, Union};
 use super::check::{Check, Checked};
 use super::error::{FillError, FillErrorKind};
 use super::region::Region;
@@ -25,7 +25,7 @@ impl Shape {
             Self::Intersection(shapes) => {
                 Box::new(Intersection { parts: check.parts(shapes, Self::region)?, axes })
             }
-            Self::Difference(whole, hole) => Box::new(Difference {
+            Self::Difference(whole, hole) => Box::new(DifferenceRegion {
                 whole: whole.region(dimension, folder, &check.entry(0))?,
                 hole: hole.region(dimension, folder, &check.entry(1))?,
                 axes,
@@ -68,7 +68,7 @@ impl Shape {
             Self::Difference(whole, hole) => {
                 let whole = whole.surface(dimension, folder, &check.entry(0))?;
                 let hole = hole.surface(dimension, folder, &check.entry(1))?;
-                let difference = Difference { whole, hole, axes };
+                let difference = DifferenceRegion { whole, hole, axes };
                 if !difference.is_hollow(difference.tolerance()) {
                     return none("the hole of the difference cuts the surface of the first shape");
                 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::error::FillErrorKind;
 use super::region::{Aabb, Region};
-use super::tiling::{Block, Tiling};
+use super::tiling::{CellBox, Tiling};
 
 /// Part of the particles that may sit in walls of one layer: tips and edges of round and sharp bodies have some.
 const MAX_THIN_PART: f64 = 0.1;
@@ -76,7 +76,7 @@ pub(super) fn points(
     let tolerance = region.tolerance();
     let leaf = if axes == 2 { 32 } else { 8 };
     let blocks = tiling.blocks(region, leaf, leaf);
-    let sites_of = |block: &Block| {
+    let sites_of = |block: &CellBox| {
         let mut points = Vec::with_capacity(block.len());
         let mut thin = [0usize; 3];
         for cell in block.cells() {

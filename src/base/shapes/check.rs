@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{DQuat, DVec3};
 
-use super::block::Block;
+use super::block::BoxRegion;
 use super::cylinder::Cylinder;
 use super::error::{FillError, FillErrorKind};
 use super::half_space::HalfSpace;
@@ -14,7 +14,7 @@ use super::region::Aabb;
 use super::ring::Ring;
 use super::shape::Shape;
 use super::shell::Shell;
-use super::sphere::Sphere;
+use super::sphere::BallRegion;
 use super::surface::Surface;
 use crate::space::{Dimension, Vec3};
 
@@ -37,11 +37,11 @@ impl Check<'_> {
                 for k in 0..axes {
                     self.range("max", k, corners.min[k], corners.max[k])?;
                 }
-                Box::new(Block { corners, axes })
+                Box::new(BoxRegion { corners, axes })
             }
             Shape::Sphere { center, radius } => {
                 let center = self.point("center", *center)?;
-                Box::new(Sphere { center, radius: self.positive("radius", *radius)?, axes })
+                Box::new(BallRegion { center, radius: self.positive("radius", *radius)?, axes })
             }
             Shape::HalfSpace { point, normal } => {
                 let point = self.point("point", *point)?;

@@ -79,7 +79,7 @@ pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u3
     let measured: f64 =
         cells.iter().zip(&moves).filter(|(_, moves)| **moves).map(|(cell, _)| cell.volume).sum();
     let factor = if measured > 0.0 { (volume - inside as f64 * cell_volume) / measured } else { 1.0 };
-    let site = |((position, cell), moves): ((DVec3, voronoi::Moments), &bool)| Site {
+    let site = |((position, cell), moves): ((DVec3, voronoi::CellMoments), &bool)| Site {
         position,
         volume: if *moves { factor * cell.volume } else { cell_volume },
     };

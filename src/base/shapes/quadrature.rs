@@ -24,7 +24,7 @@ pub(super) fn volume(region: &dyn Region, spacing: f64, axes: usize) -> f64 {
     let tiling = Tiling::new(&bounds, &bounds, glam::DVec3::splat(size), axes);
     let width = tiling.cell.max_element();
     let blocks = tiling.blocks(region, if axes == 2 { 32 } else { 8 }, usize::MAX);
-    let cells_of = |block: &super::tiling::Block| {
+    let cells_of = |block: &super::tiling::CellBox| {
         if block.inside {
             return block.len() as f64;
         }

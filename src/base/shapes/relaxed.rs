@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::fill::{Content, Site};
 use super::region::Region;
-use super::tiling::{Block, Tiling};
-use super::voronoi::{self, Moments};
+use super::tiling::{CellBox, Tiling};
+use super::voronoi::{self, CellMoments};
 
 /// Least distance of two random points at the start \[spacings\].
 const SEPARATION: f64 = 0.6;
@@ -38,7 +38,7 @@ pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Sit
     }
     let moments = voronoi::moments(region, &tiling, &points, VOLUME_SAMPLES[axes - 2]);
     let factor = volume / moments.iter().map(|cell| cell.volume).sum::<f64>();
-    let site = |(position, cell): (DVec3, Moments)| Site { position, volume: cell.volume * factor };
+    let site = |(position, cell): (DVec3, CellMoments)| Site { position, volume: cell.volume * factor };
     points.into_iter().zip(moments).map(site).filter(|site| site.volume > 0.0).collect()
 }
 
@@ -58,7 +58,7 @@ fn scatter(region: &dyn Region, tiling: &Tiling, count: usize, spacing: f64, see
         let high = [0, 1, 2].map(|k| (cell[k] + 2).min(tiling.counts[k]));
         let close = |other: &DVec3| other.distance_squared(point) < separation * separation;
         let crowded = |cell| taken.get(&cell).is_some_and(|others| others.iter().any(close));
-        if region.distance(point) < 0.0 && !(Block { low, high, inside: false }).cells().any(crowded) {
+        if region.distance(point) < 0.0 && !(CellBox { low, high, inside: false }).cells().any(crowded) {
             taken.entry(cell).or_default().push(point);
             points.push(point);
             continue;

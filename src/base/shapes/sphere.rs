@@ -11,13 +11,13 @@ use super::surface::{Surface, SurfacePoint};
 use crate::linalg::Sym3;
 
 /// A sphere; in two dimensions a disc.
-pub(super) struct Sphere {
+pub(super) struct BallRegion {
     pub center: DVec3,
     pub radius: f64,
     pub axes: usize,
 }
 
-impl Region for Sphere {
+impl Region for BallRegion {
     fn distance(&self, point: DVec3) -> f64 {
         point.distance(self.center) - self.radius
     }
@@ -40,7 +40,7 @@ impl Region for Sphere {
     }
 }
 
-impl Surface for Sphere {
+impl Surface for BallRegion {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let normal = (point - self.center).try_normalize().unwrap_or(DVec3::X);
         SurfacePoint {

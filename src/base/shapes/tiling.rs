@@ -18,7 +18,7 @@ pub(super) struct Tiling {
 }
 
 /// A box of cells, `low <= index < high`, that is not wholly outside a region.
-pub(super) struct Block {
+pub(super) struct CellBox {
     pub low: [usize; 3],
     pub high: [usize; 3],
     /// All of it is inside the region.
@@ -72,7 +72,7 @@ impl Tiling {
 
     /// Blocks of at most `leaf` cells a side that together hold all cells which touch the region. Blocks inside may be
     /// as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each other.
-    pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<Block> {
+    pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<CellBox> {
         let side = self.counts.iter().copied().max().unwrap_or(1).next_power_of_two();
         let mut splitting = Splitting { tiling: self, region, leaf, inside_leaf, blocks: Vec::new() };
         splitting.split([0; 3], side, false);
@@ -87,7 +87,7 @@ struct Splitting<'a> {
     /// Largest number of cells along a side: of all blocks, and of those inside.
     leaf: usize,
     inside_leaf: usize,
-    blocks: Vec<Block>,
+    blocks: Vec<CellBox>,
 }
 
 impl Splitting<'_> {
@@ -109,7 +109,7 @@ impl Splitting<'_> {
             inside = distance < -reach;
         }
         if side <= if inside { self.inside_leaf.max(self.leaf) } else { self.leaf } {
-            self.blocks.push(Block { low, high, inside });
+            self.blocks.push(CellBox { low, high, inside });
             return;
         }
         let half = side / 2;
@@ -120,7 +120,7 @@ impl Splitting<'_> {
     }
 }
 
-impl Block {
+impl CellBox {
     /// The cells of the block, x fastest.
     pub fn cells(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         let (low, high) = (self.low, self.high);

@@ -4,11 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::region::Region;
-use super::tiling::{Block, Tiling};
+use super::tiling::{CellBox, Tiling};
 
 /// Volume and first moment of what lies nearer to one point than to any other.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Moments {
+pub(super) struct CellMoments {
     /// Volume \[m³\] (area \[m²\]).
     pub volume: f64,
     /// Integral of the position \[m⁴\] (\[m³\]).
@@ -16,13 +16,13 @@ pub(super) struct Moments {
 }
 
 /// Points sorted by the cell of a tiling that they are in. Only cells with points take memory.
-struct Buckets<'a> {
+struct TileBuckets<'a> {
     tiling: &'a Tiling,
     /// Cell as z, y, x, and number of the point, in this order.
     sorted: Vec<([usize; 3], u32)>,
 }
 
-impl<'a> Buckets<'a> {
+impl<'a> TileBuckets<'a> {
     fn new(tiling: &'a Tiling, points: &[DVec3]) -> Self {
         let entry = |(n, &point): (usize, &DVec3)| {
             let [x, y, z] = tiling.index(point);
@@ -52,18 +52,18 @@ pub(super) fn moments(
     tiling: &Tiling,
     points: &[DVec3],
     samples: usize,
-) -> Vec<Moments> {
-    let buckets = Buckets::new(tiling, points);
+) -> Vec<CellMoments> {
+    let buckets = TileBuckets::new(tiling, points);
     let sampling = Sampling { region, buckets: &buckets, points, samples };
     let leaf = if tiling.axes == 2 { 8 } else { 4 };
     let blocks = tiling.blocks(region, leaf, leaf);
-    let of_block = |block: &Block| {
+    let of_block = |block: &CellBox| {
         let mut found = Vec::new();
         block.cells().for_each(|cell| sampling.add_cell(cell, block.inside, &mut found));
         found
     };
-    let found: Vec<Vec<(u32, Moments)>> = blocks.par_iter().map(of_block).collect();
-    let mut moments = vec![Moments::default(); points.len()];
+    let found: Vec<Vec<(u32, CellMoments)>> = blocks.par_iter().map(of_block).collect();
+    let mut moments = vec![CellMoments::default(); points.len()];
     // In the order of the blocks, so that the sums do not depend on the threads.
     for (n, part) in found.into_iter().flatten() {
         moments[n as usize].volume += part.volume;
@@ -75,7 +75,7 @@ pub(super) fn moments(
 /// What the cells are cut out of, and how they are sampled.
 struct Sampling<'a> {
     region: &'a dyn Region,
-    buckets: &'a Buckets<'a>,
+    buckets: &'a TileBuckets<'a>,
     points: &'a [DVec3],
     /// Samples of a cell of the tiling along each axis.
     samples: usize,
@@ -116,7 +116,7 @@ impl Nearest {
 
 impl Sampling<'_> {
     /// Adds the moments of what is in a cell of the tiling, point by point.
-    fn add_cell(&self, cell: [usize; 3], inside: bool, found: &mut Vec<(u32, Moments)>) {
+    fn add_cell(&self, cell: [usize; 3], inside: bool, found: &mut Vec<(u32, CellMoments)>) {
         let Self { region, buckets, points, samples } = *self;
         let tiling = buckets.tiling;
         let step = 1.0 / samples as f64;
@@ -124,7 +124,7 @@ impl Sampling<'_> {
         let volume = tiling.cell_volume() * step.powi(tiling.axes as i32);
         let safe = (0..tiling.axes).map(|k| tiling.cell[k]).fold(f64::INFINITY, f64::min);
         let near: Vec<(DVec3, u32)> = buckets.around(cell, 1).map(|n| (points[n as usize], n)).collect();
-        let mut sums = vec![Moments::default(); near.len()];
+        let mut sums = vec![CellMoments::default(); near.len()];
         let layers = if tiling.axes == 3 { samples } else { 1 };
         let places =
             (0..layers).flat_map(|z| (0..samples).flat_map(move |y| (0..samples).map(move |x| [x, y, z])));
@@ -139,7 +139,7 @@ impl Sampling<'_> {
             // Every point within one cell's side is in the cells around.
             if nearest.first.0 > safe * safe {
                 let far = nearest_far(buckets, points, cell, point, safe);
-                found.push((far, Moments { volume: weight, first: weight * point }));
+                found.push((far, CellMoments { volume: weight, first: weight * point }));
                 continue;
             }
             let mut add = |n: usize, weight: f64| {
@@ -158,7 +158,7 @@ impl Sampling<'_> {
 }
 
 /// The nearest of `points`, in rings of cells that widen until none outside can be nearer.
-fn nearest_far(buckets: &Buckets, points: &[DVec3], cell: [usize; 3], point: DVec3, safe: f64) -> u32 {
+fn nearest_far(buckets: &TileBuckets, points: &[DVec3], cell: [usize; 3], point: DVec3, safe: f64) -> u32 {
     let widest = buckets.tiling.counts.iter().copied().max().unwrap_or(1);
     let mut best = (f64::INFINITY, 0);
     for reach in 2..=widest.max(2) {

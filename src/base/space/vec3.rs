@@ -32,9 +32,9 @@ impl From<Vec3> for DVec3 {
     }
 }
 
-struct Components;
+struct VectorEntries;
 
-impl<'de> Visitor<'de> for Components {
+impl<'de> Visitor<'de> for VectorEntries {
     type Value = Vec3;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -54,7 +54,7 @@ impl<'de> Visitor<'de> for Components {
 
 impl<'de> Deserialize<'de> for Vec3 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_tuple(3, Components)
+        deserializer.deserialize_tuple(3, VectorEntries)
     }
 }
 

@@ -11,9 +11,9 @@ use super::plausibility;
 use super::spawn;
 use super::{clamps, drawn_sides, lattice_edges, supports};
 use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
-use crate::record::probe::Probe;
+use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, OutputPlan, Recorder};
-use crate::scene::{Item, Place, Problem, Scene, SceneError, Source};
+use crate::scene::{Item, Problem, Scene, SceneError, Source, SourcePlace};
 use crate::schedule::{Resources, Schedule, Shared};
 use crate::simulation::{Simulation, SimulationParts};
 use crate::world::{BodyId, BodySet};
@@ -88,7 +88,7 @@ fn build_in(
 /// What a simulation writes.
 struct Outputs {
     output: Option<Shared<Output>>,
-    probes: Vec<Probe>,
+    probes: Vec<ResolvedProbe>,
 }
 
 /// Spawns the particles, runs what belongs between that and the first step, and orders the systems.
@@ -137,7 +137,10 @@ fn at_scene(scene: &Scene, error: SetupError) -> Vec<Problem> {
             let place =
                 if field.is_empty() && scene.bodies.len() == 1 { "bodies[0]".to_owned() } else { field };
             let problem = Problem::new(message).help(help);
-            vec![Problem { at: if place.is_empty() { Place::Scene } else { Place::Path(place) }, ..problem }]
+            vec![Problem {
+                at: if place.is_empty() { SourcePlace::Scene } else { SourcePlace::Path(place) },
+                ..problem
+            }]
         }
     }
 }
@@ -169,8 +172,9 @@ fn build_plugins(
             }
         }
         for item in scene.plugins.iter().filter(due) {
-            let own =
-                |body: &&crate::scene::Body| !body.plugins.iter().any(|other| other.name() == item.name());
+            let own = |body: &&crate::scene::BodyDescription| {
+                !body.plugins.iter().any(|other| other.name() == item.name())
+            };
             let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
             build(Kind::Plugin, item, (BodySet::new(ids), None), sim);
         }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
+use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::place;
 use crate::plugin::{BodyKind, BodyPlan};
 use crate::scene::{Contact, ContactSurface, Problem, Scene};
@@ -23,7 +23,7 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
         bodies.iter().flat_map(|body| body.sites.iter().map(|site| site.position)).collect();
     let reach = |body: &BodyPlan| vec![0.5 * body.spacing; body.sites.len()];
     let supports: Vec<f64> = bodies.iter().flat_map(reach).collect();
-    let cloud = Cloud { positions: &positions, support: Support::PerParticle(&supports) };
+    let cloud = Cloud { positions: &positions, support: SupportRadii::PerParticle(&supports) };
     let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Vec::new() };
     let mut reported = Vec::new();
     let mut problems = Vec::new();

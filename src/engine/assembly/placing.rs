@@ -9,7 +9,7 @@ use super::{memory, spawn};
 use crate::materials::{Law, Material};
 use crate::plugin::{BodyKind, BodyPlan, Formulation, FormulationEntry, Registry};
 use crate::rigid::Rigid;
-use crate::scene::{Body, Domain, Item, Problem, Scene, Source};
+use crate::scene::{BodyDescription, Domain, Item, Problem, Scene, Source};
 use crate::shapes::{self, Aabb, Filling, Site};
 use crate::world::{BodyId, ColumnSet, PhaseId};
 
@@ -116,7 +116,7 @@ impl<'r> Placed<'r> {
 
 /// The particles of a body, and the box around its shape.
 fn fill(
-    body: &Body,
+    body: &BodyDescription,
     formulation: &FormulationEntry,
     scene: &Scene,
     folder: &Path,
@@ -144,7 +144,12 @@ fn fill(
 }
 
 /// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is a tool.
-fn endless_tool(body: &Body, formulation: &str, scene: &Scene, folder: &Path) -> Option<Vec<Site>> {
+fn endless_tool(
+    body: &BodyDescription,
+    formulation: &str,
+    scene: &Scene,
+    folder: &Path,
+) -> Option<Vec<Site>> {
     if formulation != Rigid::NAME || !(body.spacing > 0.0 && body.spacing.is_finite()) {
         return None;
     }

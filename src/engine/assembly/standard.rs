@@ -1,8 +1,8 @@
 //! The names that the engine itself registers.
 
 use crate::materials::{
-    Al6061T6, Copper, DecoupledNeoHookean, Fluid, Hypoelastic, J2, JohnsonCook, NeoHookean, PMMA, Rubber,
-    StVenantKirchhoff, Steel, Steel42CrMo4,
+    Al6061T6, Copper, DecoupledNeoHookean, FluidMaterial, Hypoelastic, J2, JohnsonCook, NeoHookean, PMMA,
+    Rubber, StVenantKirchhoff, Steel, Steel42CrMo4,
 };
 use crate::plugin::Registry;
 
@@ -23,7 +23,7 @@ fn register_materials(registry: &mut Registry) {
         .material::<StVenantKirchhoff>()
         .material::<NeoHookean>()
         .material::<DecoupledNeoHookean>()
-        .material::<Fluid>()
+        .material::<FluidMaterial>()
         .material::<J2>()
         .material::<JohnsonCook>()
         .material::<Hypoelastic>()

@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::load::{self, LoadLaw};
 use super::part::Part;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
@@ -32,7 +32,7 @@ impl Plugin for BodyForce {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         let law = ForcePerMass { field };
         load::apply("body_force", law, &selection, sim, |system| system.reads::<Mass>());
         Ok(())
@@ -41,7 +41,7 @@ impl Plugin for BodyForce {
 
 /// A field of the reference position and time, times the mass of every particle.
 struct ForcePerMass {
-    field: Field,
+    field: VectorField,
 }
 
 impl LoadLaw for ForcePerMass {

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
-use super::prescribed::{self, Kind};
+use super::field::VectorField;
+use super::prescribed::{self, PrescribedKind};
 use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
 
@@ -40,7 +40,7 @@ impl Plugin for Displacement {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         for part in super::part::parts_of(&selection, sim) {
             let body = sim.body(part.body);
             let jump = part.points.iter().map(|&point| field.at(point, 0.0));
@@ -55,6 +55,6 @@ impl Plugin for Displacement {
                 ));
             }
         }
-        prescribed::prescribe(Self::NAME, Kind::Displacement, field, &selection, sim)
+        prescribed::prescribe(Self::NAME, PrescribedKind::Displacement, field, &selection, sim)
     }
 }

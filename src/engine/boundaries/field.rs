@@ -11,7 +11,7 @@ use crate::schedule::StepError;
 
 /// A vector function of the reference position and time; an axis without function is zero.
 #[derive(Clone, Debug)]
-pub(super) struct Field {
+pub(super) struct VectorField {
     components: [Option<Expression>; 3],
 }
 
@@ -27,7 +27,7 @@ impl BlockSum for FirstBad {
     }
 }
 
-impl Field {
+impl VectorField {
     /// The function that a scene gives as `value`. It is an error if no axis has one, or if it leaves the plane of a
     /// two-dimensional scene.
     pub fn new(value: PerAxis<Expression>, sim: &SimBuilder<'_>) -> Result<Self, SetupError> {

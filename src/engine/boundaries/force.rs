@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::load::{self, DeadLoad};
 use super::on_rigid::arms_of;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
@@ -14,8 +14,8 @@ use crate::scene::{Expression, PerAxis, Select};
 ///
 /// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0, "-100*smoothstep(t/0.01)"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Force {
+#[serde(deny_unknown_fields, rename = "Force")]
+pub struct TotalForce {
     /// Particles.
     pub on: Select,
     /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it depends on the
@@ -23,14 +23,14 @@ pub struct Force {
     pub value: PerAxis<Expression>,
 }
 
-impl Plugin for Force {
+impl Plugin for TotalForce {
     const NAME: &'static str = "Force";
     const REFERENCE: &'static str = "";
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
         load::require_movable(&selection, sim)?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         let share = 1.0 / selection.len() as f64;
         let shares = selection.parts.iter().map(|(_, rows)| vec![share; rows.len()]).collect();
         let arms = arms_of(&self.on, &selection, sim);

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::part::parts_of;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
@@ -26,7 +26,7 @@ impl Plugin for InitialDisplacement {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         let parts = parts_of(&selection, sim);
         field.require_finite(&parts, "displacement")?;
         sim.add_setup(move |setup| {

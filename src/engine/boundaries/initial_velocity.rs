@@ -6,7 +6,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::part::{Part, parts_of};
 use crate::notation::place;
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
@@ -30,7 +30,7 @@ impl Plugin for InitialVelocity {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select_at_start(&self.on, "on")?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         let all = parts_of(&selection, sim);
         let parts: Vec<Part> =
             all.into_iter().filter(|part| sim.body(part.body).kind != BodyKind::Boundary).collect();
@@ -66,11 +66,11 @@ impl Plugin for InitialVelocity {
 
 /// Axes of the particles that have an initial velocity already.
 #[derive(Default)]
-struct Given(BTreeMap<(BodyId, u32), [bool; 3]>);
+struct GivenAxes(BTreeMap<(BodyId, u32), [bool; 3]>);
 
 /// Two initial velocities of one particle along one axis contradict each other.
 fn only_once(parts: &[Part], axes: [bool; 3], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-    let mut given: Given = sim.take_extensions().pop().unwrap_or_default();
+    let mut given: GivenAxes = sim.take_extensions().pop().unwrap_or_default();
     for part in parts {
         for &row in &part.rows {
             let taken = given.0.entry((part.body, row)).or_default();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::flow_load;
 use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
@@ -34,7 +34,7 @@ pub(super) struct DeadLoad {
     /// Label, for errors.
     pub name: &'static str,
     /// Traction, acceleration or force.
-    pub field: Field,
+    pub field: VectorField,
     /// Area, mass or share of every particle of every part, in the order of the start.
     pub shares: Vec<Vec<f64>>,
     /// Of every part, see [`LoadLaw::arms`].

@@ -42,11 +42,11 @@ impl Plugin for MeanVelocity {
         let wanted = self.wanted(sim)?;
         self.only_once(&selection, sim)?;
         let controlled = [0, 1, 2].map(|axis| f64::from(u8::from(self.value.0[axis].is_some())));
-        let force = sim.share(ForcePerMass::default());
+        let force = sim.share(DrivingForce::default());
         let bodies: Vec<BodyId> = selection.parts.iter().map(|(id, _)| *id).collect();
         let phases = sim.phases_of(&BodySet::new(bodies.iter().copied()));
         let axes = DVec3::from_array(controlled);
-        let measure = Measure { bodies, wanted, axes, state: ControlState::default(), force };
+        let measure = MeasureFlow { bodies, wanted, axes, state: ControlState::default(), force };
         sim.add_system(
             System::new(Stage::PreStep, "mean_velocity_control", measure)
                 .on_phases(phases)
@@ -143,7 +143,7 @@ struct ControlState {
 
 /// The force per mass of this step, N/kg, for the system that applies it.
 #[derive(Clone, Copy, Default)]
-struct ForcePerMass(DVec3);
+struct DrivingForce(DVec3);
 
 /// Momentum and mass.
 #[derive(Clone, Copy, Default)]
@@ -157,16 +157,16 @@ impl BlockSum for Moving {
 }
 
 /// Measures the mean velocity, and sets the force of the step that begins.
-struct Measure {
+struct MeasureFlow {
     bodies: Vec<BodyId>,
     wanted: DVec3,
     /// 1 along controlled axes, else 0.
     axes: DVec3,
     state: ControlState,
-    force: Shared<ForcePerMass>,
+    force: Shared<DrivingForce>,
 }
 
-impl Run for Measure {
+impl Run for MeasureFlow {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut moving = Moving::default();
         for &body in &self.bodies {
@@ -207,7 +207,7 @@ impl Run for Measure {
 }
 
 /// The force per mass, the same for all particles.
-struct Uniform(Shared<ForcePerMass>);
+struct Uniform(Shared<DrivingForce>);
 
 impl LoadLaw for Uniform {
     fn forces(&self, _: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError> {

@@ -33,15 +33,15 @@ mod velocity;
 pub use body_force::BodyForce;
 pub use displacement::Displacement;
 pub use fix::Fix;
-pub use force::Force;
+pub use force::TotalForce;
 pub use initial_displacement::InitialDisplacement;
 pub use initial_velocity::InitialVelocity;
 pub use mean_velocity::MeanVelocity;
-pub use pressure::Pressure;
+pub use pressure::PressureLoad;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
-pub use turn::Turn;
-pub use velocity::Velocity;
+pub use turn::PrescribedRotation;
+pub use velocity::PrescribedVelocity;
 
 use crate::plugin::Registry;
 
@@ -49,15 +49,15 @@ use crate::plugin::Registry;
 pub fn register(registry: &mut Registry) {
     registry
         .condition::<Fix>()
-        .condition::<Velocity>()
+        .condition::<PrescribedVelocity>()
         .condition::<Displacement>()
         .condition::<InitialDisplacement>()
         .condition::<InitialVelocity>()
         .condition::<Traction>()
-        .condition::<Pressure>()
-        .condition::<Force>()
+        .condition::<PressureLoad>()
+        .condition::<TotalForce>()
         .condition::<BodyForce>()
         .condition::<MeanVelocity>()
         .condition::<Symmetry>()
-        .condition::<Turn>();
+        .condition::<PrescribedRotation>();
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::part::{Part, parts_of, phases_of};
 use super::rigid_part::{require_one_motion, split_rigid};
 use crate::parallel::{Picked, sum_over_blocks};
@@ -18,7 +18,7 @@ use crate::world::{Column, Mass, Position, Removed, Velocity};
 
 /// How the value of a condition gives the velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PrescribedKind {
     /// The value is the velocity.
     Velocity,
     /// The value is the displacement from the reference position.
@@ -26,10 +26,10 @@ pub(super) enum Kind {
 }
 
 /// A prescribed motion of some particles.
-struct Motion {
+struct PrescribedMotion {
     name: &'static str,
-    kind: Kind,
-    field: Field,
+    kind: PrescribedKind,
+    field: VectorField,
     parts: Vec<Part>,
     /// Step of the difference that gives the velocity at the start, s.
     least_difference: f64,
@@ -38,8 +38,8 @@ struct Motion {
 /// Adds the systems that move the selection.
 pub(super) fn prescribe(
     name: &'static str,
-    kind: Kind,
-    field: Field,
+    kind: PrescribedKind,
+    field: VectorField,
     selection: &Selection,
     sim: &mut SimBuilder<'_>,
 ) -> Result<(), SetupError> {
@@ -47,14 +47,15 @@ pub(super) fn prescribe(
     let least_difference = 1e-6 * sim.scene().time.end;
     for body in rigid {
         require_one_motion(name, &field, body, sim)?;
-        let motion = Motion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
+        let motion =
+            PrescribedMotion { name, kind, field: field.clone(), parts: Vec::new(), least_difference };
         let stated = prescription(&motion);
         sim.extend(DrivenBody { body, motion: stated, axes: field.axes(), drive: Box::new(motion) });
     }
     if selection.is_empty() {
         return Ok(());
     }
-    let motion = Motion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
+    let motion = PrescribedMotion { name, kind, field, parts: parts_of(&selection, sim), least_difference };
     sim.prescribe(&selection, motion.field.axes(), prescription(&motion))?;
     let motion = Arc::new(motion);
     start_walls(&motion, sim);
@@ -84,17 +85,17 @@ pub(super) fn prescribe(
 }
 
 /// What a motion prescribes, for others on the same particles.
-fn prescription(motion: &Motion) -> Prescription {
+fn prescription(motion: &PrescribedMotion) -> Prescription {
     let field = motion.field.clone();
     let value: MotionOfPlace = Arc::new(move |point, t| field.at(point, t));
     match motion.kind {
-        Kind::Velocity => Prescription::velocity(motion.name, value),
-        Kind::Displacement => Prescription::displacement(motion.name, value),
+        PrescribedKind::Velocity => Prescription::velocity(motion.name, value),
+        PrescribedKind::Displacement => Prescription::displacement(motion.name, value),
     }
 }
 
 /// Gives walls their velocity before the first force is made: friction with a wall that seems to be at rest would kick a fluid that moves with it.
-fn start_walls(motion: &Arc<Motion>, sim: &mut SimBuilder<'_>) {
+fn start_walls(motion: &Arc<PrescribedMotion>, sim: &mut SimBuilder<'_>) {
     let is_wall = |part: &&Part| sim.body(part.body).kind == BodyKind::Boundary;
     let walls: Vec<Part> = motion.parts.iter().filter(is_wall).cloned().collect();
     if walls.is_empty() {
@@ -118,7 +119,7 @@ fn start_walls(motion: &Arc<Motion>, sim: &mut SimBuilder<'_>) {
     });
 }
 
-impl Drive for Motion {
+impl Drive for PrescribedMotion {
     fn velocity(
         &self,
         end_of_step: bool,
@@ -129,10 +130,10 @@ impl Drive for Motion {
         let mut value = Vec::with_capacity(1);
         let mut at = |t: f64| self.field.values(&[reference], t, self.name, &mut value).map(|()| value[0]);
         match (self.kind, end_of_step) {
-            (Kind::Velocity, false) => at(clock.middle()),
-            (Kind::Velocity, true) => at(clock.end()),
-            (Kind::Displacement, false) => Ok((reference + at(clock.end())? - center) / clock.dt),
-            (Kind::Displacement, true) => {
+            (PrescribedKind::Velocity, false) => at(clock.middle()),
+            (PrescribedKind::Velocity, true) => at(clock.end()),
+            (PrescribedKind::Displacement, false) => Ok((reference + at(clock.end())? - center) / clock.dt),
+            (PrescribedKind::Displacement, true) => {
                 let (before, after) = self.around_end(clock);
                 Ok((at(after)? - at(before)?) / (after - before))
             }
@@ -140,12 +141,12 @@ impl Drive for Motion {
     }
 }
 
-impl Motion {
+impl PrescribedMotion {
     /// Velocity of a particle at the start, m/s.
     fn velocity_at_start(&self, point: DVec3) -> DVec3 {
         match self.kind {
-            Kind::Velocity => self.field.at(point, 0.0),
-            Kind::Displacement => {
+            PrescribedKind::Velocity => self.field.at(point, 0.0),
+            PrescribedKind::Displacement => {
                 let after = self.least_difference;
                 (self.field.at(point, after) - self.field.at(point, 0.0)) / after
             }
@@ -168,9 +169,11 @@ impl Motion {
     ) -> Result<(), StepError> {
         let clock = step.clock;
         match (self.kind, end_of_step) {
-            (Kind::Velocity, false) => self.field.values(&part.points, clock.middle(), self.name, out),
-            (Kind::Velocity, true) => self.field.values(&part.points, clock.end(), self.name, out),
-            (Kind::Displacement, false) => {
+            (PrescribedKind::Velocity, false) => {
+                self.field.values(&part.points, clock.middle(), self.name, out)
+            }
+            (PrescribedKind::Velocity, true) => self.field.values(&part.points, clock.end(), self.name, out),
+            (PrescribedKind::Displacement, false) => {
                 self.field.values(&part.points, clock.end(), self.name, out)?;
                 let (view, _) = step.world.body_view(part.body);
                 let position = view.read::<Position>()?;
@@ -185,7 +188,7 @@ impl Motion {
                 });
                 Ok(())
             }
-            (Kind::Displacement, true) => {
+            (PrescribedKind::Displacement, true) => {
                 let (before, after) = self.around_end(&clock);
                 self.field.values(&part.points, after, self.name, out)?;
                 let rows = (&mut out[..], &part.points[..]);
@@ -201,7 +204,7 @@ impl Motion {
 }
 
 struct SetVelocity {
-    motion: Arc<Motion>,
+    motion: Arc<PrescribedMotion>,
     end_of_step: bool,
     values: Vec<DVec3>,
 }

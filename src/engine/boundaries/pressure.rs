@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
-use super::skin_load::{self, Kind, LoadedSurface, skins_of};
+use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::notation::{place, quantity};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
@@ -22,8 +22,8 @@ use crate::world::DeformationGradient;
 ///
 /// A smooth start within 10 ms: `Pressure(on: Select(body: "plate", face: MaxY), value: "1e5*smoothstep(t/0.01)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Pressure {
+#[serde(deny_unknown_fields, rename = "Pressure")]
+pub struct PressureLoad {
     /// A face, or another part of the surface.
     pub on: Select,
     /// Pressure \[Pa\], positive towards the body, a function of the reference position and time.
@@ -33,7 +33,7 @@ pub struct Pressure {
     pub area: Option<f64>,
 }
 
-impl Plugin for Pressure {
+impl Plugin for PressureLoad {
     const NAME: &'static str = "Pressure";
     const REFERENCE: &'static str = "";
 
@@ -44,7 +44,7 @@ impl Plugin for Pressure {
         }
         let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
-            let make = || Kind::Pressure(self.value.clone());
+            let make = || LoadKind::Pressure(self.value.clone());
             return skin_load::apply(
                 "pressure",
                 make,
@@ -102,7 +102,7 @@ impl LoadLaw for Follower {
                     place(point),
                     quantity(t, "s")
                 );
-                return Err(StepError::System { system: Pressure::NAME.to_owned(), message });
+                return Err(StepError::System { system: PressureLoad::NAME.to_owned(), message });
             }
             let f = gradient[row as usize].0;
             // J F^-T N, the cofactor matrix times N, from products of columns: it needs no division.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::field::Field;
+use super::field::VectorField;
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
 use crate::world::BodyId;
@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-9;
 /// An error where the value of the condition of that name differs between places of a rigid body: all of it moves with the value at its centre.
 pub(super) fn require_one_motion(
     name: &str,
-    field: &Field,
+    field: &VectorField,
     id: BodyId,
     sim: &SimBuilder<'_>,
 ) -> Result<(), SetupError> {

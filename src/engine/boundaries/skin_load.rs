@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::field::Field;
+use super::field::VectorField;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyPlan, Offer, Selection, SetupError, SimBuilder, facets_of};
@@ -19,9 +19,9 @@ use crate::world::{
 };
 
 /// What gives the force on a facet.
-pub(super) enum Kind {
+pub(super) enum LoadKind {
     /// A force per area of the reference configuration.
-    Traction(Field),
+    Traction(VectorField),
     /// Against the normal, per area of now.
     Pressure(Expression),
 }
@@ -29,7 +29,7 @@ pub(super) enum Kind {
 /// A load on facets of the skin of a body.
 struct SkinLoad {
     label: &'static str,
-    kind: Kind,
+    kind: LoadKind,
     patch: Patch,
     /// Facets, with their middles in the reference configuration, m, and their areas there, m2; stated areas come in as a factor.
     facets: Vec<(u32, DVec3, f64)>,
@@ -90,7 +90,7 @@ pub(super) struct LoadedSurface<'a> {
 /// Adds a load on the skins of bodies.
 pub(super) fn apply(
     label: &'static str,
-    make: impl Fn() -> Kind,
+    make: impl Fn() -> LoadKind,
     on: LoadedSurface<'_>,
     skins: Vec<Arc<Skin>>,
     sim: &mut SimBuilder<'_>,
@@ -198,8 +198,8 @@ impl SkinLoad {
             }
             let force = *factor
                 * match kind {
-                    Kind::Traction(field) => area * field.at(middle, t),
-                    Kind::Pressure(value) => {
+                    LoadKind::Traction(field) => area * field.at(middle, t),
+                    LoadKind::Pressure(value) => {
                         -value.eval(middle, t) * directed_area(axes, &corners.map(|corner| corner.place))
                     }
                 };

@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::face_area::{check_area, check_is_side, loaded_area};
-use super::field::Field;
+use super::field::VectorField;
 use super::load::{self, DeadLoad};
 use super::on_rigid::arms_of;
-use super::skin_load::{self, Kind, LoadedSurface, skins_of};
+use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
@@ -37,11 +37,11 @@ impl Plugin for Traction {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         check_area(self.area)?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         let selection = sim.select_at_start(&Select { surface: None, ..self.on.clone() }, "on")?;
         load::require_movable(&selection, sim)?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
-            let make = || Kind::Traction(field.clone());
+            let make = || LoadKind::Traction(field.clone());
             return skin_load::apply(
                 "traction",
                 make,

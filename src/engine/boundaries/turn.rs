@@ -15,8 +15,8 @@ use crate::schedule::{Clock, StepError};
 ///
 /// A roller that is brought to two turns a second: `Turn(on: Select(body: "roller"), rate: "4*pi*smoothstep(t/0.1)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Turn {
+#[serde(deny_unknown_fields, rename = "Turn")]
+pub struct PrescribedRotation {
     /// Rigid bodies, as a whole.
     pub on: Select,
     /// Direction of the axis; z in two dimensions.
@@ -30,7 +30,7 @@ const fn z_axis() -> Vec3 {
     Vec3::new(0.0, 0.0, 1.0)
 }
 
-impl Plugin for Turn {
+impl Plugin for PrescribedRotation {
     const NAME: &'static str = "Turn";
     const REFERENCE: &'static str = "";
 
@@ -68,6 +68,6 @@ impl Drive for Rate {
             return Ok(DVec3::new(rate, 0.0, 0.0));
         }
         let message = format!("the rate must be finite, found {rate} at {}", quantity(t, "s"));
-        Err(StepError::System { system: Turn::NAME.to_owned(), message })
+        Err(StepError::System { system: PrescribedRotation::NAME.to_owned(), message })
     }
 }

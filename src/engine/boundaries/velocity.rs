@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::field::Field;
-use super::prescribed::{self, Kind};
+use super::field::VectorField;
+use super::prescribed::{self, PrescribedKind};
 use crate::notation::{quantity, quantity_to};
 use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
@@ -16,8 +16,8 @@ use crate::scene::{Edge, Expression, PerAxis, Select};
 /// smoothly as it starts: `"-0.1*smoothstep(t/1e-3)*(1 - smoothstep((t - 1e-3)/1e-3))"`. A rigid body moves as a whole, with
 /// the same value in all of its places; `Turn` turns it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Velocity {
+#[serde(deny_unknown_fields, rename = "Velocity")]
+pub struct PrescribedVelocity {
     /// Particles.
     pub on: Select,
     /// Velocity per axis \[m/s\]; `None` leaves the motion along an axis free.
@@ -27,7 +27,7 @@ pub struct Velocity {
     pub edge: Edge,
 }
 
-impl Plugin for Velocity {
+impl Plugin for PrescribedVelocity {
     const NAME: &'static str = "Velocity";
     const REFERENCE: &'static str = "";
 
@@ -38,9 +38,9 @@ impl Plugin for Velocity {
 
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
-        let field = Field::new(self.value, sim)?;
+        let field = VectorField::new(self.value, sim)?;
         warn_of_fast_motion(&field, &selection, sim);
-        prescribed::prescribe(Self::NAME, Kind::Velocity, field, &selection, sim)
+        prescribed::prescribe(Self::NAME, PrescribedKind::Velocity, field, &selection, sim)
     }
 }
 
@@ -50,7 +50,7 @@ const LARGEST_MACH: f64 = 10.0;
 const TIMES: u32 = 64;
 
 /// Warns of a speed that is most likely a slip of units.
-fn warn_of_fast_motion(field: &Field, selection: &Selection, sim: &mut SimBuilder<'_>) {
+fn warn_of_fast_motion(field: &VectorField, selection: &Selection, sim: &mut SimBuilder<'_>) {
     let end = sim.scene().time.end;
     let places = selection.parts.iter().filter_map(|(id, rows)| {
         let body = sim.body(*id);

@@ -26,12 +26,12 @@ pub trait FieldColumns: 'static {
 }
 
 /// The components of a block of rows.
-struct Components<'a> {
+struct BlockComponents<'a> {
     values: &'a mut [f64],
     width: usize,
 }
 
-impl Split for Components<'_> {
+impl Split for BlockComponents<'_> {
     fn rows(&self) -> usize {
         self.values.len() / self.width
     }
@@ -60,9 +60,9 @@ macro_rules! field_columns {
                 let guards = ($(phase.read::<$name>()?,)+);
                 let (start, width) = (out.len(), V::COMPONENTS.len());
                 out.resize(start + rows.len() * width, 0.0);
-                let values = Components { values: &mut out[start..], width };
+                let values = BlockComponents { values: &mut out[start..], width };
                 let slices = (values, $(&guards.$k[rows.clone()],)+);
-                type Block<'a, $($name),+> = (Components<'a>, $(&'a [$name],)+);
+                type Block<'a, $($name),+> = (BlockComponents<'a>, $(&'a [$name],)+);
                 for_each_block(slices, &mut Vec::new(), &|_, block: Block<'_, $($name),+>| {
                     let (out, columns) = field_columns!(@split block, $($k),+);
                     for (k, values) in out.values.chunks_exact_mut(width).enumerate() {

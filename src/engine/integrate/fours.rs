@@ -11,9 +11,9 @@ const FOUR: usize = 12;
 
 /// One vector for each of four particles.
 #[derive(Clone, Copy)]
-pub(super) struct FourVectors([Lanes4; 3]);
+pub(super) struct FourOfColumn([Lanes4; 3]);
 
-impl FourVectors {
+impl FourOfColumn {
     /// The first four vectors of a column; where there are fewer, the rest is zero.
     #[inline(always)]
     pub fn load(numbers: &[f64]) -> Self {
@@ -129,7 +129,7 @@ mod tests {
             let numbers: Vec<f64> = (0..FOUR).map(|k| (1.0 + k as f64).sin()).collect();
             let vectors: Vec<DVec3> = numbers.chunks(3).map(DVec3::from_slice).collect();
             for count in 0..=4 {
-                let four = FourVectors::load(&numbers[..3 * count]);
+                let four = FourOfColumn::load(&numbers[..3 * count]);
                 let mut out = vec![7.0; 3 * count];
                 four.store(&mut out);
                 assert_eq!(out, numbers[..3 * count]);
@@ -139,14 +139,14 @@ mod tests {
 
                 let g = DVec3::new(0.3, -2.0, 5.0);
                 let masses = [1.0, 2.0, 4.0, 8.0];
-                let weights = FourVectors::of_numbers(&masses[..count]).times(a, FourVectors::splat(g));
+                let weights = FourOfColumn::of_numbers(&masses[..count]).times(a, FourOfColumn::splat(g));
                 let sum = four.dot_onto(a, weights, Lanes4::ZERO).sum();
                 let wanted: f64 = (0..count).map(|k| masses[k] * g.dot(vectors[k])).sum();
                 assert!((sum - wanted).abs() < 1e-13, "{sum} {wanted}");
             }
-            let held = FourVectors::splat(DVec3::new(0.0, 3.0, 0.0));
+            let held = FourOfColumn::splat(DVec3::new(0.0, 3.0, 0.0));
             let mut out = [0.0; FOUR];
-            FourVectors::load(&numbers).where_held(a, held).store(&mut out);
+            FourOfColumn::load(&numbers).where_held(a, held).store(&mut out);
             assert!((0..FOUR).all(|k| out[k] == if k % 3 == 1 { 0.0 } else { numbers[k] }));
         }
     }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::fours::FourVectors;
+use super::fours::FourOfColumn;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
@@ -89,14 +89,14 @@ impl BlockSum for MotionSum {
 type Rows<'a> = (&'a mut [Velocity], &'a [Force], &'a [Mobility], &'a [Mass]);
 
 /// The same component by component, and the masses.
-struct Components<'a> {
+struct KickComponents<'a> {
     velocity: &'a mut [f64],
     force: &'a [f64],
     mobility: &'a [f64],
     mass: &'a [f64],
 }
 
-impl<'a> Components<'a> {
+impl<'a> KickComponents<'a> {
     #[inline(always)]
     fn new((velocity, force, mobility, mass): Rows<'a>) -> Self {
         Self {
@@ -115,12 +115,12 @@ impl<'a> Components<'a> {
 
     /// Force, mobility and mass of the k-th four, and where their components lie.
     #[inline(always)]
-    fn four(&self, k: usize) -> (FourVectors, FourVectors, FourVectors, Range<usize>) {
+    fn four(&self, k: usize) -> (FourOfColumn, FourOfColumn, FourOfColumn, Range<usize>) {
         let (first, last) = (4 * k, (4 * k + 4).min(self.mass.len()));
         let at = 3 * first..3 * last;
         let (force, mobility) = (&self.force[at.clone()], &self.mobility[at.clone()]);
-        let mass = FourVectors::of_numbers(&self.mass[first..last]);
-        (FourVectors::load(force), FourVectors::load(mobility), mass, at)
+        let mass = FourOfColumn::of_numbers(&self.mass[first..last]);
+        (FourOfColumn::load(force), FourOfColumn::load(mobility), mass, at)
     }
 }
 
@@ -171,16 +171,16 @@ impl HotLoop for FirstKick<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> MotionSum {
-        let gravity = FourVectors::splat(self.gravity);
+        let gravity = FourOfColumn::splat(self.gravity);
         let (mut gravity_power, mut constraint_power) = (Lanes4::ZERO, Lanes4::ZERO);
         let positions: &mut [f64] = bytemuck::cast_slice_mut(self.positions);
-        let of = Components::new(self.rows);
+        let of = KickComponents::new(self.rows);
         for k in 0..of.fours() {
             let (f, mobility, mass, at) = of.four(k);
             let (x, velocity) = (&mut positions[at.clone()], &mut of.velocity[at]);
-            let v = FourVectors::load(velocity).plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
+            let v = FourOfColumn::load(velocity).plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
             v.store(velocity);
-            FourVectors::load(x).plus_scaled(a, self.dt, v).store(x);
+            FourOfColumn::load(x).plus_scaled(a, self.dt, v).store(x);
             let weight = mass.times(a, gravity);
             gravity_power = weight.dot_onto(a, v, gravity_power);
             constraint_power = f.where_held(a, mobility).dot_onto(a, v, constraint_power);
@@ -252,11 +252,11 @@ impl HotLoop for SecondKick<'_> {
     fn run<A: FourLanes>(self, a: A) -> MotionSum {
         let (mut constraint_power, mut twice_kinetic) = (Lanes4::ZERO, Lanes4::ZERO);
         let mut acceleration_squared = Lanes4::ZERO;
-        let of = Components::new(self.rows);
+        let of = KickComponents::new(self.rows);
         for k in 0..of.fours() {
             let (f, mobility, mass, at) = of.four(k);
             let velocity = &mut of.velocity[at];
-            let before = FourVectors::load(velocity);
+            let before = FourOfColumn::load(velocity);
             constraint_power = f.where_held(a, mobility).dot_onto(a, before, constraint_power);
             let acceleration = f.times(a, mobility);
             let v = before.plus_scaled(a, 0.5 * self.dt, acceleration);

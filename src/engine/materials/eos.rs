@@ -45,7 +45,7 @@ pub enum SolidEos {
 
 /// An equation of state with its constants, ready for use.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pressure {
+pub enum PressureLaw {
     /// J p = -K ln J: the Kirchhoff pressure of logarithmic strain.
     Logarithmic {
         /// Bulk modulus K, Pa.
@@ -76,15 +76,15 @@ pub enum Pressure {
 
 impl SolidEos {
     /// Checks the parameters for a material of bulk modulus K, Pa, and density, kg/m3.
-    pub fn pressure(self, bulk: f64, density: f64) -> Result<Pressure, ParameterError> {
+    pub fn pressure(self, bulk: f64, density: f64) -> Result<PressureLaw, ParameterError> {
         match self {
-            Self::Linear => Ok(Pressure::Linear { bulk }),
+            Self::Linear => Ok(PressureLaw::Linear { bulk }),
             Self::MieGrueneisen { sound_speed, slope, gamma } => {
                 let speed = sound_speed.unwrap_or((bulk / density).sqrt());
                 ParameterError::require_positive("eos.sound_speed", speed)?;
                 ParameterError::require_not_negative("eos.slope", slope)?;
                 ParameterError::require_not_negative("eos.gamma", gamma)?;
-                Ok(Pressure::Shock { bulk: density * speed * speed, slope, gamma })
+                Ok(PressureLaw::Shock { bulk: density * speed * speed, slope, gamma })
             }
             Self::Polynomial { c1, c2, c3, gamma } => {
                 let c1 = c1.unwrap_or(bulk);
@@ -92,13 +92,13 @@ impl SolidEos {
                 ParameterError::require_not_negative("eos.c2", c2)?;
                 ParameterError::require_not_negative("eos.c3", c3)?;
                 ParameterError::require_not_negative("eos.gamma", gamma)?;
-                Ok(Pressure::Polynomial { coefficients: [c1, c2, c3], gamma })
+                Ok(PressureLaw::Polynomial { coefficients: [c1, c2, c3], gamma })
             }
         }
     }
 }
 
-impl Pressure {
+impl PressureLaw {
     /// Grueneisen parameter: the pressure for each joule of internal energy in a cubic metre.
     #[inline(always)]
     pub fn gamma(&self) -> f64 {

@@ -1,13 +1,13 @@
 //! The state of an equation of state with a path-dependent pressure: the internal energy from volume change and plastic
 //! work.
 
-use super::eos::Pressure;
+use super::eos::PressureLaw;
 use super::state::StateRows;
 use crate::world::{ColumnSet, InternalEnergy, PlasticWork, ReachedVolumeRatio};
 
 /// The pressure of a block, with its state columns if it depends on the path.
 pub(super) struct PressureRows<'a> {
-    law: &'a Pressure,
+    law: &'a PressureLaw,
     energies: Option<EnergyRows<'a>>,
 }
 
@@ -19,14 +19,14 @@ struct EnergyRows<'a> {
 
 impl<'a> PressureRows<'a> {
     /// Adds the columns, if the pressure needs them.
-    pub fn declare(pressure: &Pressure, columns: &mut ColumnSet) {
+    pub fn declare(pressure: &PressureLaw, columns: &mut ColumnSet) {
         if pressure.stored(1.0).is_none() {
             columns.add::<InternalEnergy>().add::<PlasticWork>().add::<ReachedVolumeRatio>();
         }
     }
 
     /// Fills the columns of undeformed particles.
-    pub fn start(pressure: &Pressure, state: &mut StateRows<'_>) {
+    pub fn start(pressure: &PressureLaw, state: &mut StateRows<'_>) {
         if pressure.stored(1.0).is_none() {
             state.take::<ReachedVolumeRatio>().fill(ReachedVolumeRatio(1.0));
         }
@@ -34,7 +34,7 @@ impl<'a> PressureRows<'a> {
 
     /// Takes the columns of a block, if the pressure needs them.
     #[inline(always)]
-    pub fn take(law: &'a Pressure, state: &mut StateRows<'a>) -> Self {
+    pub fn take(law: &'a PressureLaw, state: &mut StateRows<'a>) -> Self {
         let columns = || EnergyRows { internal: state.take(), plastic: state.take(), volume: state.take() };
         Self { law, energies: law.stored(1.0).is_none().then(columns) }
     }
@@ -56,7 +56,7 @@ impl EnergyRows<'_> {
     /// The work is the mean of the pressures before and after times the change of volume; the pressure is linear in the
     /// energy, so that what it is after needs no iteration. All plastic work heats.
     #[inline(always)]
-    fn advance(&mut self, k: usize, law: &Pressure, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
+    fn advance(&mut self, k: usize, law: &PressureLaw, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
         let (internal, plastic, volume) =
             (&mut self.internal[k].0, &mut self.plastic[k].0, &mut self.volume[k].0);
         let gamma = law.gamma();

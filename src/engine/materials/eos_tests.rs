@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::specimen::Specimen;
-use super::{Hardening, J2, MaterialModel, Pressure, SolidEos};
+use super::{Hardening, J2, MaterialModel, PressureLaw, SolidEos};
 use crate::world::{InternalEnergy, PlasticWork};
 
 const BULK: f64 = 137.0e9;
@@ -12,7 +12,7 @@ const SPEED: f64 = 3940.0;
 const SLOPE: f64 = 1.489;
 const GAMMA: f64 = 1.99;
 
-fn shock() -> Pressure {
+fn shock() -> PressureLaw {
     let eos = SolidEos::MieGrueneisen { sound_speed: Some(SPEED), slope: SLOPE, gamma: GAMMA };
     eos.pressure(BULK, DENSITY).expect("valid parameters")
 }
@@ -43,14 +43,14 @@ fn closed_forms_of_the_others() {
         close(linear.cold(j), BULK * mu, 1e-12);
         let square = if mu > 0.0 { 175.0e9 * mu * mu } else { 0.0 };
         close(polynomial.cold(j), BULK * mu + square + 564.0e9 * mu.powi(3), 1e-12);
-        close(Pressure::Logarithmic { bulk: BULK }.cold(j) * j, -BULK * j.ln(), 1e-12);
+        close(PressureLaw::Logarithmic { bulk: BULK }.cold(j) * j, -BULK * j.ln(), 1e-12);
     }
     assert!(shock().cold(1.0 - 1.0 / SLOPE).is_infinite());
 }
 
 #[test]
 fn stored_work_is_the_integral_of_the_pressure() {
-    for law in [Pressure::Logarithmic { bulk: BULK }, Pressure::Linear { bulk: BULK }] {
+    for law in [PressureLaw::Logarithmic { bulk: BULK }, PressureLaw::Linear { bulk: BULK }] {
         for j in [0.8f64, 1.2] {
             let (mut sum, steps) = (0.0, 2000);
             let width = (j - 1.0) / f64::from(steps);
@@ -65,13 +65,13 @@ fn stored_work_is_the_integral_of_the_pressure() {
 #[test]
 fn waves_are_faster_where_the_hugoniot_is_steeper() {
     // Without energy: J p = rho c^2 J x/(1 - s x)^2, x = 1 - J; -J d(J p)/dJ by hand.
-    let law = Pressure::Shock { bulk: BULK, slope: SLOPE, gamma: 0.0 };
+    let law = PressureLaw::Shock { bulk: BULK, slope: SLOPE, gamma: 0.0 };
     let j: f64 = 0.8;
     let x = 1.0 - j;
     let rest = 1.0 - SLOPE * x;
     let slope = -(1.0 - 2.0 * x) / rest.powi(2) - 2.0 * SLOPE * j * x / rest.powi(3);
     close(law.stiffening(j), -j * slope, 1e-4);
-    close(Pressure::Logarithmic { bulk: BULK }.stiffening(0.5), 1.0, 1e-6);
+    close(PressureLaw::Logarithmic { bulk: BULK }.stiffening(0.5), 1.0, 1e-6);
 }
 
 #[test]

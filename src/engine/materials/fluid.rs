@@ -8,8 +8,8 @@ use super::law::{Law, Material, MaterialModel, ParameterError};
 /// Weakly compressible Newtonian fluid: a liquid whose speed of sound is lowered to some ten times the speed of the flow,
 /// so that its density changes by about 1 %.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Fluid {
+#[serde(deny_unknown_fields, rename = "Fluid")]
+pub struct FluidMaterial {
     /// Density at zero pressure rho_0, kg/m3.
     pub density: f64,
     /// Speed of sound c_0, m/s. Without it: ten times the largest of the speeds at the start and of sqrt(2 g H), the speed
@@ -37,7 +37,7 @@ pub enum EquationOfState {
     },
 }
 
-impl MaterialModel for Fluid {
+impl MaterialModel for FluidMaterial {
     const NAME: &'static str = "Fluid";
     const REFERENCE: &'static str =
         "weakly compressible SPH: J. J. Monaghan, J. Comput. Phys. 110 (1994) 399-406";

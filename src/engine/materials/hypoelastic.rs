@@ -4,7 +4,7 @@ use glam::DMat3;
 
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
-use super::eos::{Pressure, SolidEos};
+use super::eos::{PressureLaw, SolidEos};
 use super::eos_state::PressureRows;
 use super::hardening::Hardening;
 use super::heat_state::TemperatureRows;
@@ -54,7 +54,7 @@ impl MaterialModel for Hypoelastic {
 struct HypoelasticLaw {
     elastic: ElasticConstants,
     shape: HypoelasticJ2,
-    pressure: Pressure,
+    pressure: PressureLaw,
     /// Temperature at the start, K, if it plays a part.
     temperature: Option<f64>,
 }

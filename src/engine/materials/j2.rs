@@ -12,7 +12,7 @@ use glam::DMat3;
 
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
-use super::eos::{Pressure, SolidEos};
+use super::eos::{PressureLaw, SolidEos};
 use super::eos_state::PressureRows;
 use super::hardening::Hardening;
 use super::heat_state::TemperatureRows;
@@ -79,7 +79,7 @@ pub(super) fn plastic(
 ) -> Result<Material, ParameterError> {
     ParameterError::require_positive("density", density)?;
     let pressure = match eos {
-        None => Pressure::Logarithmic { bulk: elastic.bulk },
+        None => PressureLaw::Logarithmic { bulk: elastic.bulk },
         Some(eos) => eos.pressure(elastic.bulk, density)?,
     };
     let rise = heating.map_or(0.0, |heating| heating.rise(density));
@@ -94,7 +94,7 @@ pub(super) fn plastic(
 struct PlasticLaw {
     elastic: ElasticConstants,
     hardening: Hardening,
-    pressure: Pressure,
+    pressure: PressureLaw,
     /// Rise of the temperature for each J/m3 of plastic work, K m3/J.
     rise: f64,
     /// Temperature at the start, K, if it plays a part.

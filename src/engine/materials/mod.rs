@@ -31,8 +31,8 @@ mod tests;
 
 pub use decoupled_neo_hookean::DecoupledNeoHookean;
 pub use elastic_constants::ElasticConstants;
-pub use eos::{Pressure, SolidEos};
-pub use fluid::{EquationOfState, Fluid, FluidLaw};
+pub use eos::{PressureLaw, SolidEos};
+pub use fluid::{EquationOfState, FluidLaw, FluidMaterial};
 pub use hardening::Hardening;
 pub use heating::Heating;
 pub use hypoelastic::Hypoelastic;

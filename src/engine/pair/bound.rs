@@ -44,7 +44,7 @@ struct Bound<'a, T: PairTerm> {
 
 impl<T: PairTerm> RowTerm for Bound<'_, T> {
     fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>) {
-        run_hot_on(plane, Rows { bound: self, first, batch, out });
+        run_hot_on(plane, BoundRows { bound: self, first, batch, out });
     }
 
     fn block(&self, pairs: &BlockPairs, plane: bool, sums: &mut TermSums) {
@@ -80,14 +80,14 @@ impl<T: PairTerm> BlockLoop for OneBlock<'_, '_, T> {
 }
 
 /// The neighbours of some particles, with the pair function inlined.
-struct Rows<'r, 'a, T: PairTerm> {
+struct BoundRows<'r, 'a, T: PairTerm> {
     bound: &'r Bound<'a, T>,
     first: usize,
     batch: &'r PairBatch,
     out: RowsOut<'r>,
 }
 
-impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
+impl<T: PairTerm> HotLoop for BoundRows<'_, '_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -111,7 +111,7 @@ impl<T: PairTerm> HotLoop for Rows<'_, '_, T> {
     }
 }
 
-impl<T: PairTerm> Rows<'_, '_, T> {
+impl<T: PairTerm> BoundRows<'_, '_, T> {
     /// Adds up the neighbours; `PLAIN` without reference vectors, `ALIKE` where none is an image and all have one support radius.
     #[inline(always)]
     fn add<A: FourLanes, const PLAIN: bool, const ALIKE: bool>(self, a: A) {

@@ -49,13 +49,13 @@ pub(crate) fn add_work_systems(
     bodies: Shared<Vec<BodyTerms>>,
 ) {
     let powers = sim.share(Vec::new());
-    let first = FirstKick { accounts: accounts.clone(), powers };
+    let first = WorkOfFirstKick { accounts: accounts.clone(), powers };
     sim.add_system(
         System::new(Stage::InitialIntegrate, "pair_work_of_first_kick", first)
             .on_phases([phase])
             .before(DRIFT),
     );
-    let second = SecondKick { accounts, bodies, powers, sums: Vec::new() };
+    let second = WorkOfSecondKick { accounts, bodies, powers, sums: Vec::new() };
     sim.add_system(
         System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)
             .on_phases([phase])
@@ -78,12 +78,12 @@ fn book(step: &mut Step<'_>, accounts: &[String], body: &BodyPowers, side: f64) 
     }
 }
 
-struct FirstKick {
+struct WorkOfFirstKick {
     accounts: Vec<String>,
     powers: Powers,
 }
 
-impl Run for FirstKick {
+impl Run for WorkOfFirstKick {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let powers = step.resources.of(self.powers);
         powers.iter().for_each(|body| book(step, &self.accounts, body, 1.0));
@@ -91,7 +91,7 @@ impl Run for FirstKick {
     }
 }
 
-struct SecondKick {
+struct WorkOfSecondKick {
     accounts: Vec<String>,
     bodies: Shared<Vec<BodyTerms>>,
     powers: Powers,
@@ -168,7 +168,7 @@ impl WorkRows<'_> {
     }
 }
 
-impl Run for SecondKick {
+impl Run for WorkOfSecondKick {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let bodies = step.resources.of(self.bodies);
         let mut powers = step.resources.of_mut(self.powers);

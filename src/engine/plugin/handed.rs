@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::error::SetupError;
 use super::plan::BodyPlan;
-use crate::scene::{Item, Place, Problem};
+use crate::scene::{Item, Problem, SourcePlace};
 use crate::world::{BodyId, BodySet};
 
 /// A value that was handed to the formulations of bodies, with those of the bodies that the taker asked for.
@@ -84,7 +84,7 @@ impl HandedIn {
     pub fn problems(&self, bodies: &[BodyPlan]) -> Vec<Problem> {
         let place = |by: &Option<Item>, message: String, help: String| match by {
             Some(item) => item.problem("", message, help),
-            None => Problem { at: Place::Scene, ..Problem::new(message).help(help) },
+            None => Problem { at: SourcePlace::Scene, ..Problem::new(message).help(help) },
         };
         let terms = self.terms.values().flatten().flat_map(|term| {
             term.left.iter().map(|id| {

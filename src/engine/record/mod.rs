@@ -22,5 +22,5 @@ pub use output::{Output, OutputOptions, OutputPlan};
 pub use recorder::{
     BodyFrame, BodyInfo, FieldValues, Frame, NamedUnit, RecordError, Recorder, RunInfo, Sample,
 };
-pub use series::{Column, Series, SeriesError, SeriesWriter, read_series};
+pub use series::{Series, SeriesColumn, SeriesError, SeriesWriter, read_series};
 pub use vtk::{PointArray, PointValues, PvdFrame, PvdWriter, VtkError, write_vtu};

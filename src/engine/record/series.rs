@@ -15,7 +15,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-pub use read::{Column, Series, read_series};
+pub use read::{Series, SeriesColumn, read_series};
 
 /// Bytes that are collected before they go to the file.
 const BUFFER: usize = 1 << 16;
@@ -205,7 +205,7 @@ fn header(path: &Path, columns: &[(&str, &str)]) -> Result<String, SeriesError> 
         .chain(columns)
         .map(|(name, unit)| if unit.is_empty() { (*name).to_owned() } else { format!("{name}[{unit}]") })
         .collect();
-    let as_read: Vec<Column> = names.iter().map(|name| Column::new(name)).collect();
+    let as_read: Vec<SeriesColumn> = names.iter().map(|name| SeriesColumn::new(name)).collect();
     read::check_names(path, &as_read)?;
 
     let malformed = |what: String| SeriesError::Malformed { path: path.to_path_buf(), what };

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::probe::{EnergyColumns, Gauge, Probe};
+use super::probe::{EnergyColumns, Gauge, ResolvedProbe};
 use crate::fields::FieldTable;
 use crate::notation::{quantity, quantity_to};
 use crate::plugin::SimBuilder;
@@ -38,7 +38,7 @@ impl Condition {
             // Reported by the checks of the scene.
             return Err(Vec::new());
         };
-        let Probe { interval, gauge, .. } = Probe::resolve(index, probe, sim, table)?;
+        let ResolvedProbe { interval, gauge, .. } = ResolvedProbe::resolve(index, probe, sim, table)?;
         let names: Vec<String> = match &*gauge {
             Gauge::Energies(_) => Vec::new(),
             gauge => gauge.columns().into_iter().map(|(name, _)| name).collect(),

@@ -22,7 +22,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
     let phases: Vec<PhaseId> = sim.phases_of(&ids);
     let (gravity, end) = (sim.gravity(), sim.scene().time.end);
     sim.add_system(
-        System::new(Stage::InitialIntegrate, RIGID_DRIFT, Drift { gravity })
+        System::new(Stage::InitialIntegrate, RIGID_DRIFT, RigidDrift { gravity })
             .on_phases(phases.clone())
             .reads::<ReferencePosition>()
             .writes::<Position>()
@@ -35,7 +35,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
         .on_phases(phases.clone()),
     );
     sim.add_system(
-        System::new(Stage::FinalIntegrate, RIGID_KICK, Kick { end })
+        System::new(Stage::FinalIntegrate, RIGID_KICK, RigidKick { end })
             .on_phases(phases)
             .reads::<Position>()
             .reads::<Mass>()
@@ -135,11 +135,11 @@ impl RigidBody {
     }
 }
 
-struct Drift {
+struct RigidDrift {
     gravity: DVec3,
 }
 
-impl Run for Drift {
+impl Run for RigidDrift {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let dt = step.clock.dt;
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
@@ -183,11 +183,11 @@ const MOTION_FACTOR: f64 = 0.1;
 /// Steps of a body that nothing moves, in the whole run.
 const LEAST_STEPS: f64 = 100.0;
 
-struct Kick {
+struct RigidKick {
     end: f64,
 }
 
-impl Run for Kick {
+impl Run for RigidKick {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let half = 0.5 * step.clock.dt;
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);

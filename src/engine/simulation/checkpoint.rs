@@ -27,7 +27,7 @@ const INPUTS: &str = "inputs";
 
 /// Everything that is not in a column.
 #[derive(Serialize, Deserialize)]
-struct Header {
+struct CheckpointHeader {
     scene_name: String,
     scene_text: String,
     instruction_path: String,
@@ -68,7 +68,7 @@ pub enum SaveError {
 /// A checkpoint that has been read and checked.
 pub struct Checkpoint {
     container: Container,
-    header: Header,
+    header: CheckpointHeader,
     inputs: Inputs,
     path: PathBuf,
 }
@@ -118,7 +118,7 @@ impl Simulation {
         if let Some(mut output) = self.output() {
             output.sync()?;
         }
-        let header = Header {
+        let header = CheckpointHeader {
             scene_name: source.name.clone(),
             scene_text: source.text.clone(),
             instruction_path: instruction_path().to_owned(),
@@ -153,7 +153,7 @@ impl Simulation {
 
     /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes any.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
-        let Header { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
+        let CheckpointHeader { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
             &checkpoint.header;
         if let Some(file) = self.inputs.changed_since(&checkpoint.inputs) {
             return Err(content(format!(

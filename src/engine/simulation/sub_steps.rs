@@ -38,8 +38,8 @@ pub(super) struct SubStepState {
 impl SubSteps {
     pub fn new(phases: Vec<PhaseId>, time: &scene::Time) -> Self {
         let factor = match time.step {
-            scene::Step::Adaptive { factor } => factor,
-            scene::Step::Fixed(_) => 1.0,
+            scene::StepRule::Adaptive { factor } => factor,
+            scene::StepRule::Fixed(_) => 1.0,
         };
         Self {
             phases,

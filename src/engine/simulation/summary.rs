@@ -94,11 +94,11 @@ pub struct Timing {
 
 /// When this process began to do steps, and at which step. Takes no part in any result.
 #[derive(Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct Throughput {
     began: Option<(Instant, u64)>,
 }
 
-impl Pace {
+impl Throughput {
     pub fn begin(&mut self, step: u64) {
         self.began = Some((Instant::now(), step));
     }

@@ -114,7 +114,7 @@ impl SkinView<'_> {
 
     /// Calls `each` with the number of every vertex of a list, where it is, m, and whether none of its carriers has been removed.
     pub fn places(&self, vertices: &[u32], each: &mut impl FnMut(usize, DVec3, bool)) {
-        run_hot(Places { view: *self, vertices, each });
+        run_hot(VertexPlaces { view: *self, vertices, each });
     }
 
     /// Mean velocity of the particles that carry a vertex, m/s.
@@ -134,13 +134,13 @@ impl SkinView<'_> {
 }
 
 /// The loop over the vertices of a list.
-struct Places<'a, E> {
+struct VertexPlaces<'a, E> {
     view: SkinView<'a>,
     vertices: &'a [u32],
     each: &'a mut E,
 }
 
-impl<E: FnMut(usize, DVec3, bool)> HotLoop for Places<'_, E> {
+impl<E: FnMut(usize, DVec3, bool)> HotLoop for VertexPlaces<'_, E> {
     type Output = ();
 
     #[inline(always)]

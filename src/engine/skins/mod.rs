@@ -23,5 +23,5 @@ pub(crate) mod tests;
 
 pub(crate) use columns::{SkinColumns, SkinView};
 pub(crate) use patch::{Last, Patch, Vertex, Wanted};
-pub(crate) use rule::Rule;
+pub(crate) use rule::QuadratureRule;
 pub(crate) use skin::Skin;

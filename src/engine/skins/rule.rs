@@ -2,11 +2,11 @@
 
 /// Points of a facet, by their shares of its vertices; each stands for the same part of it.
 #[derive(Clone, Debug)]
-pub(crate) struct Rule {
+pub(crate) struct QuadratureRule {
     points: Vec<[f64; 3]>,
 }
 
-impl Rule {
+impl QuadratureRule {
     /// Points that are exact for squares of linear functions: two Gauss points of a segment, three points of a triangle.
     pub fn exact(axes: usize) -> Self {
         if axes == 2 {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::{Patch, Rule, Skin, SkinColumns, Wanted};
+use super::{Patch, QuadratureRule, Skin, SkinColumns, Wanted};
 use crate::assembly::build;
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
@@ -109,7 +109,7 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
         patch.select(0..skin.facets.corners.len() as u32);
         let columns = SkinColumns::new(&skin, sim.world()).unwrap();
         patch.update(&columns.view(), 0.0, Wanted::default());
-        let rule = Rule::exact(skin.facets.axes);
+        let rule = QuadratureRule::exact(skin.facets.axes);
         let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
         for facet in 0..skin.facets.corners.len() as u32 {
             for point in 0..rule.len() {
@@ -140,7 +140,13 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
 
 #[test]
 fn rules_are_exact_for_what_they_are_made_for() {
-    for rule in [Rule::exact(2), Rule::fine(2, 8), Rule::exact(3), Rule::fine(3, 2), Rule::fine(3, 4)] {
+    for rule in [
+        QuadratureRule::exact(2),
+        QuadratureRule::fine(2, 8),
+        QuadratureRule::exact(3),
+        QuadratureRule::fine(3, 2),
+        QuadratureRule::fine(3, 4),
+    ] {
         let count = rule.len() as f64;
         let mean: f64 = (0..rule.len()).map(|k| rule.shares(k)[1]).sum::<f64>() / count;
         let ends: f64 = (0..rule.len()).map(|k| rule.shares(k).iter().sum::<f64>()).sum();
@@ -149,7 +155,7 @@ fn rules_are_exact_for_what_they_are_made_for() {
         assert!((mean - 1.0 / axes).abs() < 1e-12, "{mean}");
     }
     for (axes, square) in [(2, 1.0 / 3.0), (3, 1.0 / 6.0)] {
-        let rule = Rule::exact(axes);
+        let rule = QuadratureRule::exact(axes);
         let mean = (0..rule.len()).map(|k| rule.shares(k)[1].powi(2)).sum::<f64>() / rule.len() as f64;
         assert!((mean - square).abs() < 1e-12, "{axes}: {mean}");
     }

@@ -30,7 +30,7 @@ impl PairSource for SolidPairs {
     ) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let Some(solid) = step.resources.solid(self.phase) else { return Ok(()) };
-        run(&Rows {
+        run(&SolidPairRows {
             solid: &*solid,
             weight_at: self.weight_at,
             reference: bytemuck::cast_slice(&view.read_near::<ReferencePosition>()?),
@@ -43,7 +43,7 @@ impl PairSource for SolidPairs {
     }
 }
 
-struct Rows<'a> {
+struct SolidPairRows<'a> {
     solid: &'a dyn SolidPhase,
     weight_at: WeightAt,
     reference: &'a [DVec3],
@@ -54,7 +54,7 @@ struct Rows<'a> {
     support: &'a [SupportRadius],
 }
 
-impl Rows<'_> {
+impl SolidPairRows<'_> {
     fn neighbor(&self, i: usize, j: usize, weight: f64) -> Neighbor {
         let ghosts = self.solid.ghosts();
         let (row, signs) = (ghosts.source(j), ghosts.mirror(j).unwrap_or(DVec3::ONE));
@@ -72,7 +72,7 @@ impl Rows<'_> {
     }
 }
 
-impl PairRows for Rows<'_> {
+impl PairRows for SolidPairRows<'_> {
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch) {
         let mirrors = !self.solid.ghosts().is_empty();
         batch.begin(Extras { reference: true, weight_at: self.weight_at, mirrors, supports: true }, 0.0);

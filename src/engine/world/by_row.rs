@@ -15,8 +15,8 @@ pub fn sum_by_row<R: BlockSum>(
     if count == 0 {
         return R::default();
     }
-    let entries = Entries { rows: 0..rows, numbers: 0..count, row };
-    sum_over_blocks(entries, &|_, Entries { numbers, .. }: Entries<'_, _>| {
+    let entries = RowEntries { rows: 0..rows, numbers: 0..count, row };
+    sum_over_blocks(entries, &|_, RowEntries { numbers, .. }: RowEntries<'_, _>| {
         let mut sum = R::default();
         let mut numbers = numbers.peekable();
         while let Some(number) = numbers.next() {
@@ -31,13 +31,13 @@ pub fn sum_by_row<R: BlockSum>(
 }
 
 /// Rows of a body and the numbers of their entries.
-struct Entries<'a, F> {
+struct RowEntries<'a, F> {
     rows: Range<usize>,
     numbers: Range<usize>,
     row: &'a F,
 }
 
-impl<F: Fn(usize) -> usize + Sync> Split for Entries<'_, F> {
+impl<F: Fn(usize) -> usize + Sync> Split for RowEntries<'_, F> {
     fn rows(&self) -> usize {
         self.rows.len()
     }

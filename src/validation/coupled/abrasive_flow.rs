@@ -136,7 +136,7 @@ fn filled(simulation: &Simulation, floor: BodyId) -> Result<f64> {
     let spacing = simulation.world().body(floor).spacing;
     let cloud = simulation.resources().try_get::<FlowCloud>().context("there is no flow")?;
     let is_filled = |x: DVec3| {
-        let near = |record: &&meshless_engine::formulations::fluid::Record| {
+        let near = |record: &&meshless_engine::formulations::fluid::FlowParticle| {
             record.volume() > 0.0 && cloud.offset(x, record.position()).length() < spacing
         };
         cloud.records().iter().any(|record| near(&record))

@@ -20,7 +20,7 @@ const ROUNDS: usize = 2;
 
 /// What is seen in a pixel.
 #[derive(Clone, Copy)]
-struct Seen {
+struct SeenPixel {
     /// Distance along the line of sight \[m\].
     depth: f32,
     /// Radius of the ball \[pixels\].
@@ -32,8 +32,8 @@ struct Seen {
     normal: [f32; 3],
 }
 
-const NOTHING: Seen =
-    Seen { depth: f32::INFINITY, radius: 0.0, length: 0.0, color: [0.0; 3], normal: [0.0, 0.0, 1.0] };
+const NOTHING: SeenPixel =
+    SeenPixel { depth: f32::INFINITY, radius: 0.0, length: 0.0, color: [0.0; 3], normal: [0.0, 0.0, 1.0] };
 
 /// Draws all particles.
 pub fn draw(canvas: &mut Canvas, frame: &RecordedFrame, view: &View, smooth: bool) {
@@ -55,7 +55,7 @@ pub fn draw(canvas: &mut Canvas, frame: &RecordedFrame, view: &View, smooth: boo
 }
 
 /// The nearest ball in each pixel.
-fn balls(canvas: &Canvas, frame: &RecordedFrame, view: &View, larger: f32) -> Vec<Seen> {
+fn balls(canvas: &Canvas, frame: &RecordedFrame, view: &View, larger: f32) -> Vec<SeenPixel> {
     let mut seen = vec![NOTHING; canvas.width() * canvas.height()];
     for body in &frame.bodies {
         // Bodies without colours are dots, so that one sees through them.
@@ -75,7 +75,7 @@ fn balls(canvas: &Canvas, frame: &RecordedFrame, view: &View, larger: f32) -> Ve
                 let depth = ball.depth - toward * length;
                 let pixel = &mut seen[y * canvas.width() + x];
                 if depth < pixel.depth {
-                    *pixel = Seen { depth, radius, length, color, normal: [arm[0], arm[1], toward] };
+                    *pixel = SeenPixel { depth, radius, length, color, normal: [arm[0], arm[1], toward] };
                 }
             }
         }
@@ -85,7 +85,7 @@ fn balls(canvas: &Canvas, frame: &RecordedFrame, view: &View, larger: f32) -> Ve
 
 /// Means of depth and colour along rows (`stride` 1) or columns (`stride` the width), over pixels that are no more than two
 /// radii nearer or farther.
-fn smoothed(seen: &[Seen], width: usize, height: usize, stride: usize) -> Vec<Seen> {
+fn smoothed(seen: &[SeenPixel], width: usize, height: usize, stride: usize) -> Vec<SeenPixel> {
     let mut result = seen.to_vec();
     for (place, pixel) in result.iter_mut().enumerate().filter(|(_, pixel)| pixel.depth.is_finite()) {
         let (at, size) = if stride == 1 { (place % width, width) } else { (place / width, height) };
@@ -109,7 +109,7 @@ fn smoothed(seen: &[Seen], width: usize, height: usize, stride: usize) -> Vec<Se
 }
 
 /// Normals from the differences of the depths, the smaller of both sides, so that they do not reach over an edge.
-fn turn_normals(seen: &mut [Seen], width: usize, scale: f32) {
+fn turn_normals(seen: &mut [SeenPixel], width: usize, scale: f32) {
     let depths: Vec<f32> = seen.iter().map(|pixel| pixel.depth).collect();
     let height = depths.len() / width;
     for (place, pixel) in seen.iter_mut().enumerate().filter(|(_, pixel)| pixel.depth.is_finite()) {

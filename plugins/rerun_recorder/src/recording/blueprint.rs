@@ -34,7 +34,7 @@ pub struct Tile {
 
 /// A kind of view.
 #[derive(Clone, Copy, Debug)]
-pub enum View {
+pub enum ViewKind {
     /// Particles in space.
     Space,
     /// Pictures in a plane.
@@ -45,7 +45,7 @@ pub enum View {
     Text,
 }
 
-impl View {
+impl ViewKind {
     fn class(self) -> &'static str {
         match self {
             Self::Space => "3D",
@@ -69,7 +69,7 @@ impl Blueprint {
     /// Adds a view of these entities (`- /path/**` leaves some out), with properties by name.
     pub fn view(
         &self,
-        kind: View,
+        kind: ViewKind,
         name: &str,
         contents: &[String],
         properties: &[(&str, &dyn AsComponents)],

@@ -12,7 +12,7 @@ use re_sdk_types::datatypes::{Bool, Range2D};
 use rerun::log::LogMsg;
 use rerun::{EntityPath, RecordingStreamResult};
 
-use super::blueprint::{Blueprint, Tile, View, only, with_children, without};
+use super::blueprint::{Blueprint, Tile, ViewKind, only, with_children, without};
 use super::legend;
 use super::paths;
 use super::series::{Plot, SeriesTable};
@@ -66,12 +66,12 @@ impl Layout {
         let scene = self.space(blueprint, bounds, &background)?;
         let format = TextDocumentFormat::new().with_monospace(Enabled(Bool(true)));
         let text = blueprint.view(
-            View::Text,
+            ViewKind::Text,
             "Scene",
             &[only(&paths::scene())],
             &[("TextDocumentFormat", &format)],
         )?;
-        let notes = blueprint.view(View::Text, "Notes", &[only(&paths::notes())], &[])?;
+        let notes = blueprint.view(ViewKind::Text, "Notes", &[only(&paths::notes())], &[])?;
         let tabs = blueprint.tabs(&[scene, text, notes])?;
         let Some(field) = &self.colors else {
             return blueprint.container(
@@ -82,7 +82,7 @@ impl Layout {
         let [x, y] = legend::VISIBLE;
         let bounds = VisualBounds2D::new(Visible2D(Range2D { x_range: x.into(), y_range: y.into() }));
         let bar = blueprint.view(
-            View::Plane,
+            ViewKind::Plane,
             &legend::title(field),
             &[with_children(&paths::legend())],
             &[("Background", &background), ("VisualBounds2D", &bounds)],
@@ -116,7 +116,7 @@ impl Layout {
             contents.extend(self.bodies.iter().map(|body| only(&paths::undeformed(body))));
         }
         blueprint.view(
-            View::Space,
+            ViewKind::Space,
             &self.title,
             &contents,
             &[("EyeControls3D", &camera), ("LineGrid3D", &grid), ("Background", background)],
@@ -131,7 +131,7 @@ fn plots(blueprint: &Blueprint, series: &SeriesTable) -> RecordingStreamResult<V
         let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(plot.has_legend);
         let contents: Vec<String> =
             plot.include.iter().map(with_children).chain(plot.exclude.iter().map(without)).collect();
-        blueprint.view(View::Plot, &plot.title, &contents, &[("PlotLegend", &legend)])
+        blueprint.view(ViewKind::Plot, &plot.title, &contents, &[("PlotLegend", &legend)])
     };
     let views = |plots: Vec<Plot>| plots.iter().map(view).collect::<RecordingStreamResult<Vec<Tile>>>();
     let mut tiles = Vec::new();

@@ -5,7 +5,7 @@ use re_sdk_types::components::Color;
 
 use super::color_scale::ColorScale;
 use super::error::RerunError;
-use super::output::Output;
+use super::output::RecordingOutput;
 use super::paths::legend_part;
 use crate::colormap::Colormap;
 
@@ -37,7 +37,7 @@ impl Legend {
     /// Shows a scale; `beyond` says whether values are below its lower and above its upper end.
     pub fn show(
         &mut self,
-        output: &Output,
+        output: &RecordingOutput,
         scale: ColorScale,
         map: Colormap,
         beyond: [bool; 2],
@@ -70,7 +70,7 @@ impl Legend {
 
 /// A value with the place of its particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extreme {
+pub struct PlacedExtreme {
     /// Value, in the unit of the field.
     pub value: f64,
     /// Position \[m\].
@@ -79,8 +79,13 @@ pub struct Extreme {
 
 impl Legend {
     /// Shows the least and the greatest value of a frame.
-    pub fn show_extremes(&self, output: &Output, ends: [Extreme; 2], axes: usize) -> Result<(), RerunError> {
-        let text = |name: &str, end: Extreme| {
+    pub fn show_extremes(
+        &self,
+        output: &RecordingOutput,
+        ends: [PlacedExtreme; 2],
+        axes: usize,
+    ) -> Result<(), RerunError> {
+        let text = |name: &str, end: PlacedExtreme| {
             let place: Vec<String> = even(&end.place[..axes]).into_iter().map(short).collect();
             format!("{name} {} at ({}) m", with_unit(end.value, &self.unit), place.join(", "))
         };

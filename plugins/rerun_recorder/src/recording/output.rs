@@ -27,7 +27,7 @@ const WRITING: Duration = Duration::from_secs(60);
 
 /// A file and perhaps a viewer, which get the same. They are two streams, so that the file does not depend on the
 /// viewer: the user may close it at any time.
-pub struct Output {
+pub struct RecordingOutput {
     file: RecordingStream,
     written: RecordingFile,
     viewer: Option<RecordingStream>,
@@ -44,7 +44,7 @@ pub struct TimedValue {
     pub value: f64,
 }
 
-impl Output {
+impl RecordingOutput {
     /// Connects to the viewer and makes the file. Dropping the output completes the file.
     pub fn open(
         path: &Path,

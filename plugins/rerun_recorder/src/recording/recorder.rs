@@ -11,9 +11,9 @@ use super::arrays;
 use super::color_scale::{ColorScale, RunningScale};
 use super::error::RerunError;
 use super::layout::Layout;
-use super::legend::{self, Extreme, Legend, short};
+use super::legend::{self, Legend, PlacedExtreme, short};
 use super::notes::Notes;
-use super::output::Output;
+use super::output::RecordingOutput;
 use super::paths;
 use super::series::SeriesTable;
 use super::surface::show_surface;
@@ -33,7 +33,7 @@ pub struct RerunFile {
 
 /// A recording that is being written. Dropping it completes the file.
 struct Open {
-    output: Output,
+    output: RecordingOutput,
     layout: Layout,
     /// The field of the colours.
     color_by: Option<String>,
@@ -76,7 +76,8 @@ impl RerunFile {
             (file_name(run.scene_name), run.existing)
         };
         let path = run.output.join(file);
-        let output = Output::open(&path, existing, run.scene_name, self.settings.connect.as_deref())?;
+        let output =
+            RecordingOutput::open(&path, existing, run.scene_name, self.settings.connect.as_deref())?;
         output.log_static(&EntityPath::root(), &axes(self.up))?;
         output.log_static(
             &paths::scene(),
@@ -188,14 +189,14 @@ fn extremes(
     frame: &Frame<'_>,
     color_by: &str,
     has_color: impl Fn(&BodyFrame<'_>) -> bool,
-) -> Option<[Extreme; 2]> {
-    let mut found: Option<[Extreme; 2]> = None;
+) -> Option<[PlacedExtreme; 2]> {
+    let mut found: Option<[PlacedExtreme; 2]> = None;
     for body in frame.bodies.iter().filter(|body| has_color(body)) {
         for (value, place) in values(body, color_by).iter().zip(body.positions) {
             if value.is_nan() {
                 continue;
             }
-            let here = Extreme { value: *value, place: *place };
+            let here = PlacedExtreme { value: *value, place: *place };
             let [least, greatest] = found.get_or_insert([here; 2]);
             if here.value < least.value {
                 *least = here;

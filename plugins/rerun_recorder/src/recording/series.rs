@@ -9,7 +9,7 @@ use rerun::EntityPath;
 use meshless_engine::record::Sample;
 
 use super::error::RerunError;
-use super::output::{Output, TimedValue};
+use super::output::{RecordingOutput, TimedValue};
 use super::paths;
 
 /// A plot of time series.
@@ -84,7 +84,7 @@ impl SeriesTable {
     /// Takes values of a step and time, s, to be sent with the others of their series.
     pub fn take(
         &mut self,
-        output: &Output,
+        output: &RecordingOutput,
         (step, time): (u64, f64),
         samples: &[Sample<'_>],
     ) -> Result<(), RerunError> {
@@ -119,7 +119,7 @@ impl SeriesTable {
 
     /// Sends what has been taken if that is a good part of all: each piece leaves an entry in the index of the recording, which is kept in
     /// memory, so that their number may grow with the logarithm of the run only.
-    pub fn send_if_due(&mut self, output: &Output) -> Result<(), RerunError> {
+    pub fn send_if_due(&mut self, output: &RecordingOutput) -> Result<(), RerunError> {
         if self.longest_pending() * PIECES < self.sent { Ok(()) } else { self.send(output) }
     }
 
@@ -128,7 +128,7 @@ impl SeriesTable {
     }
 
     /// Sends what has been taken.
-    pub fn send(&mut self, output: &Output) -> Result<(), RerunError> {
+    pub fn send(&mut self, output: &RecordingOutput) -> Result<(), RerunError> {
         self.sent += self.longest_pending();
         for (name, values) in self.pending.iter_mut().filter(|(_, values)| !values.is_empty()) {
             output.send_series(&paths::series(name), values)?;
@@ -144,7 +144,7 @@ impl SeriesTable {
 
     /// The accounts that are not drawn among those that matter: below a share of the largest of their group, once the run is over.
     fn minor(&self) -> Vec<EntityPath> {
-        let largest_of = |group: &Group| {
+        let largest_of = |group: &PlotGroup| {
             let members = self.largest.iter().filter(|(name, _)| self.group(name) == *group);
             members.map(|(_, largest)| *largest).fold(0.0, f64::max)
         };
@@ -165,8 +165,10 @@ impl SeriesTable {
         let [r, g, b] = COLORS[place % COLORS.len()];
         let segments: Vec<&str> = name.split('/').skip(1).collect();
         let label = match group {
-            Group::Body(_) | Group::Energy => segments.last().copied().unwrap_or(name).replace('_', " "),
-            Group::Error(_) | Group::Probe(_) => segments.join(" ").replace('_', " "),
+            PlotGroup::Body(_) | PlotGroup::Energy => {
+                segments.last().copied().unwrap_or(name).replace('_', " ")
+            }
+            PlotGroup::Error(_) | PlotGroup::Probe(_) => segments.join(" ").replace('_', " "),
         };
         SeriesLines::new()
             .with_names([Name(label.into())])
@@ -174,16 +176,16 @@ impl SeriesTable {
             .with_widths([StrokeWidth(1.8.into())])
     }
 
-    fn group(&self, name: &str) -> Group {
+    fn group(&self, name: &str) -> PlotGroup {
         let mut segments = name.split('/');
         if segments.next() != Some("energy") {
-            return Group::Probe(self.unit(name));
+            return PlotGroup::Probe(self.unit(name));
         }
         let rest: Vec<&str> = segments.collect();
         match rest.as_slice() {
-            [body, .., _] => Group::Body((*body).to_owned()),
-            [error] if error.ends_with("error") => Group::Error(self.unit(name)),
-            _ => Group::Energy,
+            [body, .., _] => PlotGroup::Body((*body).to_owned()),
+            [error] if error.ends_with("error") => PlotGroup::Error(self.unit(name)),
+            _ => PlotGroup::Energy,
         }
     }
 
@@ -191,12 +193,12 @@ impl SeriesTable {
         self.known.iter().find(|(known, _)| known == name).map_or_else(String::new, |(_, unit)| unit.clone())
     }
 
-    fn names(&self, group: &Group) -> Vec<EntityPath> {
+    fn names(&self, group: &PlotGroup) -> Vec<EntityPath> {
         let names = self.known.iter().filter(|(name, _)| self.group(name) == *group);
         names.map(|(name, _)| paths::series(name)).collect()
     }
 
-    fn groups(&self) -> Vec<Group> {
+    fn groups(&self) -> Vec<PlotGroup> {
         let mut groups = Vec::new();
         for (name, _) in &self.known {
             let group = self.group(name);
@@ -210,7 +212,7 @@ impl SeriesTable {
     /// Energies of all bodies together and, where there are several, of each.
     pub fn energies(&self) -> Vec<Plot> {
         let body_paths = self.bodies.iter().map(|body| paths::entity(["energy", body]));
-        let errors = self.groups().into_iter().filter(|group| matches!(group, Group::Error(_)));
+        let errors = self.groups().into_iter().filter(|group| matches!(group, PlotGroup::Error(_)));
         let others: Vec<EntityPath> =
             body_paths.chain(errors.flat_map(|group| self.names(&group))).chain(self.hidden()).collect();
         let minor = self.minor();
@@ -240,16 +242,16 @@ impl SeriesTable {
     }
 
     fn has_energies(&self, body: &str) -> bool {
-        self.groups().contains(&Group::Body(body.to_owned()))
+        self.groups().contains(&PlotGroup::Body(body.to_owned()))
     }
 
     /// Errors of the energy balance, in joules in front: the relative one starts with next to nothing over nothing.
     pub fn errors(&self) -> Vec<Plot> {
-        let mut errors: Vec<(Group, String)> = self
+        let mut errors: Vec<(PlotGroup, String)> = self
             .groups()
             .into_iter()
             .filter_map(|group| match &group {
-                Group::Error(unit) => {
+                PlotGroup::Error(unit) => {
                     let title = match unit.as_str() {
                         "1" | "" => "Energy balance error, relative".to_owned(),
                         unit => format!("Energy balance error [{unit}]"),
@@ -259,14 +261,14 @@ impl SeriesTable {
                 _ => None,
             })
             .collect();
-        errors.sort_by_key(|(group, _)| *group != Group::Error("J".to_owned()));
+        errors.sort_by_key(|(group, _)| *group != PlotGroup::Error("J".to_owned()));
         errors.into_iter().map(|(group, title)| self.plot(&group, title)).collect()
     }
 
     /// Probes, one plot for each unit, or several where the legend would be too long.
     pub fn probes(&self) -> Vec<Plot> {
         let groups = self.groups().into_iter().filter_map(|group| match &group {
-            Group::Probe(unit) => {
+            PlotGroup::Probe(unit) => {
                 let title = if unit == "1" { "Probes".to_owned() } else { format!("Probes [{unit}]") };
                 Some((group, title))
             }
@@ -275,7 +277,7 @@ impl SeriesTable {
         groups.flat_map(|(group, title)| parts(self.plot(&group, title))).collect()
     }
 
-    fn plot(&self, group: &Group, title: String) -> Plot {
+    fn plot(&self, group: &PlotGroup, title: String) -> Plot {
         let include = self.names(group);
         Plot { title, has_legend: include.len() > 1, include, exclude: Vec::new() }
     }
@@ -298,7 +300,7 @@ fn parts(plot: Plot) -> Vec<Plot> {
 
 /// What is drawn together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Group {
+enum PlotGroup {
     /// Energies of all bodies together.
     Energy,
     /// Energies of one body.
@@ -353,7 +355,7 @@ mod tests {
     #[test]
     fn accounts_that_never_move_are_left_out_in_the_end() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
-        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = RecordingOutput::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
         let output = output.expect("a recording");
         let names = ["energy/kinetic", "energy/friction", "energy/gravity"];
         let mut table = table(&["plate"], &names.map(|name| (name, "J")));
@@ -374,7 +376,7 @@ mod tests {
     #[test]
     fn accounts_that_hardly_matter_are_drawn_in_a_plot_of_their_own_in_the_end() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
-        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = RecordingOutput::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
         let output = output.expect("a recording");
         let names = ["energy/kinetic", "energy/hourglass"];
         let mut table = table(&["plate"], &names.map(|name| (name, "J")));
@@ -391,7 +393,7 @@ mod tests {
     #[test]
     fn curves_go_out_in_pieces_whose_number_grows_slowly() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
-        let output = Output::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
+        let output = RecordingOutput::open(&folder.path().join("run.rrd"), Existing::Refuse, "run", None);
         let output = output.expect("a recording");
         let mut table = table(&["plate"], &[("probe/tip", "m")]);
         let mut pieces = 0;

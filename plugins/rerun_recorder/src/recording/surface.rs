@@ -4,13 +4,17 @@ use meshless_engine::record::BodyFrame;
 use re_sdk_types::components::Color;
 
 use super::error::RerunError;
-use super::output::Output;
+use super::output::RecordingOutput;
 #[cfg(feature = "surfaces")]
 use crate::surface::{SurfaceError, SurfaceMesh, surface_of};
 
 /// Logs the surface of a body.
 #[cfg(feature = "surfaces")]
-pub fn show_surface(output: &Output, body: &BodyFrame<'_>, colors: &[Color]) -> Result<(), RerunError> {
+pub fn show_surface(
+    output: &RecordingOutput,
+    body: &BodyFrame<'_>,
+    colors: &[Color],
+) -> Result<(), RerunError> {
     use re_sdk_types::archetypes::Mesh3D;
 
     let rgb = |color: &Color| {
@@ -33,6 +37,6 @@ pub fn show_surface(output: &Output, body: &BodyFrame<'_>, colors: &[Color]) -> 
 
 /// Scenes that ask for surfaces are refused by a program that has none.
 #[cfg(not(feature = "surfaces"))]
-pub fn show_surface(_: &Output, _: &BodyFrame<'_>, _: &[Color]) -> Result<(), RerunError> {
+pub fn show_surface(_: &RecordingOutput, _: &BodyFrame<'_>, _: &[Color]) -> Result<(), RerunError> {
     Ok(())
 }

@@ -4,12 +4,12 @@ use serde::de::{Deserialize, DeserializeSeed, IntoDeserializer, MapAccess, SeqAc
 
 use super::Context;
 use super::error::Error;
-use super::value::{Value, key};
+use super::value::{NodeValue, key};
 use crate::scene::Problem;
-use crate::scene::tree::{Field, Kind, Node};
+use crate::scene::tree::{Node, NodeKind, StructField};
 
-fn value<'a>(node: &'a Node, context: &'a Context<'a>) -> Value<'a> {
-    Value { node, context, unnamed: false }
+fn value<'a>(node: &'a Node, context: &'a Context<'a>) -> NodeValue<'a> {
+    NodeValue { node, context, unnamed: false }
 }
 
 /// The entries of a list or tuple.
@@ -46,13 +46,13 @@ impl<'a> SeqAccess<'a> for Entries<'a, '_> {
 }
 
 /// The fields of a struct.
-pub(super) struct FieldValues<'a, 'i> {
-    pub fields: std::slice::Iter<'i, &'a Field>,
-    pub next: Option<&'a Field>,
+pub(super) struct StructValues<'a, 'i> {
+    pub fields: std::slice::Iter<'i, &'a StructField>,
+    pub next: Option<&'a StructField>,
     pub context: &'a Context<'a>,
 }
 
-impl<'a> MapAccess<'a> for FieldValues<'a, '_> {
+impl<'a> MapAccess<'a> for StructValues<'a, '_> {
     type Error = Error;
 
     fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
@@ -86,7 +86,7 @@ impl<'a> MapEntries<'a> {
     /// The entries, after reporting the keys that are given twice.
     pub fn new(entries: &'a [(Node, Node)], context: &'a Context<'a>) -> Self {
         let text = |node: &'a Node| match &node.kind {
-            Kind::Text { value, .. } => Some(value.as_str()),
+            NodeKind::Text { value, .. } => Some(value.as_str()),
             _ => None,
         };
         for (i, (key, _)) in entries.iter().enumerate() {

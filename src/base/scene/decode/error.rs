@@ -6,7 +6,7 @@ use serde::de::{self, Expected, Unexpected};
 
 use super::Context;
 use crate::scene::names::unknown;
-use crate::scene::tree::{Kind, Node};
+use crate::scene::tree::{Node, NodeKind};
 use crate::scene::{ExpressionError, Problem};
 
 /// An error on its way to the value that it is about.
@@ -67,7 +67,7 @@ impl Error {
 /// All of a value for a message about what it is; of a long one the head only.
 fn whole_or_head(node: &Node) -> std::ops::Range<usize> {
     match node.kind {
-        Kind::Tuple(_) | Kind::Fields(_) => node.span.clone(),
+        NodeKind::Tuple(_) | NodeKind::Fields(_) => node.span.clone(),
         _ => node.head(),
     }
 }
@@ -91,7 +91,7 @@ fn located(node: &Node, message: &str) -> Problem {
         return Problem::at_span(whole_or_head(node), message);
     };
     let span = match (&node.kind, start.parse::<usize>(), end.parse::<usize>()) {
-        (Kind::Text { content: Some(content), .. }, Ok(start), Ok(end)) => content + start..content + end,
+        (NodeKind::Text { content: Some(content), .. }, Ok(start), Ok(end)) => content + start..content + end,
         _ => node.span.clone(),
     };
     let problem = Problem::at_span(span, message);

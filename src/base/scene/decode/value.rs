@@ -4,20 +4,20 @@ use serde::de::value::StrDeserializer;
 use serde::de::{Deserializer, Error as _, IntoDeserializer, Visitor};
 
 use super::Context;
-use super::access::{Entries, FieldValues, ItemParts, MapEntries};
+use super::access::{Entries, ItemParts, MapEntries, StructValues};
 use super::error::{Error, expression_problem};
 use super::variant::Variant;
 use crate::scene::Problem;
 use crate::scene::expression::constant;
 use crate::scene::names::unknown;
-use crate::scene::tree::{Field, Kind, Node};
+use crate::scene::tree::{Node, NodeKind, StructField};
 
 /// The name of the newtype by which an `Item` asks for its text and place instead of its value.
 pub(in crate::scene) const ITEM: &str = "$meshless::Item";
 
 /// A value on its way into a type.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
+pub(super) struct NodeValue<'a> {
     pub node: &'a Node,
     pub context: &'a Context<'a>,
     /// Whether the name before the brackets was used already, as that of a variant.
@@ -27,14 +27,14 @@ pub(super) struct Value<'a> {
 type Outcome<T> = Result<T, Error>;
 
 /// The fields of a struct as they are written.
-struct Fields<'a> {
+struct WrittenFields<'a> {
     /// Those that the type has, each once.
-    good: Vec<&'a Field>,
+    good: Vec<&'a StructField>,
     /// Names that are missing because they are misspelt or their values bad.
     meant: Vec<&'a str>,
 }
 
-impl<'a> Value<'a> {
+impl<'a> NodeValue<'a> {
     fn of(self, node: &'a Node) -> Self {
         Self { node, unnamed: false, ..self }
     }
@@ -70,8 +70,8 @@ impl<'a> Value<'a> {
         known: &'static [&'static str],
         visitor: V,
     ) -> Outcome<V::Value> {
-        let Fields { good, meant } = self.fields(label, known);
-        match visitor.visit_map(FieldValues { fields: good.iter(), next: None, context: self.context }) {
+        let WrittenFields { good, meant } = self.fields(label, known);
+        match visitor.visit_map(StructValues { fields: good.iter(), next: None, context: self.context }) {
             // What is missing because its name is misspelt or its value bad has been reported as that.
             Err(Error::Missing(field)) if meant.contains(&field) => Err(Error::Reported),
             result => self.here(result),
@@ -79,8 +79,8 @@ impl<'a> Value<'a> {
     }
 
     /// The fields that the type has, each once, after reporting the others.
-    fn fields(self, label: &str, known: &'static [&'static str]) -> Fields<'a> {
-        let (mut good, mut meant) = (Vec::<&Field>::new(), Vec::new());
+    fn fields(self, label: &str, known: &'static [&'static str]) -> WrittenFields<'a> {
+        let (mut good, mut meant) = (Vec::<&StructField>::new(), Vec::new());
         for field in self.node.fields() {
             let name = &field.name;
             let at = name.span.clone();
@@ -96,18 +96,18 @@ impl<'a> Value<'a> {
                 good.push(field);
             }
         }
-        Fields { good, meant }
+        WrittenFields { good, meant }
     }
 
     /// The value of an expression that stands where a number is expected; none if the value is no text.
     fn expression(self) -> Outcome<Option<f64>> {
         let symbols = self.context.symbols;
         match &self.node.kind {
-            Kind::Text { value, .. } => constant(value, symbols).map(Some).map_err(|error| {
+            NodeKind::Text { value, .. } => constant(value, symbols).map(Some).map_err(|error| {
                 self.context.report(expression_problem(self.node, &error));
                 Error::Reported
             }),
-            Kind::Bare if self.name().is_some_and(|name| symbols.parameters.contains_key(name)) => {
+            NodeKind::Bare if self.name().is_some_and(|name| symbols.parameters.contains_key(name)) => {
                 let name = self.name().unwrap_or_default();
                 let problem = format!("expected a number or an expression in double quotes, found `{name}`");
                 let problem = Problem::at_span(self.node.head(), problem);
@@ -152,38 +152,38 @@ macro_rules! whole_numbers {
     };
 }
 
-impl<'a> Deserializer<'a> for Value<'a> {
+impl<'a> Deserializer<'a> for NodeValue<'a> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         let result = match &self.node.kind {
-            Kind::Number { value, .. } if !value.is_finite() => {
+            NodeKind::Number { value, .. } if !value.is_finite() => {
                 return self.here(Err(Error::Message("expected a finite number".into())));
             }
-            Kind::Number { integer: Some(integer), value } => {
+            NodeKind::Number { integer: Some(integer), value } => {
                 match (u64::try_from(*integer), i64::try_from(*integer)) {
                     (Ok(integer), _) => visitor.visit_u64(integer),
                     (_, Ok(integer)) => visitor.visit_i64(integer),
                     _ => visitor.visit_f64(*value),
                 }
             }
-            Kind::Number { value, integer: None } => visitor.visit_f64(*value),
-            Kind::Text { value, .. } => visitor.visit_borrowed_str(value),
-            Kind::Character(value) => visitor.visit_char(*value),
-            Kind::Bare if self.node.is_bare("true") => visitor.visit_bool(true),
-            Kind::Bare if self.node.is_bare("false") => visitor.visit_bool(false),
-            Kind::Bare if self.node.is_bare("None") => visitor.visit_none(),
-            Kind::Bare | Kind::Fields(_) | Kind::Tuple(_) if self.name().is_some() => {
+            NodeKind::Number { value, integer: None } => visitor.visit_f64(*value),
+            NodeKind::Text { value, .. } => visitor.visit_borrowed_str(value),
+            NodeKind::Character(value) => visitor.visit_char(*value),
+            NodeKind::Bare if self.node.is_bare("true") => visitor.visit_bool(true),
+            NodeKind::Bare if self.node.is_bare("false") => visitor.visit_bool(false),
+            NodeKind::Bare if self.node.is_bare("None") => visitor.visit_none(),
+            NodeKind::Bare | NodeKind::Fields(_) | NodeKind::Tuple(_) if self.name().is_some() => {
                 visitor.visit_enum(Variant { value: self })
             }
-            Kind::Bare => visitor.visit_unit(),
-            Kind::Fields(fields) => {
+            NodeKind::Bare => visitor.visit_unit(),
+            NodeKind::Fields(fields) => {
                 let fields: Vec<_> = fields.iter().collect();
-                visitor.visit_map(FieldValues { fields: fields.iter(), next: None, context: self.context })
+                visitor.visit_map(StructValues { fields: fields.iter(), next: None, context: self.context })
             }
-            Kind::Tuple(entries) => return self.read_entries(entries, false, visitor),
-            Kind::List(entries) => return self.read_entries(entries, true, visitor),
-            Kind::Map(_) => return self.deserialize_map(visitor),
+            NodeKind::Tuple(entries) => return self.read_entries(entries, false, visitor),
+            NodeKind::List(entries) => return self.read_entries(entries, true, visitor),
+            NodeKind::Map(_) => return self.deserialize_map(visitor),
         };
         self.here(result)
     }
@@ -217,7 +217,7 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     fn deserialize_str<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match (&self.node.kind, self.name()) {
-            (Kind::Bare, Some(name)) => {
+            (NodeKind::Bare, Some(name)) => {
                 let problem = format!("expected a text in double quotes, found `{name}`");
                 self.context
                     .report(Problem::at_span(self.node.head(), problem).help(format!("write `\"{name}\"`")));
@@ -233,8 +233,8 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match (self.name(), &self.node.kind) {
-            (Some("None"), Kind::Bare) => visitor.visit_none(),
-            (Some("Some"), Kind::Tuple(entries)) if entries.len() == 1 => {
+            (Some("None"), NodeKind::Bare) => visitor.visit_none(),
+            (Some("Some"), NodeKind::Tuple(entries)) if entries.len() == 1 => {
                 visitor.visit_some(self.of(&entries[0]))
             }
             _ => visitor.visit_some(self),
@@ -243,16 +243,16 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     fn deserialize_unit<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match &self.node.kind {
-            Kind::Tuple(entries) if entries.is_empty() => visitor.visit_unit(),
-            Kind::Bare if self.unnamed => visitor.visit_unit(),
+            NodeKind::Tuple(entries) if entries.is_empty() => visitor.visit_unit(),
+            NodeKind::Bare if self.unnamed => visitor.visit_unit(),
             _ => self.wrong("`()`"),
         }
     }
 
     fn deserialize_unit_struct<V: Visitor<'a>>(self, name: &'static str, visitor: V) -> Outcome<V::Value> {
         match (&self.node.kind, self.name()) {
-            (Kind::Bare, Some(found)) if found == name => visitor.visit_unit(),
-            (Kind::Bare, Some(_)) => self.wrong(format!("`{name}`")),
+            (NodeKind::Bare, Some(found)) if found == name => visitor.visit_unit(),
+            (NodeKind::Bare, Some(_)) => self.wrong(format!("`{name}`")),
             _ => {
                 self.check_name(name);
                 self.deserialize_unit(visitor)
@@ -275,7 +275,7 @@ impl<'a> Deserializer<'a> for Value<'a> {
             };
         }
         match &self.node.kind {
-            Kind::Tuple(entries) if self.name() == Some(name) && entries.len() == 1 => {
+            NodeKind::Tuple(entries) if self.name() == Some(name) && entries.len() == 1 => {
                 visitor.visit_newtype_struct(self.of(&entries[0]))
             }
             _ => visitor.visit_newtype_struct(self),
@@ -284,14 +284,14 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     fn deserialize_seq<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match &self.node.kind {
-            Kind::List(entries) => self.read_entries(entries, true, visitor),
+            NodeKind::List(entries) => self.read_entries(entries, true, visitor),
             _ => self.wrong("a list `[...]`"),
         }
     }
 
     fn deserialize_tuple<V: Visitor<'a>>(self, _: usize, visitor: V) -> Outcome<V::Value> {
         match &self.node.kind {
-            Kind::Tuple(entries) if self.name().is_none() => self.read_entries(entries, false, visitor),
+            NodeKind::Tuple(entries) if self.name().is_none() => self.read_entries(entries, false, visitor),
             _ => self.here(Err(Error::invalid_type(serde::de::Unexpected::Unit, &visitor))),
         }
     }
@@ -308,11 +308,11 @@ impl<'a> Deserializer<'a> for Value<'a> {
 
     fn deserialize_map<V: Visitor<'a>>(self, visitor: V) -> Outcome<V::Value> {
         match &self.node.kind {
-            Kind::Map(entries) => {
+            NodeKind::Map(entries) => {
                 let result = visitor.visit_map(MapEntries::new(entries, self.context));
                 self.here(result)
             }
-            Kind::Fields(_) if self.name().is_none() => self.deserialize_any(visitor),
+            NodeKind::Fields(_) if self.name().is_none() => self.deserialize_any(visitor),
             _ => self.wrong("a map `{...}`"),
         }
     }
@@ -324,12 +324,12 @@ impl<'a> Deserializer<'a> for Value<'a> {
         visitor: V,
     ) -> Outcome<V::Value> {
         match &self.node.kind {
-            Kind::Bare if self.unnamed => self.read_fields(name, fields, visitor),
-            Kind::Fields(_) => {
+            NodeKind::Bare if self.unnamed => self.read_fields(name, fields, visitor),
+            NodeKind::Fields(_) => {
                 self.check_name(name);
                 self.read_fields(name, fields, visitor)
             }
-            Kind::Tuple(entries) if entries.is_empty() => {
+            NodeKind::Tuple(entries) if entries.is_empty() => {
                 self.check_name(name);
                 self.read_fields(name, fields, visitor)
             }

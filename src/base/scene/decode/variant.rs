@@ -4,12 +4,12 @@
 use serde::de::{DeserializeSeed, Deserializer, EnumAccess, VariantAccess, Visitor};
 
 use super::error::Error;
-use super::value::{Value, key};
-use crate::scene::tree::Kind;
+use super::value::{NodeValue, key};
+use crate::scene::tree::NodeKind;
 
 /// A named value as a variant.
 pub(super) struct Variant<'a> {
-    pub value: Value<'a>,
+    pub value: NodeValue<'a>,
 }
 
 impl<'a> EnumAccess<'a> for Variant<'a> {
@@ -20,7 +20,7 @@ impl<'a> EnumAccess<'a> for Variant<'a> {
         let name = self.name();
         let variant =
             seed.deserialize(key(name)).map_err(|error| error.report(self.value.node, self.value.context))?;
-        Ok((variant, Self { value: Value { unnamed: true, ..self.value } }))
+        Ok((variant, Self { value: NodeValue { unnamed: true, ..self.value } }))
     }
 }
 
@@ -39,8 +39,8 @@ impl<'a> VariantAccess<'a> for Variant<'a> {
 
     fn unit_variant(self) -> Result<(), Error> {
         match &self.value.node.kind {
-            Kind::Bare => Ok(()),
-            Kind::Tuple(entries) if entries.is_empty() => Ok(()),
+            NodeKind::Bare => Ok(()),
+            NodeKind::Tuple(entries) if entries.is_empty() => Ok(()),
             _ => {
                 let name = self.name();
                 self.wrong(format!("`{name}`, which has no parameters"))
@@ -50,8 +50,8 @@ impl<'a> VariantAccess<'a> for Variant<'a> {
 
     fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Error> {
         let value = match &self.value.node.kind {
-            Kind::Tuple(entries) if entries.len() == 1 => {
-                Value { node: &entries[0], unnamed: false, ..self.value }
+            NodeKind::Tuple(entries) if entries.len() == 1 => {
+                NodeValue { node: &entries[0], unnamed: false, ..self.value }
             }
             _ => self.value,
         };
@@ -68,7 +68,7 @@ impl<'a> VariantAccess<'a> for Variant<'a> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         match &self.value.node.kind {
-            Kind::Tuple(entries) if !entries.is_empty() => {
+            NodeKind::Tuple(entries) if !entries.is_empty() => {
                 let name = self.name();
                 self.wrong(format!("`{name}(field: value, ...)`"))
             }

@@ -21,7 +21,7 @@ fn values_are_replaced() {
     );
     assert_eq!(with(&source, "title", "A \"new\" one").title, "A \"new\" one");
     assert_eq!(with(&source, "title", "\"quoted\"").title, "quoted");
-    assert_eq!(with(&source, "time.step", "Fixed(1e-6)").time.step, Step::Fixed(1e-6));
+    assert_eq!(with(&source, "time.step", "Fixed(1e-6)").time.step, StepRule::Fixed(1e-6));
     assert_eq!(with(&source, "gravity[1]", "-1").gravity.0.y, -1.0);
     assert_eq!(with(&source, "probes.tip.quantity", "Velocity").probes[0].quantity, Quantity::Velocity);
     let young = with(&source, "materials.rubber.young", "1e6");
@@ -49,7 +49,7 @@ fn fields_are_added() {
     );
     assert_eq!(with(&source, "materials.lead", "Neo(density: 3)").materials.len(), 4);
     assert_eq!(with(&smallest_with(""), "record.every", "0.25").record.every, Some(0.25));
-    assert_eq!(with(&smallest_with(""), "time.step", "Fixed(0.1)").time.step, Step::Fixed(0.1));
+    assert_eq!(with(&smallest_with(""), "time.step", "Fixed(0.1)").time.step, StepRule::Fixed(0.1));
     assert_eq!(with(&smallest_with(""), "title", "\"t\"").title, "t");
 }
 

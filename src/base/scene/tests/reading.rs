@@ -27,7 +27,7 @@ fn every_part_is_read() {
     assert_eq!(scene.contacts[0].between, ("plate".into(), "tank".into()));
     assert_eq!(
         scene.time,
-        Time { end: 1.0, step: Step::Adaptive { factor: 0.9 }, sub_steps: 200, stop_when: vec![] }
+        Time { end: 1.0, step: StepRule::Adaptive { factor: 0.9 }, sub_steps: 200, stop_when: vec![] }
     );
     let on = scene.probes[1].on.as_ref().unwrap();
     assert_eq!((on.body.as_deref(), on.face), (Some("tool"), Some(Face::MinY)));
@@ -40,7 +40,7 @@ fn every_part_is_read() {
 fn defaults() {
     let scene = read(smallest_with(""));
     assert_eq!(scene.gravity, Vec3::default());
-    assert_eq!(scene.time.step, Step::Adaptive { factor: 1.0 });
+    assert_eq!(scene.time.step, StepRule::Adaptive { factor: 1.0 });
     assert_eq!((scene.record.every, scene.record_interval()), (None, 0.01));
     assert!(scene.domain.is_none() && scene.plugins.is_empty() && scene.probes.is_empty());
     let touching = read(smallest_with("contacts: [Contact(between: (\"a\", \"a\"))],"));
@@ -49,9 +49,9 @@ fn defaults() {
         let text = smallest_with("").text.replace("end: 1", &format!("end: 1, step: {text}"));
         read(Source::new("step.ron", text)).time.step
     };
-    assert_eq!(step("Fixed(1e-6)"), Step::Fixed(1e-6));
-    assert_eq!(step("Adaptive"), Step::Adaptive { factor: 1.0 });
-    assert_eq!(step("Adaptive()"), Step::Adaptive { factor: 1.0 });
+    assert_eq!(step("Fixed(1e-6)"), StepRule::Fixed(1e-6));
+    assert_eq!(step("Adaptive"), StepRule::Adaptive { factor: 1.0 });
+    assert_eq!(step("Adaptive()"), StepRule::Adaptive { factor: 1.0 });
 }
 
 #[test]

@@ -17,7 +17,7 @@ const HALVINGS: usize = 40;
 
 /// Which side of a line is inside.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kept {
+enum InnerSide {
     Left,
     Right,
     No,
@@ -29,11 +29,11 @@ pub(super) fn boundary(parts: &Facets, region: &dyn Region, length: f64) -> Opti
     for facet in 0..parts.corners.len() {
         let [a, b, _] = parts.ends(facet);
         for (line, kept) in pieces([a, b], region, length) {
-            let line = if kept == Kept::Left { line } else { [line[1], line[0]] };
+            let line = if kept == InnerSide::Left { line } else { [line[1], line[0]] };
             let middle = |line: &[DVec3; 2]| 0.5 * (line[0] + line[1]);
             let is_double =
                 |other: &[DVec3; 2]| middle(other).distance(middle(&line)) < 0.5 * SHORTEST * length;
-            if kept != Kept::No
+            if kept != InnerSide::No
                 && line[0].distance(line[1]) > SHORTEST * length
                 && !lines.iter().any(is_double)
             {
@@ -45,14 +45,14 @@ pub(super) fn boundary(parts: &Facets, region: &dyn Region, length: f64) -> Opti
 }
 
 /// The pieces of a segment, which is cut once at most.
-fn pieces([a, b]: [DVec3; 2], region: &dyn Region, length: f64) -> Vec<([DVec3; 2], Kept)> {
+fn pieces([a, b]: [DVec3; 2], region: &dyn Region, length: f64) -> Vec<([DVec3; 2], InnerSide)> {
     let normal = directed_area(2, &[a, b, b]).normalize_or_zero() * (BESIDE * length);
     let kept = |s: f64| {
         let x = a.lerp(b, s);
         match (region.distance(x - normal) < 0.0, region.distance(x + normal) < 0.0) {
-            (true, false) => Kept::Left,
-            (false, true) => Kept::Right,
-            _ => Kept::No,
+            (true, false) => InnerSide::Left,
+            (false, true) => InnerSide::Right,
+            _ => InnerSide::No,
         }
     };
     let (mut low, mut high) = (1e-6, 1.0 - 1e-6);

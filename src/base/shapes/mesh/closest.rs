@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::solid::MeshSolid;
 use super::topology::Triangles;
-use super::triangle::{Part, closest};
+use super::triangle::{TrianglePart, closest};
 use crate::shapes::moments::Moments;
 use crate::shapes::region::Region;
 use crate::shapes::surface::{Surface, SurfacePoint};
@@ -77,7 +77,7 @@ pub(super) fn sharp_edges(
 impl MeshSolid {
     /// The nearest point, its normal and the signed distance to it.
     pub(super) fn nearest(&self, point: DVec3) -> SurfacePoint {
-        let mut best = (f64::INFINITY, 0, point, Part::Face);
+        let mut best = (f64::INFINITY, 0, point, TrianglePart::Face);
         self.tree.nearest(point, |triangle| {
             let (foot, part) = closest(point, self.triangles.at(triangle as usize));
             let square = point.distance_squared(foot);
@@ -89,12 +89,12 @@ impl MeshSolid {
         let (_, triangle, foot, part) = best;
         let arm = point - foot;
         let normal = match part {
-            Part::Face => {
+            TrianglePart::Face => {
                 let normal = self.normals.faces[triangle];
                 return SurfacePoint { point: foot, normal, signed_distance: arm.dot(normal) };
             }
-            Part::Edge(k) => self.normals.edges[triangle][k],
-            Part::Corner(k) => self.normals.corners[self.triangles.corners[triangle][k] as usize],
+            TrianglePart::Edge(k) => self.normals.edges[triangle][k],
+            TrianglePart::Corner(k) => self.normals.corners[self.triangles.corners[triangle][k] as usize],
         };
         let sign = if arm.dot(normal) < 0.0 { -1.0 } else { 1.0 };
         // So near to an edge that the direction to it would be round-off, the mean normal is as good.

@@ -8,7 +8,7 @@ use crate::shapes::region::Aabb;
 const LEAF: usize = 4;
 
 /// A box that holds its two halves, or a few triangles.
-struct Node {
+struct BoxNode {
     bounds: Aabb,
     /// Of a leaf: its first triangle in `order`; else the second child, the first being the next node.
     start: u32,
@@ -18,7 +18,7 @@ struct Node {
 
 /// Boxes about boxes, halved at the middle triangle of the longest side: the depth is the logarithm of the number of triangles.
 pub(super) struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
     /// Numbers of triangles, leaf after leaf.
     order: Vec<u32>,
 }
@@ -36,7 +36,7 @@ impl Tree {
         let first = of(&self.order[start]);
         let bounds = self.order[start..end].iter().fold(first, |all, n| all.union(&of(n)));
         let node = self.nodes.len();
-        self.nodes.push(Node { bounds, start: start as u32, count: (end - start) as u32 });
+        self.nodes.push(BoxNode { bounds, start: start as u32, count: (end - start) as u32 });
         if end - start <= LEAF {
             return;
         }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// The part of a triangle on which a nearest point lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum TrianglePart {
     Face,
     /// The edge from corner k to the next.
     Edge(usize),
@@ -14,40 +14,40 @@ pub(super) enum Part {
 /// The point of triangle `t` that is nearest to `p`, and where on the triangle it is.
 ///
 /// Ericson, Real-Time Collision Detection (2005), section 5.1.5; triangles without an area are their edges.
-pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, Part) {
+pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, TrianglePart) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, Part::Corner(0));
+        return (a, TrianglePart::Corner(0));
     }
     let bp = p - b;
     let (d3, d4) = (ab.dot(bp), ac.dot(bp));
     if d3 >= 0.0 && d4 <= d3 {
-        return (b, Part::Corner(1));
+        return (b, TrianglePart::Corner(1));
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-        return (a + d1 / (d1 - d3) * ab, Part::Edge(0));
+        return (a + d1 / (d1 - d3) * ab, TrianglePart::Edge(0));
     }
     let cp = p - c;
     let (d5, d6) = (ab.dot(cp), ac.dot(cp));
     if d6 >= 0.0 && d5 <= d6 {
-        return (c, Part::Corner(2));
+        return (c, TrianglePart::Corner(2));
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-        return (a + d2 / (d2 - d6) * ac, Part::Edge(2));
+        return (a + d2 / (d2 - d6) * ac, TrianglePart::Edge(2));
     }
     let va = d3 * d6 - d5 * d4;
     let (to_c, to_b) = (d4 - d3, d5 - d6);
     if va <= 0.0 && to_c >= 0.0 && to_b >= 0.0 && to_c + to_b > 0.0 {
-        return (b + to_c / (to_c + to_b) * (c - b), Part::Edge(1));
+        return (b + to_c / (to_c + to_b) * (c - b), TrianglePart::Edge(1));
     }
     let sum = va + vb + vc;
     if sum <= 0.0 {
-        return (a, Part::Corner(0));
+        return (a, TrianglePart::Corner(0));
     }
-    (a + vb / sum * ab + vc / sum * ac, Part::Face)
+    (a + vb / sum * ab + vc / sum * ac, TrianglePart::Face)
 }
 
 /// Whether the segment from `p` to `q` goes through triangle `t` from one side to the other. An end on the triangle does not count.

@@ -139,7 +139,7 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         type Rows<'a, T, P> =
             (&'a [(PairKey, T)], &'a mut [(PairKey, History)], &'a mut [P], &'a mut [ContactEnergy]);
         for_each_heavy_block(rows, &mut Vec::new(), &|_, (met, new, pushes, energies): Rows<'_, T, P>| {
-            let mut old = Passing::new(old, met[0].0);
+            let mut old = PassedList::new(old, met[0].0);
             for ((((key, met), new), push), energy) in met.iter().zip(new).zip(pushes).zip(energies) {
                 let before = old.at(*key).map_or(History::default(), |entry| entry.1);
                 let (history, pushed) = each(*key, met, &before, energy);
@@ -152,7 +152,7 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         let rows = (old, &mut energies[..]);
         type Ended<'a> = (&'a [(PairKey, History)], &'a mut [ContactEnergy]);
         for_each_heavy_block(rows, &mut Vec::new(), &|_, (old, energies): Ended<'_>| {
-            let mut met = Passing::new(met, old[0].0);
+            let mut met = PassedList::new(met, old[0].0);
             for ((key, history), energy) in old.iter().zip(energies) {
                 if met.at(*key).is_none() {
                     end(*key, history, energy);
@@ -166,9 +166,9 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
 }
 
 /// A list, ascending by pair, that is passed through in its order.
-struct Passing<'a, V>(&'a [(PairKey, V)]);
+struct PassedList<'a, V>(&'a [(PairKey, V)]);
 
-impl<'a, V> Passing<'a, V> {
+impl<'a, V> PassedList<'a, V> {
     /// From that pair on.
     fn new(list: &'a [(PairKey, V)], from: PairKey) -> Self {
         Self(&list[list.partition_point(|entry| entry.0 < from)..])

@@ -66,20 +66,20 @@ pub(in crate::contact) fn keep<T: Copy + Default + Send + Sync, E: Sync>(
     kept: &mut Vec<T>,
 ) {
     kept.resize(count, T::default());
-    let rows = Kept { slots, found, kept };
-    for_each_block(rows, &mut Vec::new(), &|_, Kept { slots, kept, .. }: Kept<'_, T, E>| {
+    let rows = KeptBlocks { slots, found, kept };
+    for_each_block(rows, &mut Vec::new(), &|_, KeptBlocks { slots, kept, .. }: KeptBlocks<'_, T, E>| {
         kept.copy_from_slice(&slots[..kept.len()]);
     });
 }
 
 /// Blocks of slots, and where what was found in them goes.
-struct Kept<'a, T, E> {
+struct KeptBlocks<'a, T, E> {
     slots: &'a [T],
     found: &'a [Found<E>],
     kept: &'a mut [T],
 }
 
-impl<T: Send + Sync, E: Sync> Split for Kept<'_, T, E> {
+impl<T: Send + Sync, E: Sync> Split for KeptBlocks<'_, T, E> {
     fn rows(&self) -> usize {
         self.slots.len()
     }

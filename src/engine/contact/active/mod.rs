@@ -11,4 +11,4 @@ mod nodes;
 pub(super) use contacts::ActiveContacts;
 pub(super) use filter::Filter;
 pub(super) use least::Least;
-pub(super) use nodes::{ContactNodes, End, Pull};
+pub(super) use nodes::{ContactEnd, ContactNodes, NodeLoad};

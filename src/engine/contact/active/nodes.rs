@@ -16,14 +16,14 @@ const NONE: u32 = u32::MAX;
 
 /// Which particle of a pair.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(in crate::contact) enum End {
+pub(in crate::contact) enum ContactEnd {
     First,
     Second,
 }
 
 /// What a contact does to one of its particles.
 #[derive(Clone, Copy, Default)]
-pub(in crate::contact) struct Pull {
+pub(in crate::contact) struct NodeLoad {
     /// Force on the particle, N, and on which point beside it, in the reference configuration, m.
     pub force: DVec3,
     pub arm: DVec3,
@@ -89,13 +89,13 @@ impl ContactNodes {
     }
 
     /// Takes in the particles of a new list of candidates, which stand at these ends.
-    pub fn renew(&mut self, candidates: &[PairKey], ends: &[End]) {
+    pub fn renew(&mut self, candidates: &[PairKey], ends: &[ContactEnd]) {
         if self.ends.capacity() < ends.len() * candidates.len() {
             self.reserve(2 * candidates.len());
         }
         let Self { numbers, nodes, starts, ends: sorted, .. } = self;
         nodes.drain(..).for_each(|node| numbers[node as usize] = NONE);
-        let at = |key: &PairKey, end: End| if end == End::First { key.0 } else { key.1 };
+        let at = |key: &PairKey, end: ContactEnd| if end == ContactEnd::First { key.0 } else { key.1 };
         for node in candidates.iter().flat_map(|key| ends.iter().map(move |&end| at(key, end))) {
             let count = &mut numbers[node as usize];
             if *count == NONE {
@@ -116,7 +116,7 @@ impl ContactNodes {
             for &end in ends {
                 // The start of each particle moves to its end, where the next one starts.
                 let place = &mut starts[numbers[at(key, end) as usize] as usize];
-                sorted[*place as usize] = 2 * candidate + u32::from(end == End::Second);
+                sorted[*place as usize] = 2 * candidate + u32::from(end == ContactEnd::Second);
                 *place += 1;
             }
         }
@@ -154,7 +154,7 @@ impl ContactNodes {
     }
 
     /// Adds up what the contacts do to every particle; `pull` says what one does to the particle at that end.
-    pub fn add_up(&mut self, contacts: &Numbers, pull: &(impl Fn(usize, End) -> Pull + Sync)) {
+    pub fn add_up(&mut self, contacts: &Numbers, pull: &(impl Fn(usize, ContactEnd) -> NodeLoad + Sync)) {
         let count = self.nodes.len();
         let (mut forces, mut couples) = (std::mem::take(&mut self.forces), std::mem::take(&mut self.couples));
         let (mut stiffness, mut heat) = (std::mem::take(&mut self.stiffness), std::mem::take(&mut self.heat));
@@ -170,8 +170,9 @@ impl ContactNodes {
                 let (mut force, mut couple, mut stiff, mut heat) = (DVec3::ZERO, DMat3::ZERO, 0.0, 0.0);
                 for end in all.ends(first + k) {
                     let Some(number) = contacts.of(end / 2) else { continue };
-                    let pull = pull(number, if end % 2 == 0 { End::First } else { End::Second });
-                    let Pull { force: push, arm, .. } = pull;
+                    let pull =
+                        pull(number, if end % 2 == 0 { ContactEnd::First } else { ContactEnd::Second });
+                    let NodeLoad { force: push, arm, .. } = pull;
                     force += push + pull.beside;
                     couple += DMat3::from_cols(push * arm.x, push * arm.y, push * arm.z);
                     stiff += pull.stiffness;
@@ -225,12 +226,12 @@ mod tests {
     fn a_particle_knows_its_candidates_at_either_end() {
         let candidates = [(1, 4), (1, 9), (3, 4), (4, 4), (9, 1)];
         let mut contact_nodes = ContactNodes::new(10);
-        contact_nodes.renew(&[(0, 8), (8, 2)], &[End::First]);
+        contact_nodes.renew(&[(0, 8), (8, 2)], &[ContactEnd::First]);
         for (ends, expected) in [
-            (&[End::First][..], vec![(1, vec![0, 2]), (3, vec![4]), (4, vec![6]), (9, vec![8])]),
-            (&[End::Second], vec![(1, vec![9]), (4, vec![1, 5, 7]), (9, vec![3])]),
+            (&[ContactEnd::First][..], vec![(1, vec![0, 2]), (3, vec![4]), (4, vec![6]), (9, vec![8])]),
+            (&[ContactEnd::Second], vec![(1, vec![9]), (4, vec![1, 5, 7]), (9, vec![3])]),
             (
-                &[End::First, End::Second],
+                &[ContactEnd::First, ContactEnd::Second],
                 vec![(1, vec![0, 2, 9]), (3, vec![4]), (4, vec![1, 5, 6, 7]), (9, vec![3, 8])],
             ),
         ] {

@@ -18,7 +18,7 @@ use crate::world::{
 
 /// What the particles of a body bring into contact.
 #[derive(Clone)]
-pub(in crate::contact) struct Particles {
+pub(in crate::contact) struct MemberParticles {
     pub body: BodyId,
     /// Radius of every particle in the reference configuration, m: half the side of the square or cube of its volume.
     pub radius: Vec<f64>,
@@ -29,7 +29,7 @@ pub(in crate::contact) struct Particles {
     pub on_a_side: usize,
 }
 
-impl Particles {
+impl MemberParticles {
     /// Those of a body.
     pub fn of(body: &BodyPlan, dimension: Dimension) -> Self {
         let root = |volume: f64| if dimension == Dimension::Two { volume.sqrt() } else { volume.cbrt() };
@@ -68,7 +68,7 @@ fn on_a_side(places: impl Iterator<Item = DVec3>, radius: &[f64], dimension: Dim
 
 /// The columns of the particles of a body in this step.
 pub(in crate::contact) struct MemberColumns<'a> {
-    particles: &'a Particles,
+    particles: &'a MemberParticles,
     first_row: usize,
     position: ArchetypeColumn<'a, Position>,
     velocity: ArchetypeColumn<'a, Velocity>,
@@ -83,7 +83,7 @@ pub(in crate::contact) struct MemberColumns<'a> {
 impl<'a> MemberColumns<'a> {
     /// Those of a body.
     pub fn new(
-        particles: &'a Particles,
+        particles: &'a MemberParticles,
         world: &'a World,
         resources: &'a Resources,
     ) -> Result<Self, MissingColumn> {

@@ -14,8 +14,8 @@ mod sides;
 
 pub use error::CONTACT;
 pub(super) use error::failed;
-pub(super) use members::{MemberColumns, Members, Particles};
+pub(super) use members::{MemberColumns, MemberParticles, Members};
 pub(super) use motion::MotionBounds;
-pub(super) use node_view::{NodeMotion, NodeView, Turn};
+pub(super) use node_view::{NodeMotion, NodeTurn, NodeView};
 pub(super) use shape::{Nearness, of_pair};
-pub(super) use sides::{Nodes, Sides};
+pub(super) use sides::{ContactSides, SideNodes};

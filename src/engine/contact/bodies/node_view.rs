@@ -10,7 +10,7 @@ use crate::solids::LocalMotion;
 
 /// Which of the two contacts of a pair of rigid bodies, of the nodes of each with the surface of the other, it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::contact) enum Turn {
+pub(in crate::contact) enum NodeTurn {
     /// There is no other.
     Alone,
     First,
@@ -130,14 +130,14 @@ impl NodeView<'_> {
 
     /// Whether contact at a point of a tool is left to the nodes of that: its round outline touches with circles of its own. Those of a ball lie in every plane, and go before the rims of a cylinder; of two alike the
     /// first contact keeps it.
-    pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: Turn) -> bool {
+    pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: NodeTurn) -> bool {
         let Self::Rigid(body) = self else { return false };
-        if turn == Turn::Alone || !tool.nodes.is_round(point) {
+        if turn == NodeTurn::Alone || !tool.nodes.is_round(point) {
             return false;
         }
         let node = &body.nodes.list()[i];
         match node.round {
-            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => turn == Turn::Second,
+            Round::Rim(_) if body.nodes.is_ball() == tool.nodes.is_ball() => turn == NodeTurn::Second,
             Round::Rim(_) => tool.nodes.is_ball(),
             // The corner of a body may come between two rims.
             Round::Ball(_) | Round::Point => node.is_of_face() || tool.nodes.is_ball(),

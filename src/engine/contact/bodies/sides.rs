@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::error::failed;
-use super::members::{MemberColumns, Particles};
-use super::node_view::{NodeView, Turn};
+use super::members::{MemberColumns, MemberParticles};
+use super::node_view::{NodeTurn, NodeView};
 use super::shape::Nearness;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
@@ -13,16 +13,16 @@ use crate::world::{BodyId, World};
 
 /// Where the nodes are.
 #[derive(Clone)]
-pub(in crate::contact) enum Nodes {
+pub(in crate::contact) enum SideNodes {
     /// Particles.
-    Particles(Particles),
+    Particles(MemberParticles),
     /// The points of a rigid body.
     Rigid,
 }
 
-impl Nodes {
+impl SideNodes {
     /// The particles, if they are.
-    pub fn particles(&self) -> Option<&Particles> {
+    pub fn particles(&self) -> Option<&MemberParticles> {
         match self {
             Self::Particles(particles) => Some(particles),
             Self::Rigid => None,
@@ -32,14 +32,14 @@ impl Nodes {
 
 /// The nodes of one body and the surface of another.
 #[derive(Clone)]
-pub(in crate::contact) struct Sides {
+pub(in crate::contact) struct ContactSides {
     /// Body with the nodes.
     pub first: BodyId,
-    pub nodes: Nodes,
+    pub nodes: SideNodes,
     /// Rigid body with the surface.
     pub second: BodyId,
     /// Which of the contacts of a pair of rigid bodies it is.
-    pub turn: Turn,
+    pub turn: NodeTurn,
     /// Periodic axes: the image of a node that is nearest to the centre of the surface's body touches it.
     pub periodic: Periodic,
 }
@@ -48,7 +48,7 @@ pub(in crate::contact) struct Sides {
 const RADIUS_SHARE: f64 = 0.5;
 const SPACING_SHARE: f64 = 0.05;
 
-impl Sides {
+impl ContactSides {
     /// Calls `f` with the nodes and the body with the surface.
     pub fn with<T>(
         &self,
@@ -59,8 +59,8 @@ impl Sides {
     ) -> Result<T, StepError> {
         let tool = find(bodies, self.second)?;
         Ok(match &self.nodes {
-            Nodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
-            Nodes::Particles(particles) => {
+            SideNodes::Rigid => f(&NodeView::Rigid(find(bodies, self.first)?), tool),
+            SideNodes::Particles(particles) => {
                 let columns = MemberColumns::new(particles, world, resources)?;
                 f(&NodeView::Particles(columns.members()), tool)
             }

@@ -45,31 +45,31 @@ impl ContactLaw for Penalty {
         let hardening = self.hardening;
         if let Some(stiffness) = self.stiffness {
             ParameterError::require_positive("stiffness", stiffness)?;
-            return Ok(Box::new(Hardening { constant: stiffness, per_length: 0.0, hardening }));
+            return Ok(Box::new(OverlapHardening { constant: stiffness, per_length: 0.0, hardening }));
         }
         let stiffness = if pair.surface == ContactSurface::Skin { OF_SURFACES } else { OF_PARTICLES };
         let modulus = stiffness * self.factor * pair.modulus_or("stiffness")?;
         Ok(Box::new(match pair.dimension {
-            Dimension::Two => Hardening { constant: modulus, per_length: 0.0, hardening },
-            Dimension::Three => Hardening { constant: 0.0, per_length: modulus, hardening },
+            Dimension::Two => OverlapHardening { constant: modulus, per_length: 0.0, hardening },
+            Dimension::Three => OverlapHardening { constant: 0.0, per_length: modulus, hardening },
         }))
     }
 }
 
 /// k = constant + per_length l.
-struct Hardening {
+struct OverlapHardening {
     constant: f64,
     per_length: f64,
     hardening: f64,
 }
 
-impl Hardening {
+impl OverlapHardening {
     fn stiffness(&self, touch: &Touch) -> f64 {
         self.constant + self.per_length * touch.length
     }
 }
 
-impl NormalForce for Hardening {
+impl NormalForce for OverlapHardening {
     fn at(&self, touch: &Touch) -> Spring {
         let (k, d) = (self.stiffness(touch), touch.overlap);
         let harder = self.hardening * (d / touch.depth).powi(2);

@@ -1,9 +1,9 @@
 //! Contact between particles: discs or spheres of half a spacing, of two bodies or of one with itself.
 
-use super::pairs::{PairPush, Pairs};
+use super::pairs::{ContactPairs, PairPush};
 use super::search::{Crowd, Search};
-use crate::contact::active::{ActiveContacts, ContactNodes, End, Least};
-use crate::contact::bodies::{MemberColumns, MotionBounds, Nearness, Particles, failed};
+use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, Least};
+use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Nearness, failed};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Interaction, PairKey};
 use crate::neighbors::Periodic;
@@ -22,8 +22,8 @@ const CANDIDATES: usize = 12;
 /// Contact between the particles of two bodies.
 pub(in crate::contact) struct ParticleContact {
     interaction: Interaction,
-    pub first: Particles,
-    pub second: Particles,
+    pub first: MemberParticles,
+    pub second: MemberParticles,
     /// The image of the second body that the first one touches.
     mirror: Map,
     periodic: Periodic,
@@ -37,7 +37,7 @@ impl ParticleContact {
     /// Contact between a body and an image of another, or of itself.
     pub fn new(
         interaction: Interaction,
-        [first, second]: [Particles; 2],
+        [first, second]: [MemberParticles; 2],
         mirror: Map,
         periodic: Periodic,
     ) -> Self {
@@ -94,10 +94,11 @@ impl ParticleContact {
             self.find(step)?;
             let pairs = self.search.pairs();
             let of_itself = self.first.body == self.second.body;
-            let ends = if of_itself { &[End::First, End::Second][..] } else { &[End::First] };
+            let ends =
+                if of_itself { &[ContactEnd::First, ContactEnd::Second][..] } else { &[ContactEnd::First] };
             self.contact_nodes[0].renew(pairs, ends);
             if !of_itself {
-                self.contact_nodes[1].renew(pairs, &[End::Second]);
+                self.contact_nodes[1].renew(pairs, &[ContactEnd::Second]);
             }
         }
         let (energies, least) = self.evaluate(step, stretch)?;
@@ -112,7 +113,7 @@ impl ParticleContact {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;
         let second = MemberColumns::new(&self.second, step.world, step.resources)?;
         let of_itself = self.first.body == self.second.body;
-        let pairs = Pairs {
+        let pairs = ContactPairs {
             interaction: &self.interaction,
             first: first.members(),
             second: second.members(),
@@ -134,7 +135,7 @@ impl ParticleContact {
             |key, history, energies| pairs.end(key, history, energies),
         );
         let pushes = contacts.pushes();
-        let pull = |number: usize, end: End| pairs.pull(&pushes[number], end);
+        let pull = |number: usize, end: ContactEnd| pairs.pull(&pushes[number], end);
         contact_nodes.iter_mut().for_each(|nodes| nodes.add_up(contacts.numbers(), &pull));
         Ok((energies, least.0.min(self.first.least() + self.second.least())))
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::contact::active::{ContactNodes, End, Least, Pull};
+use crate::contact::active::{ContactEnd, ContactNodes, Least, NodeLoad};
 use crate::contact::bodies::{Members, Nearness, of_pair};
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
@@ -22,7 +22,7 @@ pub(in crate::contact) struct PairPush {
 }
 
 /// The particles of both sides in a step, and how they act on each other.
-pub(super) struct Pairs<'a> {
+pub(super) struct ContactPairs<'a> {
     pub interaction: &'a Interaction,
     pub first: Members<'a>,
     pub second: Members<'a>,
@@ -37,7 +37,7 @@ pub(super) struct Pairs<'a> {
     pub dt: f64,
 }
 
-impl Pairs<'_> {
+impl ContactPairs<'_> {
     /// How near two particles are that touch. Takes in the distance of those that are near and just touch, m.
     #[inline(always)]
     pub fn touching(&self, key: PairKey, least: &mut Least) -> Option<Nearness> {
@@ -132,14 +132,14 @@ impl Pairs<'_> {
 
     /// What a pair does to its particle at that end.
     #[inline(always)]
-    pub fn pull(&self, push: &PairPush, end: End) -> Pull {
+    pub fn pull(&self, push: &PairPush, end: ContactEnd) -> NodeLoad {
         let PairPush { arms, force, stiffness, heat } = *push;
         let (force, arm, side) = match end {
-            End::First => (force, arms[0], 0),
-            End::Second => (-self.mirror.vector(force), self.mirror.vector(arms[1]), 1),
+            ContactEnd::First => (force, arms[0], 0),
+            ContactEnd::Second => (-self.mirror.vector(force), self.mirror.vector(arms[1]), 1),
         };
         let (stiffness, heat) = (stiffness[side], self.interaction.heat[side] * heat);
-        Pull { force, arm, stiffness, beside: DVec3::ZERO, heat }
+        NodeLoad { force, arm, stiffness, beside: DVec3::ZERO, heat }
     }
 
     /// From the first particle to the second, m.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::contact::active::Filter;
 use crate::contact::response::PairKey;
-use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii};
 use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::shapes::Aabb;
 use crate::symmetry::Map;
@@ -37,21 +37,21 @@ pub(super) struct Search {
     travelled: f64,
     /// How far particles were stretched at most when the list was made.
     stretch: f64,
-    regions: [Region; 2],
+    regions: [NearRegion; 2],
     search: NeighborSearch,
     list: NeighborList,
     pairs: Vec<PairKey>,
 }
 
 /// The particles of a body that are near the other one.
-struct Region {
+struct NearRegion {
     filter: Filter<u32, ()>,
     numbers: Vec<u32>,
     position: Vec<DVec3>,
     reach: Vec<f64>,
 }
 
-impl Region {
+impl NearRegion {
     /// With room for that many particles.
     fn of(particles: usize) -> Self {
         let (numbers, position) = (Vec::with_capacity(particles), Vec::with_capacity(particles));
@@ -79,7 +79,7 @@ impl Region {
     }
 
     fn cloud(&self) -> Cloud<'_> {
-        Cloud { positions: &self.position, support: Support::PerParticle(&self.reach) }
+        Cloud { positions: &self.position, support: SupportRadii::PerParticle(&self.reach) }
     }
 }
 
@@ -94,7 +94,7 @@ impl Search {
             budget: -1.0,
             travelled: 0.0,
             stretch: 1.0,
-            regions: [first, second].map(|radius| Region::of(radius.len())),
+            regions: [first, second].map(|radius| NearRegion::of(radius.len())),
             search: NeighborSearch::default(),
             list: NeighborList::default(),
             pairs: Vec::with_capacity(room),
@@ -185,7 +185,7 @@ impl Search {
         let mirror = crowd.mirror;
         let bounds = sum_over_blocks(crowd.position, &|_, rows: &[Position]| {
             let places = rows.iter().map(|x| mirror.place(x.0));
-            places.fold(Bounds::default(), |bounds, x| Bounds(bounds.0.min(x), bounds.1.max(x)))
+            places.fold(ContactBounds::default(), |bounds, x| ContactBounds(bounds.0.min(x), bounds.1.max(x)))
         });
         let mut around = Aabb { min: bounds.0, max: bounds.1 };
         for axis in (0..3).filter(|&axis| self.periodic.axes()[axis]) {
@@ -196,15 +196,15 @@ impl Search {
 }
 
 #[derive(Clone, Copy)]
-struct Bounds(DVec3, DVec3);
+struct ContactBounds(DVec3, DVec3);
 
-impl Default for Bounds {
+impl Default for ContactBounds {
     fn default() -> Self {
         Self(DVec3::INFINITY, DVec3::NEG_INFINITY)
     }
 }
 
-impl BlockSum for Bounds {
+impl BlockSum for ContactBounds {
     fn add(&mut self, next: &Self) {
         *self = Self(self.0.min(next.0), self.1.max(next.1));
     }

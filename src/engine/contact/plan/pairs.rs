@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::body::{elastic_of, find, is_rigid};
 use super::checks::Named;
 use super::images::mirrors;
-use super::skins_of::Skins;
-use crate::contact::bodies::{Nodes, Particles, Sides, Turn};
+use super::skins_of::BodySkins;
+use crate::contact::bodies::{ContactSides, MemberParticles, NodeTurn, SideNodes};
 use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
@@ -28,7 +28,7 @@ pub(super) struct Planner<'a> {
     pub make: MakeLaw<'a>,
     pub planes: &'a [MirrorPlane],
     /// The skins that bodies touch with.
-    pub skins: Skins,
+    pub skins: BodySkins,
     /// What the user is told of bodies that have none.
     pub warnings: Vec<String>,
 }
@@ -86,7 +86,7 @@ impl Planner<'_> {
         soft: &BodyPlan,
         tool: &BodyPlan,
     ) -> Result<Touching, Vec<Problem>> {
-        let nodes = Nodes::Particles(self.particles(soft));
+        let nodes = SideNodes::Particles(self.particles(soft));
         let Some(skin) = self.skin(soft, named) else {
             return self.on_surface(named, self.sides(nodes, [soft, tool]));
         };
@@ -104,30 +104,36 @@ impl Planner<'_> {
         let bodies = &self.sim.scene().bodies;
         let is_sphere = |body: &BodyPlan| sphere_of(&bodies[body.id.0].shape).is_some();
         // A sphere is one node, and touches the surface of the other exactly.
-        let of_nodes: &[([&BodyPlan; 2], Turn)] = match (is_sphere(first), is_sphere(second)) {
-            (true, _) => &[([first, second], Turn::Alone)],
-            (false, true) => &[([second, first], Turn::Alone)],
-            (false, false) => &[([first, second], Turn::First), ([second, first], Turn::Second)],
+        let of_nodes: &[([&BodyPlan; 2], NodeTurn)] = match (is_sphere(first), is_sphere(second)) {
+            (true, _) => &[([first, second], NodeTurn::Alone)],
+            (false, true) => &[([second, first], NodeTurn::Alone)],
+            (false, false) => &[([first, second], NodeTurn::First), ([second, first], NodeTurn::Second)],
         };
-        let touching = |(bodies, turn): &([&BodyPlan; 2], Turn)| {
-            self.on_surface(named, Sides { turn: *turn, ..self.sides(Nodes::Rigid, *bodies) })
+        let touching = |(bodies, turn): &([&BodyPlan; 2], NodeTurn)| {
+            self.on_surface(named, ContactSides { turn: *turn, ..self.sides(SideNodes::Rigid, *bodies) })
         };
         of_nodes.iter().map(touching).collect()
     }
 
     /// The nodes of the first body on the surface of the second.
-    fn on_surface(&self, named: &Named<'_>, sides: Sides) -> Result<Touching, Vec<Problem>> {
+    fn on_surface(&self, named: &Named<'_>, sides: ContactSides) -> Result<Touching, Vec<Problem>> {
         let interaction = self.interaction(named, ContactSurface::Particles)?;
         let gravity = self.sim.gravity().length();
         Ok(Touching::Surface(Box::new(SurfaceContact::new(interaction, sides, gravity))))
     }
 
-    fn sides(&self, nodes: Nodes, [of, on]: [&BodyPlan; 2]) -> Sides {
-        Sides { first: of.id, nodes, second: on.id, turn: Turn::Alone, periodic: self.sim.periodic() }
+    fn sides(&self, nodes: SideNodes, [of, on]: [&BodyPlan; 2]) -> ContactSides {
+        ContactSides {
+            first: of.id,
+            nodes,
+            second: on.id,
+            turn: NodeTurn::Alone,
+            periodic: self.sim.periodic(),
+        }
     }
 
-    fn particles(&self, body: &BodyPlan) -> Particles {
-        Particles::of(body, self.sim.dimension())
+    fn particles(&self, body: &BodyPlan) -> MemberParticles {
+        MemberParticles::of(body, self.sim.dimension())
     }
 
     /// How the two bodies of a contact act on each other where surfaces touch, or particles.

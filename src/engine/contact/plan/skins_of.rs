@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::bodies::Particles;
+use crate::contact::bodies::MemberParticles;
 use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::ContactSurface;
 use crate::skins::Skin;
@@ -11,14 +11,14 @@ use crate::world::BodyId;
 
 /// The skins that have been made, each once for all contacts of its body.
 #[derive(Default)]
-pub(in crate::contact) struct Skins {
+pub(in crate::contact) struct BodySkins {
     known: Vec<(BodyId, Option<Arc<Skin>>)>,
 }
 
 /// Why a body touches with its particles.
 type Reason = &'static str;
 
-impl Skins {
+impl BodySkins {
     /// The skin of a body that is not rigid; of those that have none, what the user is to be told of it.
     pub fn of(
         &mut self,
@@ -38,7 +38,7 @@ impl Skins {
         if !body.offers(Offer::DeformedContact) {
             return Err(Some("its formulation carries no surface"));
         }
-        if !Particles::of(body, sim.dimension()).deform {
+        if !MemberParticles::of(body, sim.dimension()).deform {
             return Err(Some("its material may fail, and cracks have no surface of their own"));
         }
         if sim.periodic().any() {

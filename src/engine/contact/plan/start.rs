@@ -1,6 +1,6 @@
 //! Bodies that overlap others at the start.
 
-use crate::contact::bodies::{Nodes, Sides};
+use crate::contact::bodies::{ContactSides, SideNodes};
 use crate::contact::system::Touching;
 use crate::notation;
 use crate::plugin::{Setup, SetupError, SimBuilder};
@@ -23,13 +23,13 @@ pub(super) fn refuse_bodies_within_others(
     sim.add_setup(move |setup| checks.iter().try_for_each(|(sides, number)| check(sides, *number, setup)));
 }
 
-fn check(sides: &Sides, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
+fn check(sides: &ContactSides, number: usize, setup: &mut Setup<'_>) -> Result<(), SetupError> {
     let bodies = setup.resources.get::<RigidBodies>();
     let found = sides.with(setup.world, setup.resources, &bodies, |nodes, tool| sides.inside(nodes, tool));
     let Some(place) = found.map_err(|error| SetupError::internal(&error))? else { return Ok(()) };
     let name = |id| &setup.world.body(id).name;
     let (first, second) = (name(sides.first), name(sides.second));
-    let what = if matches!(sides.nodes, Nodes::Rigid) { "a point" } else { "a particle" };
+    let what = if matches!(sides.nodes, SideNodes::Rigid) { "a point" } else { "a particle" };
     Err(SetupError::parameter(
         format!("contacts[{number}].between"),
         format!("{what} of `{first}` starts inside rigid body `{second}`, at {}", notation::place(place)),

@@ -2,7 +2,7 @@
 
 use super::checks::Named;
 use super::pairs::{MakeLaw, Planner};
-use super::skins_of::Skins;
+use super::skins_of::BodySkins;
 use super::start::refuse_bodies_within_others;
 use crate::contact::system;
 use crate::contact::system::Touching;
@@ -18,7 +18,8 @@ use crate::world::BodySet;
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
     let planes: Vec<MirrorPlane> = sim.take_extensions();
     let contacts: Vec<(usize, Contact)> = sim.scene().contact_pairs().collect();
-    let mut planner = Planner { sim, make, planes: &planes, skins: Skins::default(), warnings: Vec::new() };
+    let mut planner =
+        Planner { sim, make, planes: &planes, skins: BodySkins::default(), warnings: Vec::new() };
     let (mut touching, mut problems) = (Vec::new(), Vec::new());
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();

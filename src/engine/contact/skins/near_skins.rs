@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::near_tool::{FASTER, MARGIN};
-use super::region::Region;
+use super::region::SkinRegion;
 use crate::contact::response::PairKey;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{Picked, for_each_block};
@@ -21,7 +21,7 @@ pub(super) struct NearSkins {
     left: f64,
     /// Whether there is room for all that facets near each other need.
     has_room: bool,
-    regions: [Region; 2],
+    regions: [SkinRegion; 2],
     /// Where the vertices are, m.
     places: [Vec<DVec3>; 2],
     /// Centres of the facets of the regions, m.
@@ -47,7 +47,7 @@ impl NearSkins {
         Self {
             left: 0.0,
             has_room: false,
-            regions: skins.map(Region::new),
+            regions: skins.map(SkinRegion::new),
             places: vertices,
             centers: skins.map(|skin| Vec::with_capacity(skin.facets.corners.len())),
             near: Vec::new(),
@@ -86,7 +86,7 @@ impl NearSkins {
     ) -> Result<(), NeighborError> {
         let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
         let near = NEAR * spacing;
-        let is_old = self.regions.iter().any(Region::is_old);
+        let is_old = self.regions.iter().any(SkinRegion::is_old);
         if is_old {
             (0..2).for_each(|side| self.regions[side].take_all(skins[side]));
         }

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::region::Region;
+use super::region::SkinRegion;
 use crate::parallel::{Picked, for_each_block};
 use crate::rigid::RigidBody;
 use crate::skins::{Skin, SkinView};
@@ -20,7 +20,7 @@ pub(super) const FASTER: f64 = 3.0;
 pub(super) struct NearTool {
     /// How far the bodies may still move until there are others, m.
     left: f64,
-    region: Region,
+    region: SkinRegion,
     /// Where the vertices are, m, and how far from the tool.
     places: Vec<(DVec3, f64)>,
     /// The facets near the tool, ascending.
@@ -32,7 +32,7 @@ impl NearTool {
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
         let places = vec![(DVec3::ZERO, f64::INFINITY); vertices];
-        Self { left: 0.0, region: Region::new(skin), places, facets: Vec::with_capacity(facets) }
+        Self { left: 0.0, region: SkinRegion::new(skin), places, facets: Vec::with_capacity(facets) }
     }
 
     /// Takes in a step of that length, s, with largest speeds of skin and tool, m/s. Says whether the facets have to be found again.

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::near_tool::NearTool;
-use super::points::{Extremes, Points, Pressed, Pressing, Reached, Seen, touch_of};
+use super::points::{Extremes, Points, Pressed, Pressing, Reached, ToolView, touch_of};
 use crate::contact::active::ActiveContacts;
-use crate::contact::bodies::{MotionBounds, Sides, failed};
+use crate::contact::bodies::{ContactSides, MotionBounds, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, PairKey};
@@ -27,11 +27,11 @@ pub(in crate::contact) struct SkinOnTool {
     pub patch: Patch,
     pub tool: BodyId,
     /// The particles and the surface, which must not overlap at the start.
-    pub sides: Sides,
+    pub sides: ContactSides,
     points: Points,
     near: NearTool,
     /// What every vertex of the patch sees of the tool, and which points of every facet near it may touch.
-    seen: Vec<Seen>,
+    seen: Vec<ToolView>,
     reached: Vec<Reached>,
     /// What presses on the vertices of every facet near the tool, and on every vertex of the patch.
     on_facets: Vec<[Pressed; 3]>,
@@ -45,13 +45,13 @@ pub(in crate::contact) struct SkinOnTool {
 
 /// The sums over all vertices that touch.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct ToolSums {
     on_tool: Wrench,
     of_tool: f64,
     stored: f64,
 }
 
-impl BlockSum for Sums {
+impl BlockSum for ToolSums {
     fn add(&mut self, next: &Self) {
         self.on_tool.add(&next.on_tool);
         self.of_tool += next.of_tool;
@@ -61,7 +61,7 @@ impl BlockSum for Sums {
 
 impl SkinOnTool {
     /// Contact of a skin with the surface of a rigid body.
-    pub fn new(interaction: Interaction, skin: Arc<Skin>, sides: Sides) -> Self {
+    pub fn new(interaction: Interaction, skin: Arc<Skin>, sides: ContactSides) -> Self {
         let (vertices, facets) = (skin.vertices(), skin.facets.corners.len());
         let mut contacts = ActiveContacts::default();
         if !interaction.is_elastic() {
@@ -108,7 +108,7 @@ impl SkinOnTool {
         let Extremes { gap, stiffest } = self.press(tool, dt);
         let mut energies =
             if self.interaction.is_elastic() { ContactEnergy::default() } else { self.rub(tool, dt) };
-        let Sums { on_tool, of_tool, stored } = self.push(tool);
+        let ToolSums { on_tool, of_tool, stored } = self.push(tool);
         energies.stored += stored;
         tool.push(&on_tool);
         self.patch.hand_on();
@@ -136,9 +136,9 @@ impl SkinOnTool {
     fn look(&mut self, tool: &RigidBody, dt: f64) {
         let Self { interaction, patch, seen, .. } = self;
         let (on, vertices) = (Pressing::new(interaction, patch, tool, dt), patch.vertices());
-        seen.resize(vertices.len(), Seen::default());
+        seen.resize(vertices.len(), ToolView::default());
         let rows = (&mut seen[..], vertices);
-        for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [Seen], &[Vertex])| {
+        for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [ToolView], &[Vertex])| {
             for (seen, vertex) in seen.iter_mut().zip(vertices) {
                 *seen = on.look(vertex.place, vertex.velocity);
             }
@@ -200,7 +200,7 @@ impl SkinOnTool {
         let Self { interaction, patch, seen, pressed, even, .. } = self;
         let on = Pressing::new(interaction, patch, tool, dt);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
-        type Rows<'a> = (&'a mut [Pressed], &'a [Seen], &'a [f64]);
+        type Rows<'a> = (&'a mut [Pressed], &'a [ToolView], &'a [f64]);
         sum_over_blocks(rows, &|_, (pressed, seen, even): Rows<'_>| {
             let mut extremes = Extremes::default();
             for ((pressed, seen), &area) in
@@ -258,7 +258,7 @@ impl SkinOnTool {
     }
 
     /// Pushes the vertices; returns what is on the tool about its centre.
-    fn push(&mut self, tool: &RigidBody) -> Sums {
+    fn push(&mut self, tool: &RigidBody) -> ToolSums {
         let Self { patch, pressed, contacts, .. } = self;
         for ((_, number), beside) in contacts.met().iter().zip(contacts.pushes()) {
             pressed[*number as usize].force += *beside;
@@ -270,7 +270,7 @@ impl SkinOnTool {
         let (patch, pressed) = (&*patch, &*pressed);
         let of_vertex = |k: usize| {
             let (vertex, Pressed { force, spring, .. }) = (&patch.vertices()[k], &pressed[k]);
-            let mut sums = Sums::default();
+            let mut sums = ToolSums::default();
             if spring.force > 0.0 {
                 sums.on_tool.push(vertex.place - tool.state.center, -*force);
                 sums.of_tool =

@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 
 use super::foot::{Ball, Foot, enclose};
 use super::near_skins::NearSkins;
-use super::side::{FacetPoint, PointPush, PointTouch, Side, shift_foot};
+use super::side::{FacetPoint, PointPush, PointTouch, SkinSide, shift_foot};
 use crate::contact::active::{ActiveContacts, Least};
 use crate::contact::bodies::{MotionBounds, failed};
 use crate::contact::laws::Touch;
@@ -25,7 +25,7 @@ use crate::contact::response::{ContactEnergy, Interaction};
 use crate::neighbors::NeighborError;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
-use crate::skins::{Patch, Rule, Skin, SkinColumns, SkinView, Wanted};
+use crate::skins::{Patch, QuadratureRule, Skin, SkinColumns, SkinView, Wanted};
 
 /// Factor on the squared frequency of two skins: a particle at a corner is pressed from two sides.
 const CORNERS: f64 = 2.0;
@@ -37,7 +37,7 @@ pub(in crate::contact) struct SkinPair {
     pub patches: [Patch; 2],
     /// Whether the references of both bodies stay.
     keeps_reference: bool,
-    rule: Rule,
+    rule: QuadratureRule,
     near: NearSkins,
     /// Around the facets of each side that are near the other.
     balls: [Vec<Ball>; 2],
@@ -48,7 +48,7 @@ pub(in crate::contact) struct SkinPair {
 impl SkinPair {
     /// Contact of two skins.
     pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2]) -> Self {
-        let rule = Rule::exact(skins[0].facets.axes);
+        let rule = QuadratureRule::exact(skins[0].facets.axes);
         let passes = skins.each_ref().map(|skin| {
             let mut contacts = ActiveContacts::default();
             contacts.reserve(rule.len() * skin.facets.corners.len());
@@ -129,7 +129,7 @@ impl SkinPair {
         let length = self.length();
         let Self { interaction, patches, rule, near, balls, passes, .. } = self;
         let (own, other, balls) = (&patches[side], &patches[1 - side], &balls[1 - side][..]);
-        let at = Side { interaction, own, other, balls, rule, length, dt };
+        let at = SkinSide { interaction, own, other, balls, rule, length, dt };
         let facets_near = |point: u32| near.facets_near(side, at.point(point).facet);
         let gap = passes[side].find(&near.candidates[side], |(point, _), gap: &mut Least| {
             at.touching(point, facets_near(point), gap)

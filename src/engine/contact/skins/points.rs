@@ -11,7 +11,7 @@ use crate::contact::laws::{Spring, Touch};
 use crate::contact::response::Interaction;
 use crate::parallel::{BlockSum, Largest};
 use crate::rigid::RigidBody;
-use crate::skins::{Patch, Rule, Skin};
+use crate::skins::{Patch, QuadratureRule, Skin};
 
 /// No point of a facet is farther from its nearest vertex than that share of its longest side.
 const BEYOND: f64 = 0.6;
@@ -28,7 +28,7 @@ const PLANE: f64 = 1e-9;
 
 /// Where the tool is as a vertex sees it.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Seen {
+pub(super) struct ToolView {
     /// Distance from its surface, m; negative inside.
     pub distance: f64,
     /// Outward normal of the tool.
@@ -55,7 +55,7 @@ pub(super) enum Reached {
 impl Reached {
     /// Of a facet whose vertices are at these places, m, and see that.
     #[inline]
-    pub fn of(places: [DVec3; 3], seen: [&Seen; 3]) -> Self {
+    pub fn of(places: [DVec3; 3], seen: [&ToolView; 3]) -> Self {
         let [p, q, r] = places;
         let size = p.distance_squared(q).max(q.distance_squared(r)).max(r.distance_squared(p)).sqrt();
         let [a, b, c] = seen;
@@ -67,7 +67,7 @@ impl Reached {
         if a.distance.max(b.distance).max(c.distance) >= 0.0 || turn <= SMOOTH {
             return Self::Partly;
         }
-        let off = |x: DVec3, seen: &Seen| (seen.distance - a.distance - a.normal.dot(x - p)).abs();
+        let off = |x: DVec3, seen: &ToolView| (seen.distance - a.distance - a.normal.dot(x - p)).abs();
         if turn <= 1.0 - PLANE || off(q, b).max(off(r, c)) >= PLANE * size {
             return Self::Wholly;
         }
@@ -132,8 +132,8 @@ impl BlockSum for Extremes {
 
 /// The points of a skin on a tool.
 pub(super) struct Points {
-    fine: Rule,
-    coarse: Rule,
+    fine: QuadratureRule,
+    coarse: QuadratureRule,
 }
 
 /// What all points of a step share.
@@ -151,7 +151,7 @@ pub(super) struct Pressing<'a> {
 impl Points {
     /// Those of segments (two axes) or triangles (three).
     pub fn new(axes: usize) -> Self {
-        Self { fine: Rule::fine(axes, PARTS[axes - 2]), coarse: Rule::exact(axes) }
+        Self { fine: QuadratureRule::fine(axes, PARTS[axes - 2]), coarse: QuadratureRule::exact(axes) }
     }
 
     /// What presses on the vertices of a facet.
@@ -160,7 +160,7 @@ impl Points {
         on: &Pressing<'_>,
         facet: u32,
         reached: Reached,
-        seen: [&Seen; 3],
+        seen: [&ToolView; 3],
         extremes: &mut Extremes,
     ) -> [Pressed; 3] {
         if reached == Reached::Flat {
@@ -195,7 +195,7 @@ impl Points {
         &self,
         on: &Pressing<'_>,
         facet: u32,
-        [a, b, c]: [&Seen; 3],
+        [a, b, c]: [&ToolView; 3],
         extremes: &mut Extremes,
     ) -> [Pressed; 3] {
         let (rule, normal) = (&self.coarse, a.normal);
@@ -209,7 +209,7 @@ impl Points {
             if distance.is_nan() {
                 continue;
             }
-            let spring = on.spring(&Seen { distance, normal, approach }, area, extremes);
+            let spring = on.spring(&ToolView { distance, normal, approach }, area, extremes);
             for ((sum, own, depth), share) in sums.iter_mut().zip(shares) {
                 sum.force += share * spring.force;
                 sum.stiffness += share * spring.stiffness;
@@ -239,7 +239,7 @@ impl<'a> Pressing<'a> {
 
     /// The spring of a point that sees that and stands for an area, m2 (m).
     #[inline]
-    pub fn spring(&self, seen: &Seen, area: f64, extremes: &mut Extremes) -> Spring {
+    pub fn spring(&self, seen: &ToolView, area: f64, extremes: &mut Extremes) -> Spring {
         let touch = Touch { overlap: -seen.distance, ..self.touch };
         let spring = self.interaction.spring(&touch, area / self.usual, seen.approach, self.dt);
         extremes.stiffest.add(&Largest(spring.stiffness / area));
@@ -247,11 +247,11 @@ impl<'a> Pressing<'a> {
     }
 
     /// Where the tool is as a place sees it that moves at `velocity`, m/s.
-    pub fn look(&self, x: DVec3, velocity: DVec3) -> Seen {
+    pub fn look(&self, x: DVec3, velocity: DVec3) -> ToolView {
         let nearest = self.tool.surface.closest(self.tool.reference(x));
         let normal = self.tool.state.rotation * nearest.normal;
         let approach = (self.tool.velocity_at(x) - velocity).dot(normal);
-        Seen { distance: nearest.signed_distance, normal, approach }
+        ToolView { distance: nearest.signed_distance, normal, approach }
     }
 }
 
@@ -263,13 +263,13 @@ mod tests {
     fn facets_behind_a_smooth_tool_have_few_points() {
         let places = [DVec3::ZERO, DVec3::X, DVec3::Z];
         let of = |distances: [f64; 3], last: DVec3| {
-            let seen = |distance: f64, normal: DVec3| Seen { distance, normal, approach: 0.0 };
+            let seen = |distance: f64, normal: DVec3| ToolView { distance, normal, approach: 0.0 };
             let [a, b, c] = distances;
             Reached::of(places, [&seen(a, DVec3::Y), &seen(b, DVec3::Y), &seen(c, last)])
         };
         assert_eq!(of([-0.1, -0.1, -0.1], DVec3::Y), Reached::Evenly);
         let tilted = DVec3::new(0.1, 1.0, 0.0).normalize();
-        let seen = [0.0, 0.1, 0.0].map(|x| Seen {
+        let seen = [0.0, 0.1, 0.0].map(|x| ToolView {
             distance: x * tilted.x / 0.1 - 0.2,
             normal: tilted,
             approach: 0.0,

@@ -6,14 +6,14 @@ use crate::skins::Skin;
 const BEYOND: f64 = 6.0;
 
 /// Facets and their vertices, both ascending.
-pub(in crate::contact) struct Region {
+pub(in crate::contact) struct SkinRegion {
     /// How far the bodies may still move until other facets are near, m.
     pub left: f64,
     pub facets: Vec<u32>,
     pub vertices: Vec<u32>,
 }
 
-impl Region {
+impl SkinRegion {
     /// None yet, with room for all of a skin.
     pub fn new(skin: &Skin) -> Self {
         let (vertices, facets) = (skin.vertices() * skin.facets.axes * 3, skin.facets.corners.len());

@@ -6,7 +6,7 @@ use super::foot::{Ball, Foot, foot, slopes};
 use crate::contact::active::Least;
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction};
-use crate::skins::{Patch, Rule};
+use crate::skins::{Patch, QuadratureRule};
 
 /// How deep a point may be below the surface of the other body, over the mean spacing.
 const DEPTH: f64 = 0.5;
@@ -46,7 +46,7 @@ pub(super) struct FacetPoint {
 impl FacetPoint {
     /// The point of that number among those of all facets.
     #[inline]
-    pub fn of(rule: &Rule, number: u32) -> Self {
+    pub fn of(rule: &QuadratureRule, number: u32) -> Self {
         let count = rule.len();
         Self { facet: number / count as u32, shares: rule.shares(number as usize % count) }
     }
@@ -63,20 +63,20 @@ struct PointMotion {
 }
 
 /// The points of one skin on another in a step.
-pub(super) struct Side<'a> {
+pub(super) struct SkinSide<'a> {
     pub interaction: &'a Interaction,
     pub own: &'a Patch,
     pub other: &'a Patch,
     /// Around the facets of the other one.
     pub balls: &'a [Ball],
-    pub rule: &'a Rule,
+    pub rule: &'a QuadratureRule,
     /// Length for which the law holds, m.
     pub length: f64,
     /// Length of the step, s.
     pub dt: f64,
 }
 
-impl Side<'_> {
+impl SkinSide<'_> {
     /// The point of that number.
     #[inline]
     pub fn point(&self, number: u32) -> FacetPoint {

@@ -1,7 +1,7 @@
 //! The system of all contacts of a scene.
 
 use super::touching::{Saved, Touching};
-use crate::contact::bodies::{CONTACT, MotionBounds, Turn};
+use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
 use crate::contact::response::{ContactEnergy, energy};
 use crate::plugin::SimBuilder;
 use crate::rigid::{RigidBodies, Wrench};
@@ -96,9 +96,9 @@ impl Contacts {
         self.energies.clear();
         for k in 0..self.touching.len() {
             let other = match self.touching[k].turn() {
-                Turn::Alone => None,
-                Turn::First => Some(k + 1),
-                Turn::Second => Some(k - 1),
+                NodeTurn::Alone => None,
+                NodeTurn::First => Some(k + 1),
+                NodeTurn::Second => Some(k - 1),
             };
             let beside = other.and_then(|other| self.touching[other].beside_the_other());
             let pair = &mut self.touching[k];

@@ -1,7 +1,7 @@
 //! Two bodies that touch.
 
 use crate::contact::active::ContactNodes;
-use crate::contact::bodies::{MotionBounds, Particles, Turn};
+use crate::contact::bodies::{MemberParticles, MotionBounds, NodeTurn};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
 use crate::contact::skins::{SkinOnTool, SkinPair};
@@ -38,8 +38,8 @@ impl Touching {
     }
 
     /// Which of the two contacts of a pair of rigid bodies it is; the second follows the first.
-    pub fn turn(&self) -> Turn {
-        if let Self::Surface(contact) = self { contact.sides.turn } else { Turn::Alone }
+    pub fn turn(&self) -> NodeTurn {
+        if let Self::Surface(contact) = self { contact.sides.turn } else { NodeTurn::Alone }
     }
 
     /// What its springs do to two rigid bodies, as the other contact of the pair sees it.
@@ -63,7 +63,7 @@ impl Touching {
     }
 
     /// The particles of both.
-    pub fn particles(&self) -> impl Iterator<Item = &Particles> {
+    pub fn particles(&self) -> impl Iterator<Item = &MemberParticles> {
         let (first, second) = match self {
             Self::Particles(contact) => (Some(&contact.first), Some(&contact.second)),
             Self::Surface(contact) => (contact.sides.nodes.particles(), None),

@@ -5,8 +5,8 @@ use super::nearby::Nearby;
 use super::on_surface::{NearNodes, NodeTouch, OnSurface};
 use super::reaction::{NodePush, push};
 use super::together::Together;
-use crate::contact::active::{ActiveContacts, ContactNodes, End, Pull};
-use crate::contact::bodies::{MotionBounds, Particles, Sides};
+use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, NodeLoad};
+use crate::contact::bodies::{ContactSides, MemberParticles, MotionBounds};
 use crate::contact::response::time_step::{self, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
 use crate::parallel::BlockSum;
@@ -19,7 +19,7 @@ const LAYERS: usize = 3;
 /// Contact of the nodes of one body with the surface of another.
 pub(in crate::contact) struct SurfaceContact {
     interaction: Interaction,
-    pub sides: Sides,
+    pub sides: ContactSides,
     /// Acceleration of gravity, m/s2.
     gravity: f64,
     nearby: Nearby,
@@ -34,10 +34,10 @@ pub(in crate::contact) struct SurfaceContact {
 
 impl SurfaceContact {
     /// Contact of the nodes of a body with the surface of another.
-    pub fn new(interaction: Interaction, sides: Sides, gravity: f64) -> Self {
+    pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
         let particles = sides.nodes.particles();
         let count = particles.map_or(0, |particles| particles.radius.len());
-        let nearby = Nearby::new(count, particles.map_or(0.0, Particles::largest));
+        let nearby = Nearby::new(count, particles.map_or(0.0, MemberParticles::largest));
         let room = particles.map_or(0, |particles| LAYERS * particles.on_a_side);
         let (mut contacts, mut contact_nodes) = (ActiveContacts::default(), ContactNodes::new(count));
         contacts.reserve(room);
@@ -55,7 +55,7 @@ impl SurfaceContact {
         (self.near, self.together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
             let is_new = nearby.update(sides, nodes, tool, speed * dt, motion[0].stretch);
             if is_new && of_particles {
-                contact_nodes.renew(nearby.candidates(), &[End::First]);
+                contact_nodes.renew(nearby.candidates(), &[ContactEnd::First]);
             }
             if !of_particles {
                 contacts.reserve(nodes.len());
@@ -104,7 +104,13 @@ impl SurfaceContact {
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {
             let NodePush { force, arm, turning, stiffness, heat, .. } = pushes[number];
-            Pull { force, arm, beside: turning, stiffness: stiffness[0], heat: interaction.heat[0] * heat }
+            NodeLoad {
+                force,
+                arm,
+                beside: turning,
+                stiffness: stiffness[0],
+                heat: interaction.heat[0] * heat,
+            }
         });
         let [particle, rigid] = push(sides, contacts.met(), pushes, count, &mut bodies);
         let squared = rigid + if of_particles.is_some() { contact_nodes.stiffest() } else { particle };

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::contact::active::{Filter, Least};
-use crate::contact::bodies::{NodeView, Sides};
+use crate::contact::bodies::{ContactSides, NodeView};
 use crate::contact::response::PairKey;
 use crate::rigid::RigidBody;
 
@@ -42,7 +42,7 @@ impl Nearby {
     /// they may be others, and says whether it has.
     pub fn update(
         &mut self,
-        sides: &Sides,
+        sides: &ContactSides,
         nodes: &NodeView<'_>,
         tool: &RigidBody,
         distance: f64,
@@ -60,7 +60,7 @@ impl Nearby {
     }
 
     /// Finds the nodes near the surface; returns how far both bodies may move together until others are, m.
-    fn find(&mut self, sides: &Sides, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
+    fn find(&mut self, sides: &ContactSides, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
         let bounds = tool.surface.bounds();
         let largest_stretch = self.stretch;
         let budget = self.filter.select(nodes.len(), &mut self.candidates, &|i, budget: &mut Least| {

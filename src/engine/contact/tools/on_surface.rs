@@ -7,7 +7,7 @@ use super::nearby::NEAR;
 use super::reaction::NodePush;
 use super::together::{Spot, Together};
 use crate::contact::active::Least;
-use crate::contact::bodies::{Nearness, NodeMotion, NodeView, Sides};
+use crate::contact::bodies::{ContactSides, Nearness, NodeMotion, NodeView};
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::BlockSum;
@@ -48,7 +48,7 @@ impl BlockSum for NearNodes {
 /// The nodes of one body, the surface of another, and how they act on each other in a step.
 pub(super) struct OnSurface<'a> {
     pub interaction: &'a Interaction,
-    pub sides: &'a Sides,
+    pub sides: &'a ContactSides,
     pub nodes: &'a NodeView<'a>,
     pub tool: &'a RigidBody,
     /// Length of the step, s.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::contact::bodies::Sides;
+use crate::contact::bodies::ContactSides;
 use crate::contact::response::PairKey;
 use crate::parallel::BlockSum;
 use crate::rigid::{RigidBody, Wrench};
@@ -46,7 +46,7 @@ impl BlockSum for Pushes {
 
 /// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place; `count` is the number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
 pub(super) fn push<T: Sync>(
-    sides: &Sides,
+    sides: &ContactSides,
     met: &[(PairKey, T)],
     pushes: &[NodePush],
     count: usize,

@@ -56,19 +56,23 @@ impl ArtificialStress {
         let spacing = sim.body(id).spacing;
         let at_spacing = kernel.w(spacing, kernel.smoothing_length(support));
         let Self { epsilon, exponent } = self;
-        sim.add_pair_term(bodies, "artificial_stress", Repulsion { epsilon, exponent, at_spacing });
+        sim.add_pair_term(
+            bodies,
+            "artificial_stress",
+            ArtificialStressTerm { epsilon, exponent, at_spacing },
+        );
     }
 }
 
 /// The term of one body.
-struct Repulsion {
+struct ArtificialStressTerm {
     epsilon: f64,
     exponent: u32,
     /// W at one spacing.
     at_spacing: f64,
 }
 
-impl PairTerm for Repulsion {
+impl PairTerm for ArtificialStressTerm {
     type ReadI = (TensileStress,);
     type ReadJ = (TensileStress,);
 

@@ -77,7 +77,7 @@ impl Carried {
 
 /// What the pass writes of every row.
 #[derive(Default)]
-pub(super) struct ControlRows {
+pub(super) struct EulerianControlRows {
     /// Force at fixed F, N.
     pub force: Vec<Lanes4>,
     /// Sum of the stiffnesses of the pairs over the mass of the particle, 1/s2.
@@ -95,7 +95,7 @@ pub(super) struct BodyControl {
     pub density: f64,
 }
 
-impl ControlRows {
+impl EulerianControlRows {
     /// Room for real rows.
     pub fn resize(&mut self, rows: usize) {
         self.force.resize(rows, Lanes4::ZERO);
@@ -114,7 +114,7 @@ pub(super) fn run(
 ) -> FoldedEnergy {
     let EulerianRows { lists, kernels, points, carried, near, stresses, control: own, plane, .. } = packed;
     let rows = lists.bodies[k].rows.clone();
-    let ControlRows { force, stiffness, sums } = own;
+    let EulerianControlRows { force, stiffness, sums } = own;
     let block = ControlBlock {
         force: &mut force[rows.clone()],
         stiffness: &mut stiffness[rows.clone()],
@@ -125,7 +125,7 @@ pub(super) fn run(
     let sum = for_each_own_block(block, sums, &|first, block: ControlBlock<'_>| {
         let first = rows.start + first;
         let pairs = ControlPairs { support, offsets, near, points, carried, across: control.across };
-        let pass = ControlPass { control, divergence, pairs, mass, first };
+        let pass = EulerianControlPass { control, divergence, pairs, mass, first };
         let mut sum = FoldedEnergy::default();
         run_hot_on(*plane, ControlLoop { pass, block, sum: &mut sum });
         sum
@@ -137,7 +137,7 @@ pub(super) fn run(
     sum
 }
 
-struct ControlPass<'a> {
+struct EulerianControlPass<'a> {
     control: BodyControl,
     divergence: Divergence,
     pairs: ControlPairs<'a>,
@@ -155,7 +155,7 @@ struct ControlBlock<'a> {
 split_by_rows!(ControlBlock { force, stiffness, stresses, energy });
 
 struct ControlLoop<'a, 's> {
-    pass: ControlPass<'a>,
+    pass: EulerianControlPass<'a>,
     block: ControlBlock<'a>,
     sum: &'s mut FoldedEnergy,
 }
@@ -189,7 +189,7 @@ impl HotLoop for ControlLoop<'_, '_> {
     }
 }
 
-impl ControlPass<'_> {
+impl EulerianControlPass<'_> {
     /// Adds V_0,i times a Kirchhoff stress to what neighbours read of row `k`.
     #[inline(always)]
     fn add_stress(&self, k: usize, stress: &DMat3, row: &mut CorrectedStress) {

@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use super::control::Carried;
-use super::near::Near;
-use super::rows::Point;
+use super::near::EulerianNeighbors;
+use super::rows::EulerianParticle;
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// The pairs of a body.
@@ -12,15 +12,15 @@ pub(super) struct ControlPairs<'a> {
     /// Support radius, m.
     pub support: f64,
     pub offsets: &'a [usize],
-    pub near: &'a Near,
-    pub points: &'a [Point],
+    pub near: &'a EulerianNeighbors,
+    pub points: &'a [EulerianParticle],
     pub carried: &'a [Carried],
     /// Resistance to the error across a pair, over that to the error along it.
     pub across: f64,
 }
 
 /// Sums over the pairs of a particle, without xi and its volume.
-pub(super) struct RowSums {
+pub(super) struct ControlRowSums {
     /// dU/dx.
     pub force: DVec3,
     /// dU/dF.
@@ -32,7 +32,7 @@ pub(super) struct RowSums {
 }
 
 /// The particle itself, four times.
-struct Own<A: FourLanes> {
+struct OwnControl<A: FourLanes> {
     place: Vector<A>,
     original: Vector<A>,
     deformation: Matrix<A>,
@@ -49,7 +49,7 @@ struct FourKernel {
 }
 
 /// The sums so far.
-struct Sums<A: FourLanes> {
+struct ControlSums<A: FourLanes> {
     force: Vector<A>,
     couple: [Vector<A>; 3],
     stiffness: Number<A>,
@@ -60,11 +60,11 @@ struct Sums<A: FourLanes> {
 impl ControlPairs<'_> {
     /// The sums of row `i`.
     #[inline(always)]
-    pub fn of_row<A: FourLanes>(&self, a: A, i: usize) -> RowSums {
+    pub fn of_row<A: FourLanes>(&self, a: A, i: usize) -> ControlRowSums {
         let own = &self.carried[i];
         let [x, y, z] = own.columns;
         let column = |column: Lanes4| Vector::splat(a, column.xyz());
-        let own = Own {
+        let own = OwnControl {
             place: Vector::splat(a, self.points[i].place.xyz()),
             original: Vector::splat(a, own.original.xyz()),
             deformation: Matrix([column(x), column(y), column(z)]),
@@ -73,8 +73,13 @@ impl ControlPairs<'_> {
         };
         let zero = Vector::zero(a);
         let none = Number::zero(a);
-        let mut sums =
-            Sums { force: zero, couple: [zero; 3], stiffness: none, energy: none, energy_before: none };
+        let mut sums = ControlSums {
+            force: zero,
+            couple: [zero; 3],
+            stiffness: none,
+            energy: none,
+            energy_before: none,
+        };
         let (neighbors, weights) = self.near.row(self.offsets[i], i);
         let curvatures = &self.near.curvatures[self.offsets[i]..self.offsets[i] + neighbors.len()];
         let (fours, rest) = neighbors.as_chunks::<4>();
@@ -96,7 +101,7 @@ impl ControlPairs<'_> {
             self.add(a, &own, four, kernel, &mut sums);
         }
         let [x, y, z] = sums.couple;
-        RowSums {
+        ControlRowSums {
             force: sums.force.sum(),
             couple: DMat3::from_cols(x.sum(), y.sum(), z.sum()),
             stiffness: sums.stiffness.sum(),
@@ -107,7 +112,14 @@ impl ControlPairs<'_> {
 
     /// Adds four neighbours.
     #[inline(always)]
-    fn add<A: FourLanes>(&self, a: A, own: &Own<A>, four: [u32; 4], kernel: FourKernel, sums: &mut Sums<A>) {
+    fn add<A: FourLanes>(
+        &self,
+        a: A,
+        own: &OwnControl<A>,
+        four: [u32; 4],
+        kernel: FourKernel,
+        sums: &mut ControlSums<A>,
+    ) {
         let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let points = [&self.points[j], &self.points[k], &self.points[l], &self.points[m]];
         let of = [&self.carried[j], &self.carried[k], &self.carried[l], &self.carried[m]];

@@ -5,14 +5,14 @@
 
 use glam::{DMat3, DVec3};
 
-use super::lists::Lists;
+use super::lists::EulerianLists;
 use crate::world::DeformationGradient;
 
 /// A pair is in contact if its original distance exceeds this many supports and this many times the distance that the deformation implies.
 /// Slip along a shear band one particle wide counts as deformation until then.
 const ELSEWHERE: f64 = 2.5;
 
-impl Lists {
+impl EulerianLists {
     /// Leaves pairs in contact out of the rows of bodies that touch themselves. The result depends on the current state alone, not on the age of the lists.
     pub fn leave_out_elsewhere(
         &mut self,

@@ -8,13 +8,13 @@ use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
 /// The system of the pass.
-pub(super) struct InternalForce {
+pub(super) struct EulerianForce {
     pub phase: PhaseId,
     /// Acceleration of gravity, m/s2.
     pub gravity: DVec3,
 }
 
-impl Run for InternalForce {
+impl Run for EulerianForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let packed = step.resources.solid_rows::<EulerianRows>(self.phase);
@@ -38,7 +38,7 @@ fn write_own(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [
         let of_body = (&mut force[rows.clone()], &mass[rows]);
         for_each_own_block(of_body, &mut Vec::new(), &|first, (force, mass): (&mut [Force], &[Mass])| {
             let first = start + first;
-            run_hot_in(packed.plane, ForceRows { packed, first, force: &mut *force });
+            run_hot_in(packed.plane, EulerianForceRows { packed, first, force: &mut *force });
             for (k, (force, mass)) in force.iter_mut().zip(mass).enumerate() {
                 // Nothing acts on a removed particle, not even gravity.
                 if packed.points[first + k].place.0[3] > 0.0 {
@@ -49,13 +49,13 @@ fn write_own(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [
     }
 }
 
-struct ForceRows<'a> {
+struct EulerianForceRows<'a> {
     packed: &'a EulerianRows,
     first: usize,
     force: &'a mut [Force],
 }
 
-impl PlaneOrSolid for ForceRows<'_> {
+impl PlaneOrSolid for EulerianForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let EulerianRows { lists, near, points, stresses, control, .. } = self.packed;

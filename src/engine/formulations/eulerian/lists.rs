@@ -13,7 +13,7 @@ use crate::world::BodyId;
 const SKIN: f64 = 0.2;
 
 /// A body of the lists.
-pub(super) struct ListedBody {
+pub(super) struct EulerianBody {
     pub id: BodyId,
     /// Its rows in the phase.
     pub rows: Range<usize>,
@@ -27,8 +27,8 @@ pub(super) struct ListedBody {
 
 /// The lists of all bodies of the phase, which are in the order of their rows.
 #[derive(Default)]
-pub(super) struct Lists {
-    pub bodies: Vec<ListedBody>,
+pub(super) struct EulerianLists {
+    pub bodies: Vec<EulerianBody>,
     /// The ghosts of pairs within support and skin.
     pub ghosts: Ghosts,
     /// Where the neighbours of each row start.
@@ -44,9 +44,9 @@ pub(super) struct Lists {
     places: Vec<DVec3>,
 }
 
-impl Lists {
+impl EulerianLists {
     /// Lists of bodies, to be built by the first update.
-    pub fn new(bodies: Vec<ListedBody>) -> Self {
+    pub fn new(bodies: Vec<EulerianBody>) -> Self {
         Self { bodies, ..Self::default() }
     }
 
@@ -106,7 +106,7 @@ impl Lists {
     }
 }
 
-impl ListedBody {
+impl EulerianBody {
     /// Whether a particle has moved by more than half the skin. A body that flies takes its lists along; at a symmetry plane it meets its image, which
     /// goes the other way.
     fn has_moved(&self, before: &[DVec3], now: &[DVec3]) -> bool {
@@ -173,8 +173,8 @@ mod tests {
         (0..200).map(|k| DVec3::new((k % 20) as f64, (k / 20) as f64, 0.0)).collect()
     }
 
-    fn lists(repeats: Vec<Repeat>) -> Lists {
-        Lists::new(vec![ListedBody {
+    fn lists(repeats: Vec<Repeat>) -> EulerianLists {
+        EulerianLists::new(vec![EulerianBody {
             id: BodyId(0),
             rows: 0..200,
             support: 2.6,

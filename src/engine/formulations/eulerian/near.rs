@@ -1,7 +1,7 @@
 //! The neighbours within the support at the end of a step, with their weights, and the sums that correct the gradient.
 
 use crate::correction::MomentMatrix;
-use crate::formulations::eulerian::rows::Point;
+use crate::formulations::eulerian::rows::EulerianParticle;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, Split, run_hot_in};
@@ -12,7 +12,7 @@ pub(super) const LEAST_SPREAD: f64 = 0.02;
 
 /// What the pass finds of every row.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Surroundings {
+pub(super) struct NearbyMotion {
     /// Number of neighbours within the support.
     pub count: u32,
     /// Inverse of M_i; zero for a particle with too few neighbours.
@@ -27,17 +27,17 @@ pub(super) struct Surroundings {
 
 /// The neighbours within the support: those of row i begin where its list does.
 #[derive(Default)]
-pub(super) struct Near {
+pub(super) struct EulerianNeighbors {
     pub neighbors: Vec<u32>,
     pub weights: Vec<f64>,
     /// Kernel values W_ij.
     pub kernels: Vec<f64>,
     /// Second derivatives W''_ij.
     pub curvatures: Vec<f64>,
-    pub around: Vec<Surroundings>,
+    pub around: Vec<NearbyMotion>,
 }
 
-impl Near {
+impl EulerianNeighbors {
     /// Neighbours and weights of a row.
     #[inline(always)]
     pub fn row(&self, start: usize, i: usize) -> (&[u32], &[f64]) {
@@ -46,18 +46,18 @@ impl Near {
     }
 }
 
-/// The rows of [`Near`] that a block writes.
-pub(super) struct NearRows<'a> {
+/// The rows of [`EulerianNeighbors`] that a block writes.
+pub(super) struct NeighborRows<'a> {
     /// Where the lists of these rows start, and where the last one ends.
     pub offsets: &'a [usize],
     pub neighbors: &'a mut [u32],
     pub weights: &'a mut [f64],
     pub kernels: &'a mut [f64],
     pub curvatures: &'a mut [f64],
-    pub around: &'a mut [Surroundings],
+    pub around: &'a mut [NearbyMotion],
 }
 
-impl Split for NearRows<'_> {
+impl Split for NeighborRows<'_> {
     fn rows(&self) -> usize {
         self.around.len()
     }
@@ -85,19 +85,19 @@ impl Split for NearRows<'_> {
 }
 
 /// Looks at the lists of a block.
-pub(super) struct Look<'a, 'r> {
+pub(super) struct LookAtBlock<'a, 'r> {
     pub kernel: Kernel,
     /// Support radius, m.
     pub support: f64,
     /// Lists of all rows.
     pub lists: &'a [u32],
-    pub points: &'a [Point],
+    pub points: &'a [EulerianParticle],
     pub first: usize,
     pub plane: bool,
-    pub rows: &'r mut NearRows<'a>,
+    pub rows: &'r mut NeighborRows<'a>,
 }
 
-impl KernelVisitor for Look<'_, '_> {
+impl KernelVisitor for LookAtBlock<'_, '_> {
     type Output = ();
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
@@ -108,13 +108,13 @@ impl KernelVisitor for Look<'_, '_> {
 
 struct LookLoop<'a, 'r, K: KernelProfile> {
     kernel: ScaledKernel<K>,
-    look: Look<'a, 'r>,
+    look: LookAtBlock<'a, 'r>,
 }
 
 impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { kernel, look: Look { support, lists, points, first, rows, .. } } = self;
+        let Self { kernel, look: LookAtBlock { support, lists, points, first, rows, .. } } = self;
         let limit = support * support;
         let itself = kernel.w(0.0);
         let begin = rows.offsets[0];
@@ -137,7 +137,7 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
             let pairs = rows.neighbors[part.clone()].iter().zip(&mut rows.weights[part.clone()]);
             let pairs = pairs.zip(&mut rows.kernels[part.clone()]).zip(&mut rows.curvatures[part]);
             for (((&j, weight), value), curvature) in pairs {
-                let Point { place: other, velocity } = points[j as usize];
+                let EulerianParticle { place: other, velocity } = points[j as usize];
                 let arm = a.minus(other, own);
                 let (distance, volume) = (arm.dot3(arm).sqrt(), other.0[3]);
                 let (w, kernel_value) = (kernel.pair_weight(distance), kernel.w(distance));
@@ -153,7 +153,7 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
             let count = count as u32;
-            rows.around[k] = Surroundings { count, inverse_moment, reach: reach.xyz(), weight_sum, filled };
+            rows.around[k] = NearbyMotion { count, inverse_moment, reach: reach.xyz(), weight_sum, filled };
         }
     }
 }

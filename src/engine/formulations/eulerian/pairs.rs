@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::rows::{EulerianRows, Point};
+use super::rows::{EulerianParticle, EulerianRows};
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Step, StepError};
@@ -23,36 +23,36 @@ impl PairSource for EulerianPairs {
     ) -> Result<(), StepError> {
         let packed = step.resources.solid_rows::<EulerianRows>(self.0);
         let Some(body) = packed.lists.bodies.iter().find(|of| of.id == body) else { return Ok(()) };
-        run(&BodyPairs { packed: &packed, support: body.support })
+        run(&PairsOfEulerianBody { packed: &packed, support: body.support })
     }
 }
 
 /// The pairs of one body.
-struct BodyPairs<'a> {
+struct PairsOfEulerianBody<'a> {
     packed: &'a EulerianRows,
     /// Support radius, m.
     support: f64,
 }
 
-impl PairRows for BodyPairs<'_> {
+impl PairRows for PairsOfEulerianBody<'_> {
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch) {
-        run_hot_on(self.packed.plane, Fill { pairs: self, rows, batch });
+        run_hot_on(self.packed.plane, FillEulerianPairs { pairs: self, rows, batch });
     }
 }
 
 /// Fills the rows of some particles.
-struct Fill<'a> {
-    pairs: &'a BodyPairs<'a>,
+struct FillEulerianPairs<'a> {
+    pairs: &'a PairsOfEulerianBody<'a>,
     rows: Range<usize>,
     batch: &'a mut PairBatch,
 }
 
-impl HotLoop for Fill<'_> {
+impl HotLoop for FillEulerianPairs<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        let Self { pairs: BodyPairs { packed, support }, rows, batch } = self;
+        let Self { pairs: PairsOfEulerianBody { packed, support }, rows, batch } = self;
         let EulerianRows { lists, near, points, .. } = *packed;
         let mirrors = !lists.ghosts.is_empty();
         let extras = Extras { reference: true, weight_at: WeightAt::Current, mirrors, supports: false };
@@ -66,14 +66,14 @@ impl HotLoop for Fill<'_> {
             let mut room = batch.add_row(points[i].velocity.0[3], neighbors.len());
             let (fours, rest) = neighbors.as_chunks::<4>();
             for n in 0..fours.len() {
-                let four = Four { i, neighbors: fours[n], count: 4, first: part.start + 4 * n };
+                let four = FourNeighbors { i, neighbors: fours[n], count: 4, first: part.start + 4 * n };
                 put(a, packed, four, n, &mut room);
             }
             if !rest.is_empty() {
                 let mut four = [i as u32; 4];
                 four[..rest.len()].copy_from_slice(rest);
                 let n = fours.len();
-                let four = Four { i, neighbors: four, count: rest.len(), first: part.start + 4 * n };
+                let four = FourNeighbors { i, neighbors: four, count: rest.len(), first: part.start + 4 * n };
                 put(a, packed, four, n, &mut room);
             }
         }
@@ -81,7 +81,7 @@ impl HotLoop for Fill<'_> {
 }
 
 /// Four neighbours of row `i`, of which `count` are there; their weights begin at `first`.
-struct Four {
+struct FourNeighbors {
     i: usize,
     neighbors: [u32; 4],
     count: usize,
@@ -90,11 +90,11 @@ struct Four {
 
 /// Puts four neighbours into place `n` of the room.
 #[inline(always)]
-fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: Four, n: usize, room: &mut Room<'_>) {
-    let Four { i, neighbors: four, count, first: at } = four;
+fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, room: &mut Room<'_>) {
+    let FourNeighbors { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);
-    let of: [&Point; 4] = [&points[j], &points[k], &points[l], &points[m]];
+    let of: [&EulerianParticle; 4] = [&points[j], &points[k], &points[l], &points[m]];
     let (own, original) = (&points[i], carried[i].original);
     let [x, y, z, _] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
     let now = Vector::new(a, [x, y, z]) - Vector::splat(a, own.place.xyz());

@@ -5,14 +5,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::artificial_stress::{ArtificialStress, TensileStress};
-use super::control::{BodyControl, ControlRows, HourglassEnergy};
+use super::control::{BodyControl, EulerianControlRows, HourglassEnergy};
 use super::dilatation::DilatationRate;
-use super::force::InternalForce;
-use super::lists::{ListedBody, Lists};
-use super::near::{Look, Near, NearRows, Surroundings};
+use super::force::EulerianForce;
+use super::lists::{EulerianBody, EulerianLists};
+use super::near::{EulerianNeighbors, LookAtBlock, NearbyMotion, NeighborRows};
 use super::pairs::EulerianPairs;
-use super::rates::Rates;
-use super::rows::{BodyKernel, EulerianRows, PointColumns};
+use super::rates::VelocityGradients;
+use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use super::stress::Stress;
 use crate::formulations::total_lagrangian::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
@@ -114,11 +114,11 @@ impl Formulation for Eulerian {
             if let Some(artificial_stress) = parameters.artificial_stress {
                 artificial_stress.add(*id, &kernel, support, sim);
             }
-            kernels.push(BodyKernel { kernel, divergence: parameters.divergence, control: None });
+            kernels.push(EulerianKernel { kernel, divergence: parameters.divergence, control: None });
             let name = &sim.body(*id).name;
             let touches_itself = sim.scene().touching_pairs().has(name, name);
             let rows = sim.body(*id).rows.clone();
-            listed.push(ListedBody { id: *id, rows, support, repeats, touches_itself });
+            listed.push(EulerianBody { id: *id, rows, support, repeats, touches_itself });
         }
         let ids: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         let phase = sim.body(ids[0]).phase;
@@ -143,7 +143,7 @@ impl Formulation for Eulerian {
 }
 
 /// The share of its stress that every row carries such that a uniform stress is in balance beside held sides at the start; empty where all carry all of it.
-fn shares_of(listed: &[ListedBody], kernels: &[BodyKernel], sim: &SimBuilder<'_>) -> Vec<f64> {
+fn shares_of(listed: &[EulerianBody], kernels: &[EulerianKernel], sim: &SimBuilder<'_>) -> Vec<f64> {
     let bodies = listed.iter().zip(kernels).map(|(body, of)| {
         let (plan, repeats) = (sim.body(body.id), &body.repeats[..]);
         let held = HeldBody {
@@ -161,7 +161,7 @@ fn shares_of(listed: &[ListedBody], kernels: &[BodyKernel], sim: &SimBuilder<'_>
 }
 
 fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
-    let rates = System::new(Stage::Gradients, RATES, Rates { phase })
+    let rates = System::new(Stage::Gradients, RATES, VelocityGradients { phase })
         .on_phases([phase])
         .reads_near::<Position>()
         .reads_near::<ReferencePosition>()
@@ -187,7 +187,7 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
     let stress = if is_dilated { stress.reads::<DilatationRate>() } else { stress };
     let has_tensile_stress = sim.columns(phase).get(TensileStress::NAME).is_some();
     sim.add_system(if has_tensile_stress { stress.writes::<TensileStress>() } else { stress });
-    let force = InternalForce { phase, gravity: sim.gravity() };
+    let force = EulerianForce { phase, gravity: sim.gravity() };
     let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
     sim.add_system(
         force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),
@@ -204,8 +204,8 @@ impl Eulerian {
 
 /// Fills the columns, and makes lists and sums of the reference configuration.
 fn set_up(
-    listed: Vec<ListedBody>,
-    kernels: Vec<BodyKernel>,
+    listed: Vec<EulerianBody>,
+    kernels: Vec<EulerianKernel>,
     phase: PhaseId,
     setup: &mut Setup<'_>,
 ) -> Result<(), SetupError> {
@@ -220,12 +220,15 @@ fn set_up(
         view.write::<DeformationGradient>().map_err(missing)?.fill(DeformationGradient(DMat3::IDENTITY));
     }
     let mut packed = EulerianRows {
-        lists: Lists::new(listed),
+        lists: EulerianLists::new(listed),
         kernels,
         points: Vec::new(),
         carried: Vec::new(),
-        control: ControlRows::default(),
-        near: Near { around: vec![Surroundings::default(); view.len()], ..Near::default() },
+        control: EulerianControlRows::default(),
+        near: EulerianNeighbors {
+            around: vec![NearbyMotion::default(); view.len()],
+            ..EulerianNeighbors::default()
+        },
         deformation: vec![DMat3::IDENTITY; view.len()],
         stresses: Vec::new(),
         stable_step: Vec::new(),
@@ -255,7 +258,7 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
     let EulerianRows { lists, kernels, points, near, plane, .. } = packed;
     for (body, of) in lists.bodies.iter().zip(kernels) {
         let (rows, of_lists) = (body.rows.clone(), lists.of_rows(body.rows.clone()));
-        let mut rows = NearRows {
+        let mut rows = NeighborRows {
             offsets: &lists.offsets[rows.start..=rows.end],
             neighbors: &mut near.neighbors[of_lists.clone()],
             weights: &mut near.weights[of_lists.clone()],
@@ -265,7 +268,7 @@ fn look_at_reference(packed: &mut EulerianRows, setup: &mut Setup<'_>) -> Result
         };
         let (kernel, support, first) = (of.kernel, body.support, body.rows.start);
         let (lists, plane) = (&lists.neighbors[..], *plane);
-        kernel.dispatch(Look { kernel, support, lists, points, first, plane, rows: &mut rows });
+        kernel.dispatch(LookAtBlock { kernel, support, lists, points, first, plane, rows: &mut rows });
         let free = rows.around.iter().filter(|around| around.inverse_moment == Sym3::ZERO).count();
         let name = &setup.world.body(body.id).name;
         if free == rows.around.len() {

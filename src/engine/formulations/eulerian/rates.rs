@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
 use super::near::LEAST_SPREAD;
-use super::rows::{EulerianRows, Point, PointColumns};
+use super::rows::{EulerianParticle, EulerianRows, PointColumns};
 use super::start;
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::fit;
@@ -19,11 +19,11 @@ use crate::world::{
 };
 
 /// The system.
-pub(super) struct Rates {
+pub(super) struct VelocityGradients {
     pub phase: PhaseId,
 }
 
-impl Run for Rates {
+impl Run for VelocityGradients {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut packed = step.resources.solid_rows_mut::<EulerianRows>(self.phase);
         let view = step.world.phase(self.phase);
@@ -110,7 +110,7 @@ struct Advance<'a> {
     support: f64,
     offsets: &'a [usize],
     neighbors: &'a [u32],
-    points: &'a [Point],
+    points: &'a [EulerianParticle],
     first: usize,
     plane: bool,
     /// Of all rows of the phase, if plugins change volumes.

@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 
-use super::control::{BodyControl, Carried, ControlRows};
-use super::lists::Lists;
-use super::near::Near;
+use super::control::{BodyControl, Carried, EulerianControlRows};
+use super::lists::EulerianLists;
+use super::near::EulerianNeighbors;
 use super::parameters::Divergence;
 use crate::kernels::Kernel;
 use crate::parallel::{Lanes4, for_each_block};
@@ -16,14 +16,14 @@ use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
 /// A particle as its neighbours read it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub(super) struct Point {
+pub(super) struct EulerianParticle {
     /// x, and the reference volume V_0 in the last lane: zero for a removed particle.
     pub place: Lanes4,
     /// v, and the present volume V in the last lane.
     pub velocity: Lanes4,
 }
 
-impl Point {
+impl EulerianParticle {
     fn image(&self, map: &Map) -> Self {
         Self {
             place: Lanes4::new(map.place(self.place.xyz()), self.place.0[3]),
@@ -34,7 +34,7 @@ impl Point {
 
 /// How the sums of a body are taken.
 #[derive(Clone, Copy)]
-pub(super) struct BodyKernel {
+pub(super) struct EulerianKernel {
     pub kernel: Kernel,
     pub divergence: Divergence,
     /// Hourglass control along pairs.
@@ -43,19 +43,19 @@ pub(super) struct BodyKernel {
 
 /// What the systems of the formulation share.
 pub(super) struct EulerianRows {
-    pub lists: Lists,
+    pub lists: EulerianLists,
     /// Of every body, as in the lists.
-    pub kernels: Vec<BodyKernel>,
-    pub points: Vec<Point>,
+    pub kernels: Vec<EulerianKernel>,
+    pub points: Vec<EulerianParticle>,
     /// X, for all that compares with the start, and what the control along pairs needs.
     pub carried: Vec<Carried>,
-    pub near: Near,
+    pub near: EulerianNeighbors,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
     /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume V_0.
     pub stresses: Vec<CorrectedStress>,
     /// What the control along pairs makes.
-    pub control: ControlRows,
+    pub control: EulerianControlRows,
     /// Stable step of each body as it is now, s.
     pub stable_step: Vec<f64>,
     /// Plane strain.
@@ -84,7 +84,7 @@ impl EulerianRows {
             self.near.kernels.resize(pairs, 0.0);
             self.near.curvatures.resize(pairs, 0.0);
             let all = position.len() + self.lists.ghosts.len();
-            self.points.resize(all, Point::default());
+            self.points.resize(all, EulerianParticle::default());
             self.stresses.resize(all, CorrectedStress::default());
             self.carried.resize(all, Carried::default());
             self.control.resize(position.len());
@@ -102,7 +102,7 @@ impl EulerianRows {
         let PointColumns { position, velocity, volume, deformation } = *columns;
         let rows = (&mut self.points[..n], position, velocity, volume, deformation);
         type Rows<'a> = (
-            &'a mut [Point],
+            &'a mut [EulerianParticle],
             &'a [Position],
             &'a [Velocity],
             &'a [ReferenceVolume],
@@ -110,14 +110,14 @@ impl EulerianRows {
         );
         for_each_block(rows, &mut Vec::new(), &|_, (points, x, v, volume, f): Rows<'_>| {
             for (k, point) in points.iter_mut().enumerate() {
-                *point = Point {
+                *point = EulerianParticle {
                     place: Lanes4::new(x[k].0 - back * v[k].0, volume[k].0),
                     velocity: Lanes4::new(v[k].0, volume[k].0 * f[k].0.determinant()),
                 };
             }
         });
         gone.for_each(|row| self.points[row].place.0[3] = 0.0);
-        self.lists.ghosts.fill(&mut self.points, |ghost, point: &Point| point.image(ghost.map));
+        self.lists.ghosts.fill(&mut self.points, |ghost, point: &EulerianParticle| point.image(ghost.map));
     }
 
     /// Hands what is carried from the start on to the ghosts.

@@ -6,9 +6,9 @@ use super::artificial_stress;
 use super::control::{self, Carried, HourglassEnergy};
 use super::dilatation::Dilatation;
 use super::force;
-use super::near::{Look, NearRows, Surroundings};
+use super::near::{LookAtBlock, NearbyMotion, NeighborRows};
 use super::parameters::Divergence;
-use super::rows::{BodyKernel, EulerianRows, Point, PointColumns};
+use super::rows::{EulerianKernel, EulerianParticle, EulerianRows, PointColumns};
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
@@ -146,7 +146,7 @@ impl Stress {
         let (body, kernel) = (&lists.bodies[k], kernels[k]);
         let of_lists = lists.of_rows(rows.clone());
         let own = OwnRows {
-            near: NearRows {
+            near: NeighborRows {
                 offsets: &lists.offsets[rows.start..=rows.end],
                 neighbors: &mut near.neighbors[of_lists.clone()],
                 weights: &mut near.weights[of_lists.clone()],
@@ -209,9 +209,9 @@ impl Stress {
         stable_step.clear();
         for (own, body) in self.solids.iter().zip(&lists.bodies) {
             let rows = (&near.around[body.rows.clone()], &control.stiffness[body.rows.clone()]);
-            type Rows<'a> = (&'a [Surroundings], &'a [f64]);
+            type Rows<'a> = (&'a [NearbyMotion], &'a [f64]);
             let fastest: Largest = sum_over_blocks(rows, &|_, (around, stiffness): Rows<'_>| {
-                let step = |(of, stiffness): (&Surroundings, &f64)| {
+                let step = |(of, stiffness): (&NearbyMotion, &f64)| {
                     let inverse = of.inverse_moment.trace() / axes;
                     1.0 / own.estimate.stable_step_with_pairs(of.weight_sum, inverse, *stiffness)
                 };
@@ -226,7 +226,7 @@ impl Stress {
 
 /// What the pass writes of packed rows, cut by rows of one body.
 struct OwnRows<'a> {
-    near: NearRows<'a>,
+    near: NeighborRows<'a>,
     deformation: &'a mut [DMat3],
     carried: &'a mut [Carried],
     stresses: &'a mut [CorrectedStress],
@@ -236,10 +236,10 @@ split_by_rows!(OwnRows { near, deformation, carried, stresses });
 
 /// The pass over one body.
 struct StressPass<'a> {
-    kernel: BodyKernel,
+    kernel: EulerianKernel,
     support: f64,
     lists: &'a [u32],
-    points: &'a [Point],
+    points: &'a [EulerianParticle],
     volume: &'a [ReferenceVolume],
     mass: &'a [Mass],
     shares: &'a [f64],
@@ -250,7 +250,7 @@ struct StressPass<'a> {
 
 impl StressPass<'_> {
     /// The share of its stress that a row carries.
-    fn share(&self, row: usize, around: &Surroundings) -> f64 {
+    fn share(&self, row: usize, around: &NearbyMotion) -> f64 {
         let is_fitted = around.inverse_moment != Sym3::ZERO;
         if is_fitted { self.shares.get(row).copied().unwrap_or(1.0) } else { 0.0 }
     }
@@ -262,10 +262,11 @@ impl StressPass<'_> {
         own: OwnRows<'_>,
         block: &mut SolidBlock,
     ) -> SolidSum {
-        let Self { kernel: BodyKernel { kernel, divergence, .. }, support, lists, points, plane, .. } = *self;
+        let Self { kernel: EulerianKernel { kernel, divergence, .. }, support, lists, points, plane, .. } =
+            *self;
         let (n, first) = (rows.deformation.len(), block.first);
         let OwnRows { mut near, deformation, carried, stresses } = own;
-        kernel.dispatch(Look { kernel, support, lists, points, first, plane, rows: &mut near });
+        kernel.dispatch(LookAtBlock { kernel, support, lists, points, first, plane, rows: &mut near });
         deformation.copy_from_slice(rows.deformation);
         for (k, f) in deformation.iter().enumerate() {
             block.gradient[k] = *f - DMat3::IDENTITY;
@@ -318,9 +319,9 @@ impl StressPass<'_> {
 pub(super) fn corrected(
     divergence: Divergence,
     stress: &DMat3,
-    around: &Surroundings,
+    around: &NearbyMotion,
     mass: f64,
-    point: &Point,
+    point: &EulerianParticle,
 ) -> DMat3 {
     match divergence {
         Divergence::Adjoint => *stress * around.inverse_moment.to_matrix(),

@@ -7,11 +7,11 @@ use glam::DVec3;
 use super::formulation::FluidBody;
 use super::systems;
 use crate::formulations::fluid::cloud::{
-    FlowCloud, FluidState, Group, Neighborhood, Role, Surface, Viscosities,
+    BoundarySurface, FlowCloud, FluidState, Group, Neighborhood, Role, Viscosities,
 };
-use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
+use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::{
-    FlowPairs, GapPairs, Moves, NearRows, Side, Skins, Thickness, ThinBody,
+    FlowPairs, GapPairs, GapSide, Moves, NearRows, Skins, Thickness, ThinBody,
 };
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
@@ -138,7 +138,7 @@ impl Bodies {
     /// Adds the walls.
     fn add_walls(&mut self, walls: &[WallBody], sim: &SimBuilder<'_>) {
         for WallBody { id, parameters } in walls {
-            let surface = Surface {
+            let surface = BoundarySurface {
                 no_slip: parameters.slip == Slip::No,
                 suction: parameters.suction,
                 velocity: parameters.surface_velocity.0,
@@ -156,7 +156,8 @@ impl Bodies {
         common: &Common,
         sim: &SimBuilder<'_>,
     ) -> Result<(), SetupError> {
-        let role = Role::Boundary(Surface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true });
+        let role =
+            Role::Boundary(BoundarySurface { no_slip: true, suction, velocity: DVec3::ZERO, moved: true });
         for &id in moved {
             let body = sim.body(id);
             let first = self.add(body, role);
@@ -200,7 +201,7 @@ fn cloud(
         plane,
         periods: Periods::new(&periodic),
         before: Vec::new(),
-        records: vec![Record::default(); total],
+        records: vec![FlowParticle::default(); total],
         blocks,
         pairs: FlowPairs::new(skins, periodic, ends, thin, plane).with_gaps(gaps),
         near: NearRows::default(),
@@ -217,11 +218,11 @@ fn cloud(
 }
 
 /// The boundaries as the search for gaps sees them. The pressure of a gap does not answer to its volume, as that of a fluid would, and would feed vibrations of deformable bodies.
-fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<Side> {
+fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     let copies = |body: BodyId| groups.iter().filter(|group| group.body == body).count();
     let side = |group: &Group| {
         let Role::Boundary(surface) = &group.role else { return None };
-        Some(Side {
+        Some(GapSide {
             body: group.body,
             rows: group.cloud.clone(),
             moves: if surface.moved { Moves::Free } else { Moves::Wall },

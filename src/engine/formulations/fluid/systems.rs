@@ -6,7 +6,7 @@ use crate::formulations::fluid::cloud::{
     Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
-use crate::formulations::fluid::density::{Continuity, DensityShift, EquationOfState};
+use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
 use crate::formulations::fluid::rotation::{Couples, Spin};
 use crate::formulations::fluid::setup::advice;
@@ -120,7 +120,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
             .touches_all(shift)
             .writes::<Density>(),
     );
-    let pressure = EquationOfState { mach: Vec::new(), sums: Vec::new() };
+    let pressure = ApplyState { mach: Vec::new(), sums: Vec::new() };
     sim.add_system(
         System::new(Stage::Constitutive, "fluid_pressure", pressure)
             .on_phases([fluid])

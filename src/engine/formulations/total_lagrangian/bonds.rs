@@ -10,7 +10,7 @@ use super::reach::Ellipsoids;
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
 use crate::linalg::Sym3;
-use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, Support};
+use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii};
 use crate::parallel::{BLOCK, block_count};
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
@@ -93,7 +93,7 @@ impl BodyBonds<'_> {
     fn neighbors(&self, search: &mut NeighborSearch) -> Result<NeighborList, NeighborError> {
         let mut list = NeighborList::default();
         let mut find = |positions: &[DVec3], support: &[f64]| {
-            let cloud = Cloud { positions, support: Support::PerParticle(support) };
+            let cloud = Cloud { positions, support: SupportRadii::PerParticle(support) };
             search.within(cloud, 0.0, &Periodic::NONE, &mut list)
         };
         let (position, support) = (&self.position[self.rows.clone()], &self.support[self.rows.clone()]);

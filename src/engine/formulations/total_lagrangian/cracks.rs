@@ -11,7 +11,7 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::parallel::{share_picked, sum_over_blocks};
 use crate::symmetry::Ghosts;
 use crate::world::{Damage, Removed};
@@ -30,7 +30,7 @@ pub(in crate::formulations) enum Mark {
 
 /// A particle that holds and has failed neighbours.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::formulations) struct Edge {
+pub(in crate::formulations) struct CrackEdge {
     /// Row in the phase.
     pub row: u32,
     /// Whether a neighbour has failed in the last step.
@@ -43,14 +43,14 @@ pub(in crate::formulations) struct Edge {
 
 /// The edges in a block of rows, to be written.
 pub(in crate::formulations) struct EdgeRows<'a> {
-    pub edges: &'a mut [Edge],
+    pub edges: &'a mut [CrackEdge],
     /// First row of the block in the phase.
     pub first: usize,
 }
 
 impl<'a> EdgeRows<'a> {
     /// Those of `edges` in `n` rows from `first` on.
-    pub fn of(edges: &'a mut [Edge], first: usize, n: usize) -> Self {
+    pub fn of(edges: &'a mut [CrackEdge], first: usize, n: usize) -> Self {
         let all = EdgeRows { edges, first: 0 };
         let (_, rest) = all.split(first);
         rest.split(n).0
@@ -71,7 +71,7 @@ pub(in crate::formulations) struct Cracks {
     /// Of every row; empty before anything fails.
     pub marks: Vec<Mark>,
     /// Ascending by row.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<CrackEdge>,
     /// Rows at either side of a crack, ascending.
     rows: Vec<u32>,
     /// Number of failed rows that the marks know of.
@@ -132,7 +132,7 @@ impl Cracks {
         rows.sort_unstable();
         rows.dedup();
         edges.clear();
-        edges.extend(rows.iter().map(|&row| Edge {
+        edges.extend(rows.iter().map(|&row| CrackEdge {
             row,
             is_new: neighbors(row).any(|j| marks[j] == Mark::Fresh),
             stress: DMat3::ZERO,
@@ -174,7 +174,13 @@ impl Cracks {
     }
 
     /// The force, N, that the second pass puts on a row at a crack by what folded terms have added to corrected stresses on the other side of a bond or on this one.
-    pub fn force_across(&self, row: usize, bonds: &Bonds, ghosts: &Ghosts, sites: &[Site]) -> DVec3 {
+    pub fn force_across(
+        &self,
+        row: usize,
+        bonds: &Bonds,
+        ghosts: &Ghosts,
+        sites: &[PackedParticle],
+    ) -> DVec3 {
         let edge_of = |row: usize| {
             let place = self.edges.binary_search_by_key(&row, |edge| edge.row as usize);
             place.ok().map(|k| &self.edges[k])

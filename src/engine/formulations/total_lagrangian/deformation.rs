@@ -8,10 +8,10 @@ use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::cracks::{EdgeRows, Mark};
-use super::frame::Frame;
+use super::frame::AffineFrame;
 use super::gather::{CorrectStress, Gather};
 use super::hessian::HessianBlock;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
@@ -53,8 +53,8 @@ impl Split for DeformationRows<'_> {
 pub(super) struct DeformationPass<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
-    pub sites: &'a [Site],
-    pub frame: &'a Frame,
+    pub sites: &'a [PackedParticle],
+    pub frame: &'a AffineFrame,
     /// Which rows have failed; looked at where there are edges.
     pub marks: &'a [Mark],
     pub velocity: &'a [Velocity],

@@ -6,14 +6,14 @@
 
 use glam::{DMat3, DVec3};
 
-use super::cracks::{Edge, EdgeRows, Mark};
+use super::cracks::{CrackEdge, EdgeRows, Mark};
 use super::deformation::DeformationPass;
 use crate::correction::MomentMatrix;
 use crate::linalg::dyad;
 use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum};
 
 /// The displacement gradient that fits the neighbours which count, and its error.
-struct Fit {
+struct EdgeFit {
     gradient: DMat3,
     residual: f64,
     /// Whether there are enough neighbours for one.
@@ -21,7 +21,7 @@ struct Fit {
 }
 
 /// A bond of a particle.
-struct Bond {
+struct EdgeBond {
     /// Row of the neighbour, which may be an image.
     to: usize,
     /// V_j w_ij.
@@ -65,7 +65,7 @@ impl DeformationPass<'_> {
     fn add_at_edge(
         &self,
         constitutive: &Constitutive<'_>,
-        edge: &mut Edge,
+        edge: &mut CrackEdge,
         row: &mut FoldedRows<'_>,
         sum: &mut SolidSum,
     ) {
@@ -96,11 +96,11 @@ impl DeformationPass<'_> {
     }
 
     /// The fit over the neighbours whose marks count; the one `of_all` where these are too few, and then nothing resists.
-    fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(Mark) -> bool) -> Fit {
+    fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(Mark) -> bool) -> EdgeFit {
         let mut moment = MomentMatrix::new(if self.plane { 2 } else { 3 });
         self.bonds_of(i, &counts).for_each(|bond| moment.add(bond.weight, bond.arm));
         let Some(inverse) = moment.inverse() else {
-            return Fit { gradient: of_all, residual: 0.0, is_one: false };
+            return EdgeFit { gradient: of_all, residual: 0.0, is_one: false };
         };
         let mut gradient = DMat3::ZERO;
         // What holds may be nearly a plane, and its inverse lose digits: the second time finds them again.
@@ -112,13 +112,13 @@ impl DeformationPass<'_> {
             }
             gradient += rest * inverse.to_matrix();
         }
-        let error = |bond: Bond| bond.weight * (gradient * bond.arm - bond.change).length_squared();
-        Fit { gradient, residual: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
+        let error = |bond: EdgeBond| bond.weight * (gradient * bond.arm - bond.change).length_squared();
+        EdgeFit { gradient, residual: self.bonds_of(i, &counts).map(error).sum(), is_one: true }
     }
 
     /// The power, W, of what a term has added, on the particle and on the neighbours that count.
     fn power(&self, i: usize, added: &Added, counts: impl Fn(Mark) -> bool) -> f64 {
-        let of_bond = |Bond { to, weight, arm, change }: Bond| {
+        let of_bond = |EdgeBond { to, weight, arm, change }: EdgeBond| {
             let signs = self.ghosts.mirror(to).unwrap_or(DVec3::ONE);
             let parting = self.velocity[i].0 - signs * self.velocity[self.ghosts.source(to)].0;
             weight * (added.stress * arm + change * added.stiffness).dot(parting)
@@ -127,20 +127,20 @@ impl DeformationPass<'_> {
     }
 
     /// The bonds with the neighbours whose marks count.
-    fn bonds_of(&self, i: usize, counts: &impl Fn(Mark) -> bool) -> impl Iterator<Item = Bond> {
+    fn bonds_of(&self, i: usize, counts: &impl Fn(Mark) -> bool) -> impl Iterator<Item = EdgeBond> {
         let own = &self.sites[i];
         let that_count = move |(j, _): &(usize, f32)| counts(self.marks[self.ghosts.source(*j)]);
         self.bonds.row(i).filter(that_count).map(move |(j, weight)| {
             let other = &self.sites[j];
             let arm = other.reference.xyz() - own.reference.xyz();
             let change = other.displacement.xyz() - own.displacement.xyz();
-            Bond { to: j, weight: f64::from(weight) * other.reference.0[3], arm, change }
+            EdgeBond { to: j, weight: f64::from(weight) * other.reference.0[3], arm, change }
         })
     }
 }
 
 /// Adds a term to a row with another fit than its own.
-fn add_fitted(term: &dyn FoldedTerm, row: &mut FoldedRows<'_>, fit: &Fit) -> (FoldedEnergy, Added) {
+fn add_fitted(term: &dyn FoldedTerm, row: &mut FoldedRows<'_>, fit: &EdgeFit) -> (FoldedEnergy, Added) {
     let before = row.stress.0[0];
     let modulus = if fit.is_one { row.modulus[0] } else { 0.0 };
     let energy = term.add(&mut FoldedRows {

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::parallel::Lanes4;
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
@@ -13,7 +13,7 @@ use crate::symmetry::Ghosts;
 /// of both is as small as the strains are, and so is what rounding makes of the sums: momentum stays exact for a
 /// body that has gone far and turned.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::formulations) struct Frame {
+pub(in crate::formulations) struct AffineFrame {
     /// First row behind the body.
     pub end: usize,
     /// H.
@@ -22,14 +22,14 @@ pub(in crate::formulations) struct Frame {
     pub displacement: DVec3,
 }
 
-impl Frame {
+impl AffineFrame {
     /// No motion, for the body that ends before row `end`.
     pub fn at_rest(end: usize) -> Self {
         Self { end, gradient: DMat3::ZERO, displacement: DVec3::ZERO }
     }
 
     /// The motion of a particle and its neighbourhood, for the body that ends before row `end`.
-    pub fn of(end: usize, deformation: &DMat3, site: &Site) -> Self {
+    pub fn of(end: usize, deformation: &DMat3, site: &PackedParticle) -> Self {
         let gradient = *deformation - DMat3::IDENTITY;
         let displacement = site.displacement.xyz() - gradient * site.reference.xyz();
         Self { end, gradient, displacement }
@@ -37,15 +37,15 @@ impl Frame {
 
     /// The displacement of a particle without this motion, m.
     #[inline(always)]
-    pub fn rest(&self, site: &Site) -> DVec3 {
+    pub fn rest(&self, site: &PackedParticle) -> DVec3 {
         site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
     }
 }
 
-impl Frame {
+impl AffineFrame {
     /// Takes the stress of a particle into the frame, and completes it by its affine traction.
     #[inline(always)]
-    pub fn complete(&self, stress: &mut CorrectedStress, site: &Site) {
+    pub fn complete(&self, stress: &mut CorrectedStress, site: &PackedParticle) {
         let stiffness = stress.stiffness();
         let Self { gradient, .. } = self;
         for (column, add) in
@@ -61,15 +61,15 @@ impl Frame {
 }
 
 /// Index of the frame of a row.
-pub(in crate::formulations) fn frame_of(frames: &[Frame], row: usize) -> usize {
+pub(in crate::formulations) fn frame_of(frames: &[AffineFrame], row: usize) -> usize {
     frames.partition_point(|frame| frame.end <= row)
 }
 
 /// Fills the stresses of the ghosts, which have their sites. `pull` is the force per volume squared and weight that a row has beside its stress.
 pub(in crate::formulations) fn fill_ghosts(
     ghosts: &Ghosts,
-    frames: &[Frame],
-    sites: &[Site],
+    frames: &[AffineFrame],
+    sites: &[PackedParticle],
     stresses: &mut [CorrectedStress],
     pull: impl Fn(usize) -> DVec3 + Sync,
 ) {

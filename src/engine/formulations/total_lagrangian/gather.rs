@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
-use super::rows::Site;
-use super::spread::{Spread, fit};
+use super::rows::PackedParticle;
+use super::spread::{DisplacementMoment, fit};
 use crate::linalg::Sym3;
 use crate::parallel::{
     BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows,
@@ -14,7 +14,7 @@ use crate::solids::CorrectedStress;
 /// Fits the displacement gradient of a block of particles to the displacements of their neighbours.
 pub(in crate::formulations) struct Gather<'a> {
     pub bonds: &'a Bonds,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
     /// First row of the block in the phase.
     pub first: usize,
     /// Number of rows of the block.
@@ -33,7 +33,8 @@ impl PlaneOrSolid for Gather<'_> {
         for k in 0..count {
             let i = first + k;
             let site = sites[i];
-            let Spread { spread, stretched, square } = Spread::<D>::over(a, bonds, sites, i);
+            let DisplacementMoment { spread, stretched, square } =
+                DisplacementMoment::<D>::over(a, bonds, sites, i);
             // A free particle has a zero inverse, and so F = I.
             let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
@@ -49,7 +50,7 @@ impl PlaneOrSolid for Gather<'_> {
 /// Fits the displacement gradients of the rows of a body, which begin at `first`.
 pub(in crate::formulations) fn fit_gradients(
     bonds: &Bonds,
-    sites: &[Site],
+    sites: &[PackedParticle],
     plane: bool,
     first: usize,
     gradient: &mut [DMat3],

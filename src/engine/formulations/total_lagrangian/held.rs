@@ -6,7 +6,7 @@ use crate::world::BodyId;
 
 /// The particles of a phase that carry a part of their stress, and those that are not seen.
 #[derive(Default)]
-pub(in crate::formulations) struct Held {
+pub(in crate::formulations) struct HeldParticles {
     /// The share of its stress that every row of the phase carries; empty where all carry all of it.
     pub carried: Vec<f64>,
     /// The particles of every body that no other one sees, by their numbers, ascending.
@@ -15,7 +15,7 @@ pub(in crate::formulations) struct Held {
     pub warnings: Vec<String>,
 }
 
-impl Held {
+impl HeldParticles {
     /// Those of the bodies of a phase.
     pub fn of(bodies: &[HeldBody<'_>], sim: &SimBuilder<'_>) -> Self {
         let hidden = bodies.iter().map(|body| (body.plan.id, body.plan.hidden.clone())).collect();

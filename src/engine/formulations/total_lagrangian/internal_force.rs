@@ -8,7 +8,7 @@
 //!   + sum_j V_j w_ij q_j - (sum_j V_j w_ij A_j) X_i - (sum_j V_j w_ij k_j) u_i,      q_j = A_j X_j + k_j u_j
 //! ```
 //!
-//! with A and u in the [`Frame`] of the body, so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
+//! with A and u in the [`AffineFrame`] of the body, so that a neighbour is four products with what stands in its record, and nothing has to be made from the two ends.
 
 use std::ops::Range;
 
@@ -17,9 +17,9 @@ use glam::DVec3;
 use super::bond_sum::BondSum;
 use super::bonds::Bonds;
 use super::cracks::Cracks;
-use super::frame::{Frame, frame_of};
+use super::frame::{AffineFrame, frame_of};
 use super::phase::PackedRows;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Step, StepError};
 use crate::solids::CorrectedStress;
@@ -31,11 +31,11 @@ pub(in crate::formulations) struct InternalForce<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
     pub cracks: &'a Cracks,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
     pub stresses: &'a [CorrectedStress],
     pub self_force: &'a [DVec3],
     /// Of every body.
-    pub frames: &'a [Frame],
+    pub frames: &'a [AffineFrame],
     /// Mass of every particle, kg.
     pub mass: &'a [f64],
     /// Acceleration of gravity, m/s2.
@@ -62,7 +62,7 @@ impl<'a> InternalForce<'a> {
     pub fn add_to_own(&self, rows: Range<usize>, force: &mut [Force]) {
         let start = rows.start;
         for_each_own_block(&mut force[rows], &mut Vec::new(), &|first, force: &mut [Force]| {
-            run_hot_in(self.plane, ForceRows { pass: self, first: start + first, force, adds: true });
+            run_hot_in(self.plane, InternalForceRows { pass: self, first: start + first, force, adds: true });
         });
     }
 
@@ -72,7 +72,10 @@ impl<'a> InternalForce<'a> {
             let start = body.start;
             for_each_own_block(&mut force[body], &mut Vec::new(), &|first, force: &mut [Force]| {
                 let first = start + first;
-                run_hot_in(self.plane, ForceRows { pass: self, first, force: &mut *force, adds: false });
+                run_hot_in(
+                    self.plane,
+                    InternalForceRows { pass: self, first, force: &mut *force, adds: false },
+                );
                 let Self { bonds, ghosts, cracks, sites, .. } = *self;
                 for &row in cracks.rows_of_block(first, force.len()) {
                     let row = row as usize;
@@ -88,7 +91,7 @@ impl<'a> InternalForce<'a> {
     }
 }
 
-struct ForceRows<'a> {
+struct InternalForceRows<'a> {
     pass: &'a InternalForce<'a>,
     first: usize,
     force: &'a mut [Force],
@@ -96,7 +99,7 @@ struct ForceRows<'a> {
     adds: bool,
 }
 
-impl PlaneOrSolid for ForceRows<'_> {
+impl PlaneOrSolid for InternalForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let InternalForce { bonds, sites, stresses, self_force, frames, mass, gravity, .. } = *self.pass;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::bonds::Bonds;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::kernels::Kernel;
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
@@ -29,7 +29,7 @@ pub(in crate::formulations) trait BondedRows: SolidPhase {
     /// Neighbours and weights.
     fn bonds(&self) -> &Bonds;
     /// Original place, volume in the configuration of the weights, and displacement since the start of every row.
-    fn pair_sites(&self) -> &[Site];
+    fn pair_sites(&self) -> &[PackedParticle];
     /// Kernel of every body.
     fn kernels(&self) -> &[BodyKernel];
 }
@@ -81,7 +81,7 @@ impl<R: BondedRows> PairSource for BondPairs<R> {
 struct BodyPairs<'a> {
     bonds: &'a Bonds,
     ghosts: &'a Ghosts,
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     support: &'a [SupportRadius],
     /// Support radius of all particles, m, where it is the same.
     uniform: Option<f64>,
@@ -94,18 +94,18 @@ struct BodyPairs<'a> {
 
 impl PairRows for BodyPairs<'_> {
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch) {
-        run_hot_on(self.plane, Fill { pairs: self, rows, batch });
+        run_hot_on(self.plane, FillBonds { pairs: self, rows, batch });
     }
 }
 
 /// Fills the rows of some particles.
-struct Fill<'a> {
+struct FillBonds<'a> {
     pairs: &'a BodyPairs<'a>,
     rows: Range<usize>,
     batch: &'a mut PairBatch,
 }
 
-impl HotLoop for Fill<'_> {
+impl HotLoop for FillBonds<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -138,7 +138,7 @@ struct FourBonds {
 }
 
 /// The particle of a row in every lane.
-struct Own<A: FourLanes> {
+struct OwnSite<A: FourLanes> {
     reference: Vector<A>,
     displacement: Vector<A>,
     velocity: Vector<A>,
@@ -151,7 +151,7 @@ impl BodyPairs<'_> {
     fn fill_row<A: FourLanes, const GHOSTS: bool>(&self, a: A, i: usize, batch: &mut PairBatch) {
         let Self { bonds, sites, velocity, support, .. } = *self;
         let site = &sites[i];
-        let own = Own {
+        let own = OwnSite {
             reference: Vector::splat(a, site.reference.xyz()),
             displacement: Vector::splat(a, site.displacement.xyz()),
             velocity: Vector::splat(a, velocity.map_or(DVec3::ZERO, |v| v[i].0)),
@@ -184,7 +184,7 @@ impl BodyPairs<'_> {
     fn put<A: FourLanes, const GHOSTS: bool>(
         &self,
         a: A,
-        own: &Own<A>,
+        own: &OwnSite<A>,
         four: FourBonds,
         n: usize,
         room: &mut Room<'_>,

@@ -6,10 +6,10 @@ use glam::{DMat3, DVec3};
 
 use super::bonds::Bonds;
 use super::cracks::Cracks;
-use super::frame::{Frame, fill_ghosts};
+use super::frame::{AffineFrame, fill_ghosts};
 use super::hessian::HessianRows;
 use super::pairs::{BodyKernel, BondedRows};
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, Picked, for_each_block, own_rows, run_hot};
 use crate::ranks::Halo;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -22,12 +22,12 @@ pub(in crate::formulations) struct PackedRows {
     pub ghosts: Ghosts,
     /// Where the reference positions of sites are measured from, m.
     pub origin: DVec3,
-    pub sites: Vec<Site>,
+    pub sites: Vec<PackedParticle>,
     pub stresses: Vec<CorrectedStress>,
     /// The part of the force on each particle that comes from its own corrected stress, over its volume.
     pub self_force: Vec<DVec3>,
     /// Of every body, in the order of rows.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<AffineFrame>,
     pub cracks: Cracks,
     /// Rows of other ranks that the passes read.
     pub halo: Halo,
@@ -62,9 +62,9 @@ impl PackedRows {
     /// Fills the sites of the ghosts.
     pub fn fill_ghost_sites(&mut self) {
         let Self { ghosts, sites, origin, .. } = self;
-        ghosts.fill(sites, |ghost, site: &Site| {
+        ghosts.fill(sites, |ghost, site: &PackedParticle| {
             let reference = ghost.map.place(site.reference.xyz() + *origin) - *origin;
-            Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
+            PackedParticle::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
         });
     }
 
@@ -80,7 +80,7 @@ impl BondedRows for PackedRows {
         &self.bonds
     }
 
-    fn pair_sites(&self) -> &[Site] {
+    fn pair_sites(&self) -> &[PackedParticle] {
         &self.sites
     }
 

@@ -5,7 +5,7 @@ use glam::DMat3;
 use super::bonds::Bonds;
 use super::internal_force::InternalForce;
 use super::phase::PackedRows;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use super::system::Deformation;
 use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
@@ -137,7 +137,7 @@ impl Deformation {
 }
 
 /// The fit F of one row.
-fn fit_of(row: usize, bonds: &Bonds, sites: &[Site]) -> DMat3 {
+fn fit_of(row: usize, bonds: &Bonds, sites: &[PackedParticle]) -> DMat3 {
     let site = &sites[row];
     let (x, u) = (site.reference.xyz(), site.displacement.xyz());
     let mut spread = DMat3::ZERO;

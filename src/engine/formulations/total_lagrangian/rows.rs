@@ -16,14 +16,14 @@ use crate::world::{PhaseView, Position, ReferencePosition, ReferenceVolume};
 /// measured from the middle of the bodies, because sums are taken over X_j before X_i is subtracted.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub struct Site {
+pub struct PackedParticle {
     /// X, and V_0 in the last lane.
     pub reference: Lanes4,
     /// u.
     pub displacement: Lanes4,
 }
 
-impl Site {
+impl PackedParticle {
     /// Packs a particle: X and u in m, V_0 in m3.
     pub fn new(reference: DVec3, displacement: DVec3, volume: f64) -> Self {
         Self { reference: Lanes4::new(reference, volume), displacement: Lanes4::new(displacement, 0.0) }
@@ -42,7 +42,7 @@ pub(super) fn pack(
     view: &PhaseView<'_>,
     origin: DVec3,
     removed: &[u32],
-    sites: &mut [Site],
+    sites: &mut [PackedParticle],
     halo: Option<&Halo>,
 ) -> Result<(), StepError> {
     let position = match halo {
@@ -53,13 +53,13 @@ pub(super) fn pack(
     let volume = view.read_near::<ReferenceVolume>()?;
     type Columns<'a> = (&'a [Position], &'a [ReferencePosition], &'a [ReferenceVolume]);
     let columns = |rows: Range<usize>| (&position[rows.clone()], &reference[rows.clone()], &volume[rows]);
-    let fill = |sites: &mut [Site], (x, reference, volume): Columns<'_>| {
+    let fill = |sites: &mut [PackedParticle], (x, reference, volume): Columns<'_>| {
         for (k, site) in sites.iter_mut().enumerate() {
             let reference = reference[k].0;
-            *site = Site::new(reference - origin, x[k].0 - reference, volume[k].0);
+            *site = PackedParticle::new(reference - origin, x[k].0 - reference, volume[k].0);
         }
     };
-    type Rows<'a> = (&'a mut [Site], Columns<'a>);
+    type Rows<'a> = (&'a mut [PackedParticle], Columns<'a>);
     let body = |_, (sites, columns): Rows<'_>| fill(sites, columns);
     match halo {
         None => {

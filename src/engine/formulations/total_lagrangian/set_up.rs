@@ -7,11 +7,11 @@ use glam::{DMat3, DVec3};
 use super::balance::HeldBody;
 use super::bonds::{BodyBonds, Bonds};
 use super::cracks::Cracks;
-use super::held::Held;
+use super::held::HeldParticles;
 use super::hessian::HessianRows;
 use super::pairs::BodyKernel;
 use super::phase::PackedRows;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use super::support::choose_support;
 use crate::kernels::{Kernel, KernelName};
 use crate::neighbors::NeighborSearch;
@@ -51,7 +51,7 @@ impl BodySetUp {
 }
 
 /// What supports do to the bodies of a phase.
-pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_>) -> Held {
+pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_>) -> HeldParticles {
     let dimension = sim.dimension().count();
     let held = bodies.iter().map(|body| {
         let plan = sim.body(body.id);
@@ -64,19 +64,19 @@ pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_
             stays: body.stays,
         }
     });
-    Held::of(&held.collect::<Vec<_>>(), sim)
+    HeldParticles::of(&held.collect::<Vec<_>>(), sim)
 }
 
 /// The bodies of a phase before the first step.
 pub(super) struct SetUp {
     phase: PhaseId,
     bodies: Vec<BodySetUp>,
-    held: Held,
+    held: HeldParticles,
 }
 
 /// Columns of the reference configuration, of the whole phase.
 #[derive(Clone, Copy)]
-struct Reference<'a> {
+struct ReferenceColumns<'a> {
     /// Positions, m.
     position: &'a [DVec3],
     /// Volumes, m3.
@@ -105,7 +105,7 @@ impl SetUp {
         let position = view.read::<ReferencePosition>().map_err(missing)?;
         let volume = view.read::<ReferenceVolume>().map_err(missing)?;
         let support = view.read::<SupportRadius>().map_err(missing)?;
-        let reference = Reference {
+        let reference = ReferenceColumns {
             position: bytemuck::cast_slice(&position),
             volume: bytemuck::cast_slice(&volume),
             support: bytemuck::cast_slice(&support),
@@ -139,7 +139,7 @@ impl SetUp {
         Ok(())
     }
 
-    fn pack(self, reference: Reference<'_>, setup: &mut Setup<'_>) -> Result<PackedRows, SetupError> {
+    fn pack(self, reference: ReferenceColumns<'_>, setup: &mut Setup<'_>) -> Result<PackedRows, SetupError> {
         let dimension = setup.world.dimension().count();
         let count = reference.position.len();
         let mut bonds = Bonds::default();
@@ -168,9 +168,9 @@ impl SetUp {
         }
         bonds.carried = self.held.carried;
         let origin = middle(reference.position);
-        let mut sites = vec![Site::default(); count + ghosts.len()];
+        let mut sites = vec![PackedParticle::default(); count + ghosts.len()];
         for (site, (x, v)) in sites.iter_mut().zip(reference.position.iter().zip(reference.volume)) {
-            *site = Site::new(*x - origin, DVec3::ZERO, *v);
+            *site = PackedParticle::new(*x - origin, DVec3::ZERO, *v);
         }
         let terms = self.bodies.iter().map(|body| (setup.world.body(body.id).rows.clone(), body.hessian));
         let mut hessian = HessianRows::new(terms);

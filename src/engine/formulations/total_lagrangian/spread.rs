@@ -1,13 +1,13 @@
 //! Weighted sums over the bonds of a particle, and the fit of its deformation gradient to them.
 
 use super::bonds::Bonds;
-use super::rows::Site;
+use super::rows::PackedParticle;
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4};
 
 /// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
 /// wait for each other.
-pub(in crate::formulations) struct Spread<const D: usize> {
+pub(in crate::formulations) struct DisplacementMoment<const D: usize> {
     /// Columns of `sum_j V_j w_ij u_ij (x) X_ij`: X_i is taken off behind the loop. u_ij is made first, so that a body that
     /// has moved as a whole has no gradient, to the bit.
     pub spread: [Lanes4; D],
@@ -17,12 +17,12 @@ pub(in crate::formulations) struct Spread<const D: usize> {
     pub square: Lanes4,
 }
 
-impl<const D: usize> Spread<D> {
+impl<const D: usize> DisplacementMoment<D> {
     const ZERO: Self = Self { spread: [Lanes4::ZERO; D], stretched: Lanes4::ZERO, square: Lanes4::ZERO };
 
     /// The sums over the bonds of row `i`.
     #[inline(always)]
-    pub fn over<A: FourLanes>(a: A, bonds: &Bonds, sites: &[Site], i: usize) -> Self {
+    pub fn over<A: FourLanes>(a: A, bonds: &Bonds, sites: &[PackedParticle], i: usize) -> Self {
         let site = sites[i];
         let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
         let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
@@ -45,7 +45,7 @@ impl<const D: usize> Spread<D> {
     }
 
     #[inline(always)]
-    fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &Site, weight: f32) {
+    fn add<A: FourLanes>(&mut self, a: A, displacement: Lanes4, other: &PackedParticle, weight: f32) {
         let displacement = a.minus(other.displacement, displacement);
         let weighted = a.scale(f64::from(weight) * other.reference.0[3], displacement);
         for axis in 0..D {

@@ -2,7 +2,7 @@
 
 use super::cracks::EdgeRows;
 use super::deformation::{DeformationPass, DeformationRows};
-use super::frame::Frame;
+use super::frame::AffineFrame;
 use super::hessian::{BondedSites, FrameIndifferent};
 use super::phase::{PackedRows, middle};
 use super::removed::RemovedRows;
@@ -92,7 +92,7 @@ impl Deformation {
             let rows = world.body(self.solids.id(k)).rows.clone();
             let middle = middle(&rows);
             share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
-            let frame = Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
+            let frame = AffineFrame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
             frames.push(frame);
             let (marks, plane) = (&cracks.marks[..], self.plane);
             let pass =

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::formulations::total_lagrangian::Ellipsoid;
 use crate::neighbors::{
-    Cloud, NeighborError, NeighborList, NeighborSearch, Parted, Parting, Periodic, Support,
+    Cloud, NeighborError, NeighborList, NeighborSearch, Parted, Parting, Periodic, SupportRadii,
 };
 use crate::symmetry::Ghosts;
 
@@ -96,7 +96,7 @@ impl Candidates {
             self.parting.note(own_places, CELL * largest(own_radii));
         }
         let mut find = |positions: &[DVec3], radii: &[f64]| {
-            let cloud = Cloud { positions, support: Support::PerParticle(radii) };
+            let cloud = Cloud { positions, support: SupportRadii::PerParticle(radii) };
             search.within(cloud, self.skin, &Periodic::NONE, &mut self.list)
         };
         if ghost_rows.is_empty() {

@@ -21,7 +21,7 @@ use glam::{DMat3, DVec3};
 
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
-    BodyKernel, Bonds, Frame, Gather, HessianBlock, Site, fill_ghosts,
+    AffineFrame, BodyKernel, Bonds, Gather, HessianBlock, PackedParticle, fill_ghosts,
 };
 use crate::linalg::Sym3;
 use crate::neighbors::bounds;
@@ -44,12 +44,12 @@ pub(super) struct Control {
     /// Volume V of what holds, m3; zero of all else.
     pub volume: Vec<f64>,
     /// Original position with the volume V where the particle holds, and displacement since the start.
-    pub sites: Vec<Site>,
+    pub sites: Vec<PackedParticle>,
     /// B and k.
     pub stresses: Vec<CorrectedStress>,
     /// The part of the force on each particle that comes from its own B and k, over its volume.
     pub self_force: Vec<DVec3>,
-    pub frames: Vec<Frame>,
+    pub frames: Vec<AffineFrame>,
 }
 
 impl Control {
@@ -99,7 +99,7 @@ impl UpdatedRows {
             lists.weigh_control(&world.body(*body).rows, kernel, &mut control.bonds);
         }
         let (real, all) = (volume.len(), volume.len() + ghosts.len());
-        control.sites.resize(all, Site::default());
+        control.sites.resize(all, PackedParticle::default());
         control.stresses.resize(all, CorrectedStress::default());
         control.self_force.resize(real, DVec3::ZERO);
     }
@@ -108,8 +108,8 @@ impl UpdatedRows {
 /// The sums of the stabilizers of one body.
 pub(super) struct ControlPass<'a> {
     pub bonds: &'a Bonds,
-    pub sites: &'a [Site],
-    pub frame: Frame,
+    pub sites: &'a [PackedParticle],
+    pub frame: AffineFrame,
     /// Plane strain.
     pub plane: bool,
 }

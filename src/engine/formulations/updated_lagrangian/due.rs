@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::parameters::{USUAL_CHANGE, Update};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BondedRows, Bonds, Ellipsoid, Ellipsoids, Site};
+use crate::formulations::total_lagrangian::{BondedRows, Bonds, Ellipsoid, Ellipsoids, PackedParticle};
 use crate::linalg::smallest_and_largest_stretch;
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
@@ -19,7 +19,7 @@ const BESIDE: f64 = 1.5;
 const LOST: f64 = 0.95;
 
 /// When the reference of one body is updated.
-pub(super) struct Rule {
+pub(super) struct UpdateRule {
     pub update: Update,
     /// Spacing of the body, m.
     pub spacing: f64,
@@ -29,7 +29,7 @@ pub(super) struct Rule {
     pub is_elastic: bool,
 }
 
-impl Rule {
+impl UpdateRule {
     /// Whether the reference of the body with these rows is to be updated after the pass of the step of that number.
     pub fn is_due(&self, rows: Range<usize>, number: u64, packed: &UpdatedRows) -> bool {
         let has_changed =
@@ -65,7 +65,7 @@ impl Rule {
         let following: Vec<Ellipsoid> =
             deformation.iter().map(|f| Ellipsoid::new(Ellipsoid::following(&f.0))).collect();
         let ellipsoids = Ellipsoids(&following);
-        let farthest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+        let farthest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
             let distances = (0..own.len()).flat_map(|k| {
                 let i = first_row + first + k;
                 let beside = bonds.row(i).filter(move |(j, _)| {
@@ -91,24 +91,29 @@ fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
 /// The largest distance of two particles that were closer than that at the start, m, and are beside each other in the lists.
 fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64 {
     let (sites, bonds, start) = (packed.pair_sites(), packed.bonds(), rows.start);
-    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let first = start + first;
-        Largest(run_hot(Beside { sites, bonds, rows: first..first + own.len(), square: beside * beside }))
+        Largest(run_hot(LargestDistance {
+            sites,
+            bonds,
+            rows: first..first + own.len(),
+            square: beside * beside,
+        }))
     });
     largest.0.sqrt()
 }
 
 /// Finds the square of the largest present distance of the bonds of some rows that were short at the start, m2.
-struct Beside<'a> {
+struct LargestDistance<'a> {
     /// Original places, and displacements since the start.
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     bonds: &'a Bonds,
     rows: Range<usize>,
     /// Square of the length up to which a bond was short, m2.
     square: f64,
 }
 
-impl HotLoop for Beside<'_> {
+impl HotLoop for LargestDistance<'_> {
     type Output = f64;
 
     #[inline(always)]
@@ -158,7 +163,7 @@ fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
     let shortest =
         packed.ellipsoids[rows.clone()].iter().map(|own| own.shortest).fold(f64::INFINITY, f64::min);
     let least = (most * shortest).powi(2);
-    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[Site]| {
+    let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let changes = own.iter().enumerate().flat_map(|(k, site)| {
             let i = first_row + first + k;
             bonds.row(i).filter_map(move |(j, _)| {

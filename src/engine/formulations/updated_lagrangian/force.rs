@@ -10,7 +10,7 @@ use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
 /// The system of the pass.
-pub(super) struct InternalForce {
+pub(super) struct UpdatedForce {
     pub phase: PhaseId,
     /// Plane strain.
     pub plane: bool,
@@ -18,7 +18,7 @@ pub(super) struct InternalForce {
     pub gravity: DVec3,
 }
 
-impl Run for InternalForce {
+impl Run for UpdatedForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let rows = step.resources.solid_rows::<UpdatedRows>(self.phase);

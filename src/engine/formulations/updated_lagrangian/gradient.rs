@@ -3,7 +3,9 @@
 use glam::{DMat3, DVec3};
 
 use super::control::{ControlPass, ControlRows};
-use crate::formulations::total_lagrangian::{Bonds, CorrectStress, Frame, Gather, HessianBlock, Site};
+use crate::formulations::total_lagrangian::{
+    AffineFrame, Bonds, CorrectStress, Gather, HessianBlock, PackedParticle,
+};
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, run_hot, run_hot_in, split_by_rows};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
@@ -21,21 +23,21 @@ pub(super) struct GradientRows<'a> {
 split_by_rows!(GradientRows { stresses, self_force, control, control_force, hessian });
 
 /// The pass over one body.
-pub(super) struct GradientPass<'a> {
+pub(super) struct UpdatedGradientPass<'a> {
     pub bonds: &'a Bonds,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
     /// F_r, where the reference is not the original one.
     pub gradient: Option<&'a [DMat3]>,
     /// Sums of the stabilizers, where they do not fold into the stress.
     pub control: Option<ControlPass<'a>>,
     /// V_0, m3.
     pub reference_volume: &'a [f64],
-    pub frame: &'a Frame,
+    pub frame: &'a AffineFrame,
     /// Plane strain.
     pub plane: bool,
 }
 
-impl GradientPass<'_> {
+impl UpdatedGradientPass<'_> {
     /// Runs the pass over a block of rows.
     pub fn block(
         &self,

@@ -10,8 +10,8 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::candidates::{Candidates, Searched, largest, radii};
-use super::row_loops::{Block, Corrections, Measure, RowPairs, Source, Weights};
-use super::seen::{Columns, Seen, fill, fill_columns, place};
+use super::row_loops::{Corrections, MeasurePairs, PairBlock, PairOrigin, RowPairs, Weights};
+use super::seen::{Columns, SeenParticle, fill, fill_columns, place};
 use crate::formulations::total_lagrangian::{BondError, Bonds, Ellipsoid};
 use crate::kernels::Kernel;
 use crate::neighbors::NeighborSearch;
@@ -23,19 +23,19 @@ const BLOCKS_AT_ONCE: usize = 256;
 
 /// What is kept from one update to the next.
 #[derive(Default)]
-pub(super) struct Lists {
+pub(super) struct ReferenceLists {
     /// Of every body.
     candidates: Vec<Candidates>,
     search: NeighborSearch,
     radii: Vec<f64>,
-    seen: Vec<Seen>,
+    seen: Vec<SeenParticle>,
     columns: Vec<Columns>,
-    blocks: Vec<Block>,
+    blocks: Vec<PairBlock>,
 }
 
 /// The reference of all bodies of a phase.
 #[derive(Clone, Copy)]
-pub(super) struct Reference<'a> {
+pub(super) struct ReferenceOfPhase<'a> {
     /// Places, m.
     pub places: &'a [DVec3],
     /// Volumes, m3.
@@ -48,7 +48,7 @@ pub(super) struct Reference<'a> {
 
 /// A body.
 #[derive(Clone)]
-pub(super) struct ListedBody<'a> {
+pub(super) struct UpdatedBody<'a> {
     /// Number of the body in its formulation.
     pub body: usize,
     pub rows: Range<usize>,
@@ -58,10 +58,10 @@ pub(super) struct ListedBody<'a> {
     pub hidden: &'a [u32],
 }
 
-impl Lists {
+impl ReferenceLists {
     /// Begins a reference of bodies with these rows.
-    pub fn begin(&mut self, reference: &Reference<'_>, bodies: impl Iterator<Item = Range<usize>>) {
-        let Reference { places, volumes, support, ellipsoids, ghosts } = *reference;
+    pub fn begin(&mut self, reference: &ReferenceOfPhase<'_>, bodies: impl Iterator<Item = Range<usize>>) {
+        let ReferenceOfPhase { places, volumes, support, ellipsoids, ghosts } = *reference;
         fill(&mut self.seen, ghosts, ellipsoids, support, (places, volumes));
         self.radii.clear();
         let mut count = 0;
@@ -75,17 +75,17 @@ impl Lists {
     /// Appends the bonds of the next body; bodies must come in the order of their rows.
     pub fn append(
         &mut self,
-        reference: &Reference<'_>,
-        body: &ListedBody<'_>,
+        reference: &ReferenceOfPhase<'_>,
+        body: &UpdatedBody<'_>,
         bonds: &mut Bonds,
     ) -> Result<(), BondError> {
-        let ListedBody { body, rows, ghost_rows, kernel, hidden } = body.clone();
+        let UpdatedBody { body, rows, ghost_rows, kernel, hidden } = body.clone();
         let Self { candidates, search, radii, seen, blocks, .. } = self;
         let searched = Searched { places: reference.places, radii, ghosts: reference.ghosts, hidden };
         let candidates = &mut candidates[body];
         let list = candidates.renewed((rows.clone(), ghost_rows), &searched, search)?;
         let square = largest(&radii[rows.clone()]).powi(2);
-        let source = Source::Near { list, first: rows.start, square };
+        let source = PairOrigin::Near { list, first: rows.start, square };
         let pairs = RowPairs { seen, source, has_ghosts: !reference.ghosts.is_empty() };
         if bonds.offsets.is_empty() {
             bonds.offsets.push(0);
@@ -116,7 +116,7 @@ impl Lists {
     pub fn weigh_control(&mut self, rows: &Range<usize>, kernel: &Kernel, bonds: &mut Bonds) {
         let Self { seen, columns, blocks, .. } = self;
         let Bonds { offsets, neighbors, weights, inverse_moment, reach, weight_sum, .. } = bonds;
-        let source = Source::Known { offsets, neighbors, columns };
+        let source = PairOrigin::Known { offsets, neighbors, columns };
         let pairs = RowPairs { seen, source, has_ghosts: seen.len() > inverse_moment.len() };
         let mut row = rows.start;
         in_waves(&pairs, rows, kernel, blocks, |block| {
@@ -134,7 +134,7 @@ impl Lists {
 }
 
 /// Appends the rows of a block.
-fn append(bonds: &mut Bonds, block: &Block) {
+fn append(bonds: &mut Bonds, block: &PairBlock) {
     let start = bonds.neighbors.len();
     bonds.offsets.extend(block.ends.iter().map(|end| u32::try_from(start + end).unwrap_or(u32::MAX)));
     bonds.neighbors.extend_from_slice(&block.neighbors[..block.len()]);
@@ -151,17 +151,17 @@ fn in_waves(
     pairs: &RowPairs<'_>,
     rows: &Range<usize>,
     kernel: &Kernel,
-    blocks: &mut Vec<Block>,
-    mut take: impl FnMut(&Block),
+    blocks: &mut Vec<PairBlock>,
+    mut take: impl FnMut(&PairBlock),
 ) {
     let (count, plane) = (block_count(rows.len()), kernel.dimension() == 2);
-    blocks.resize_with(blocks.len().max(count.min(BLOCKS_AT_ONCE)), Block::default);
+    blocks.resize_with(blocks.len().max(count.min(BLOCKS_AT_ONCE)), PairBlock::default);
     for group in (0..count).step_by(BLOCKS_AT_ONCE) {
         let wave = &mut blocks[..(count - group).min(BLOCKS_AT_ONCE)];
         wave.par_iter_mut().enumerate().for_each(|(k, block)| {
             let first = rows.start + (group + k) * BLOCK;
             let rows = first..rows.end.min(first + BLOCK);
-            run_hot_on(plane, Measure { pairs, rows: rows.clone(), block: &mut *block });
+            run_hot_on(plane, MeasurePairs { pairs, rows: rows.clone(), block: &mut *block });
             kernel.dispatch(Weights(&mut *block));
             run_hot_on(plane, Corrections { pairs, rows, block });
         });

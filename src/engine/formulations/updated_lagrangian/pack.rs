@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::Site;
+use crate::formulations::total_lagrangian::PackedParticle;
 use crate::parallel::for_each_block;
 use crate::symmetry::Ghost;
 use crate::world::{MissingColumn, PhaseId, Position, ReferencePosition, World};
@@ -18,11 +18,11 @@ impl UpdatedRows {
         let Self { sites, volume, origin, ghosts, .. } = self;
         let (count, origin) = (view.len(), *origin);
         let (position, reference, volume) = (&position[..], &reference[..], &volume[..]);
-        for_each_block(&mut sites[..count], &mut Vec::new(), &|first, sites: &mut [Site]| {
+        for_each_block(&mut sites[..count], &mut Vec::new(), &|first, sites: &mut [PackedParticle]| {
             for (k, site) in sites.iter_mut().enumerate() {
                 let row = first + k;
                 let (x, r) = (position[row].0, reference[row].0);
-                *site = Site::new(r - origin, x - r, volume[row]);
+                *site = PackedParticle::new(r - origin, x - r, volume[row]);
             }
         });
         ghosts.fill(sites, image(origin));
@@ -40,14 +40,18 @@ impl UpdatedRows {
         let original = view.read_near::<ReferencePosition>()?;
         let Self { pair_sites, control, volume, ghosts, .. } = self;
         let (position, original) = (&position[..], &original[..]);
-        let fill = |sites: &mut [Site], origin, volume: &[f64]| {
-            for_each_block(&mut sites[..volume.len()], &mut Vec::new(), &|first, sites: &mut [Site]| {
-                for (k, site) in sites.iter_mut().enumerate() {
-                    let row = first + k;
-                    let (x, start) = (position[row].0, original[row].0);
-                    *site = Site::new(start - origin, x - start, volume[row]);
-                }
-            });
+        let fill = |sites: &mut [PackedParticle], origin, volume: &[f64]| {
+            for_each_block(
+                &mut sites[..volume.len()],
+                &mut Vec::new(),
+                &|first, sites: &mut [PackedParticle]| {
+                    for (k, site) in sites.iter_mut().enumerate() {
+                        let row = first + k;
+                        let (x, start) = (position[row].0, original[row].0);
+                        *site = PackedParticle::new(start - origin, x - start, volume[row]);
+                    }
+                },
+            );
             ghosts.fill(sites, image(origin));
         };
         fill(pair_sites, DVec3::ZERO, volume);
@@ -59,9 +63,9 @@ impl UpdatedRows {
 }
 
 /// The image of the site of a source, measured from `origin`, m.
-fn image(origin: DVec3) -> impl Fn(Ghost<'_>, &Site) -> Site + Sync {
+fn image(origin: DVec3) -> impl Fn(Ghost<'_>, &PackedParticle) -> PackedParticle + Sync {
     move |ghost, site| {
         let reference = ghost.map.place(site.reference.xyz() + origin) - origin;
-        Site::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
+        PackedParticle::new(reference, ghost.map.vector(site.displacement.xyz()), site.reference.0[3])
     }
 }

@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
-use super::due::Rule;
-use super::force::InternalForce;
+use super::due::UpdateRule;
+use super::force::UpdatedForce;
 use super::phase::UpdatedRows;
-use super::set_up::SetUp;
+use super::set_up::UpdatedSetUp;
 use super::system::UpdatedSolids;
 use crate::formulations::total_lagrangian::{BodySetUp, BondPairs};
 use crate::kernels::KernelName;
@@ -121,14 +121,14 @@ impl Formulation for UpdatedLagrangian {
         let rule = |((id, own), solid): (&(BodyId, Self), &SolidBody)| {
             let spacing = sim.body(*id).spacing;
             let is_elastic = solid.law.initial_yield_stress().is_none() && !can_fail;
-            Rule { update: own.update, spacing, h: 0.5 * own.support * spacing, is_elastic }
+            UpdateRule { update: own.update, spacing, h: 0.5 * own.support * spacing, is_elastic }
         };
         let rules = bodies.iter().zip(solids.iter()).map(rule).collect();
         let system = UpdatedSolids::new(phase, plane, solids, rules);
-        let first_lists = SetUp::of(phase, first, system.is_stabilized(), sim);
+        let first_lists = UpdatedSetUp::of(phase, first, system.is_stabilized(), sim);
         sim.add_setup(move |setup| first_lists.run(setup));
         sim.add_system(gradient(phase, system).touches_all(state));
-        let force = InternalForce { phase, plane, gravity: sim.gravity() };
+        let force = UpdatedForce { phase, plane, gravity: sim.gravity() };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
         sim.add_system(
             force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),

@@ -5,9 +5,10 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::control::Control;
-use super::lists::Lists;
+use super::lists::ReferenceLists;
 use crate::formulations::total_lagrangian::{
-    BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, Frame, Held, HessianRows, Site, fill_ghosts, frame_of,
+    AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
+    PackedParticle, fill_ghosts, frame_of,
 };
 use crate::linalg::dyad;
 use crate::parallel::share_rows_of;
@@ -20,16 +21,16 @@ pub(super) struct UpdatedRows {
     /// Neighbours, weights and moments of the reference.
     pub bonds: Bonds,
     /// What no particle sees.
-    pub held: Held,
+    pub held: HeldParticles,
     pub ghosts: Ghosts,
     /// Of every body, in the order of rows.
     pub repeats: Vec<Vec<Repeat>>,
     /// Where the positions of sites are measured from, m.
     pub origin: DVec3,
     /// Position in the reference with the volume V there, and displacement since.
-    pub sites: Vec<Site>,
+    pub sites: Vec<PackedParticle>,
     /// Original position with the volume V, and displacement since the start: what pair terms see where a reference has been updated.
-    pub pair_sites: Vec<Site>,
+    pub pair_sites: Vec<PackedParticle>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,
     /// How far the real rows see.
@@ -40,7 +41,7 @@ pub(super) struct UpdatedRows {
     pub stresses: Vec<CorrectedStress>,
     /// The part of the force on each particle that comes from its own corrected stress, over its volume.
     pub self_force: Vec<DVec3>,
-    pub frames: Vec<Frame>,
+    pub frames: Vec<AffineFrame>,
     /// The stabilizers of bodies whose reference has been updated.
     pub control: Control,
     /// None: particles that have failed leave the sums of the control.
@@ -54,7 +55,7 @@ pub(super) struct UpdatedRows {
     /// Of every body: how many particles carry no stress for want of neighbours, from the start on.
     pub released_at_start: Vec<usize>,
     /// Kept for the next update.
-    pub lists: Lists,
+    pub lists: ReferenceLists,
     /// Internal forces after an update, N: those of the step where no couple is added to the stresses.
     pub force: Vec<Force>,
     /// Whether they are those of the present stresses.
@@ -101,7 +102,7 @@ impl BondedRows for UpdatedRows {
         &self.bonds
     }
 
-    fn pair_sites(&self) -> &[Site] {
+    fn pair_sites(&self) -> &[PackedParticle] {
         if self.has_followed() { &self.pair_sites } else { &self.sites }
     }
 

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::is_original;
-use super::lists::{ListedBody, Reference};
+use super::lists::{ReferenceOfPhase, UpdatedBody};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BodyKernel, BondError, Ellipsoid, Ellipsoids, Site};
+use crate::formulations::total_lagrangian::{BodyKernel, BondError, Ellipsoid, Ellipsoids, PackedParticle};
 use crate::neighbors::bounds;
 use crate::parallel::for_each_block;
 use crate::schedule::StepError;
@@ -79,10 +79,10 @@ impl UpdatedRows {
             let (repeats, reach) = follow(repeats, low, high, widest);
             let ghost_rows = self.ghosts.add(rows.clone(), position, reach, &repeats);
             let hidden = self.held.hidden_of(kernel.body);
-            bodies.push(ListedBody { body: k, rows, ghost_rows, kernel: kernel.kernel, hidden });
+            bodies.push(UpdatedBody { body: k, rows, ghost_rows, kernel: kernel.kernel, hidden });
         }
         let Self { lists, bonds, volume, ellipsoids, ghosts, kernels, .. } = self;
-        let reference = Reference { places: position, volumes: volume, support, ellipsoids, ghosts };
+        let reference = ReferenceOfPhase { places: position, volumes: volume, support, ellipsoids, ghosts };
         lists.begin(&reference, bodies.iter().map(|body| body.rows.clone()));
         bonds.clear();
         for (own, BodyKernel { body, .. }) in bodies.iter().zip(kernels) {
@@ -94,7 +94,7 @@ impl UpdatedRows {
     /// Gives all rows and their ghosts a place.
     fn resize(&mut self) {
         let (real, all) = (self.volume.len(), self.volume.len() + self.ghosts.len());
-        self.sites.resize(all, Site::default());
+        self.sites.resize(all, PackedParticle::default());
         self.stresses.resize(all, CorrectedStress::default());
         self.hessian.resize(real, self.ghosts.len());
     }
@@ -141,7 +141,7 @@ impl UpdatedRows {
         }
         self.weigh_control(world, original, failed);
         if self.has_followed() {
-            self.pair_sites.resize(self.sites.len(), Site::default());
+            self.pair_sites.resize(self.sites.len(), PackedParticle::default());
         }
         Ok(())
     }

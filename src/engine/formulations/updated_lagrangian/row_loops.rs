@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::seen::{Columns, Own, Seen};
+use super::seen::{Columns, OwnParticle, SeenParticle};
 use crate::correction::{MomentMatrix, add_moment};
 use crate::kernels::{KernelProfile, KernelVisitor, ProfiledKernel};
 use crate::linalg::Sym3;
@@ -13,7 +13,7 @@ use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, run_hot};
 
 /// The rows of a block. Those of pairs are longer than what is used.
 #[derive(Default)]
-pub(super) struct Block {
+pub(super) struct PairBlock {
     /// Where those of each row end.
     pub ends: Vec<usize>,
     pub neighbors: Vec<u32>,
@@ -42,7 +42,7 @@ pub(super) struct Correction {
 
 /// Where pairs come from.
 #[derive(Clone, Copy)]
-pub(super) enum Source<'a> {
+pub(super) enum PairOrigin<'a> {
     /// Of those that may be neighbours, who is within the ellipsoids.
     Near {
         /// A row for every particle of the body.
@@ -65,8 +65,8 @@ pub(super) enum Source<'a> {
 /// Pairs of all rows.
 #[derive(Clone, Copy)]
 pub(super) struct RowPairs<'a> {
-    pub seen: &'a [Seen],
-    pub source: Source<'a>,
+    pub seen: &'a [SeenParticle],
+    pub source: PairOrigin<'a>,
     /// Whether there are ghosts.
     pub has_ghosts: bool,
 }
@@ -74,7 +74,7 @@ pub(super) struct RowPairs<'a> {
 /// The lanes that hold one of that many neighbours.
 const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
 
-impl Block {
+impl PairBlock {
     /// Makes room for a row of that many pairs, four at a time, behind those that are used.
     #[inline(always)]
     fn reserve(&mut self, used: usize, count: usize) {
@@ -115,13 +115,13 @@ fn of<T>(all: &[T], [j, k, l, m]: [usize; 4]) -> [&T; 4] {
 }
 
 /// Finds the pairs of some rows and measures their distances.
-pub(super) struct Measure<'a, 'b> {
+pub(super) struct MeasurePairs<'a, 'b> {
     pub pairs: &'a RowPairs<'a>,
     pub rows: Range<usize>,
-    pub block: &'b mut Block,
+    pub block: &'b mut PairBlock,
 }
 
-impl HotLoop for Measure<'_, '_> {
+impl HotLoop for MeasurePairs<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -130,7 +130,7 @@ impl HotLoop for Measure<'_, '_> {
     }
 }
 
-impl Measure<'_, '_> {
+impl MeasurePairs<'_, '_> {
     #[inline(always)]
     fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
         let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
@@ -138,17 +138,17 @@ impl Measure<'_, '_> {
         let mut used = 0;
         for i in rows {
             match *source {
-                Source::Near { list, first, square } => {
-                    let own = Own::new(a, &seen[i]);
+                PairOrigin::Near { list, first, square } => {
+                    let own = OwnParticle::new(a, &seen[i]);
                     let count =
                         sieve::<A, GHOSTS>(a, (seen, &own, i), list.row(i - first), square, &mut block.near);
                     block.reserve(used, count);
                     used = measure_near::<A, GHOSTS>(a, (seen, &own, i), count, used, block);
                 }
-                Source::Known { offsets, neighbors, columns } => {
+                PairOrigin::Known { offsets, neighbors, columns } => {
                     let row = &neighbors[offsets[i] as usize..offsets[i + 1] as usize];
                     block.reserve(used, row.len());
-                    let own = Own::moving(a, &seen[i], &columns[i]);
+                    let own = OwnParticle::moving(a, &seen[i], &columns[i]);
                     for n in (0..row.len()).step_by(4) {
                         let rows = four(row, n, i);
                         let (arm, _) = own.arms::<GHOSTS>(a, of(seen, rows));
@@ -177,7 +177,7 @@ fn put(values: &mut [f64], at: usize, four: Lanes4) {
 #[inline(always)]
 fn sieve<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    (seen, own, i): (&[Seen], &Own<A>, usize),
+    (seen, own, i): (&[SeenParticle], &OwnParticle<A>, usize),
     candidates: &[u32],
     square: f64,
     near: &mut Vec<u32>,
@@ -203,12 +203,12 @@ fn sieve<A: FourLanes, const GHOSTS: bool>(
 #[inline(always)]
 fn measure_near<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    (seen, own, i): (&[Seen], &Own<A>, usize),
+    (seen, own, i): (&[SeenParticle], &OwnParticle<A>, usize),
     count: usize,
     mut used: usize,
-    block: &mut Block,
+    block: &mut PairBlock,
 ) -> usize {
-    let Block { neighbors, distance, density, support, near, .. } = block;
+    let PairBlock { neighbors, distance, density, support, near, .. } = block;
     for n in (0..count).step_by(4) {
         let rows = four(&near[..count], n, i);
         let others = of(seen, rows);
@@ -240,14 +240,14 @@ fn measure_near<A: FourLanes, const GHOSTS: bool>(
 }
 
 /// Makes the weights of distances.
-pub(super) struct Weights<'a>(pub &'a mut Block);
+pub(super) struct Weights<'a>(pub &'a mut PairBlock);
 
 impl KernelVisitor for Weights<'_> {
     type Output = ();
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
         let count = self.0.len();
-        let Block { distance, density, support, weights, .. } = self.0;
+        let PairBlock { distance, density, support, weights, .. } = self.0;
         weights.resize(count, 0.0);
         let (distance, density, support) = (&distance[..count], &density[..count], &support[..count]);
         run_hot(WeightLoop { kernel, distance, density, support, weights });
@@ -293,7 +293,7 @@ impl<K: KernelProfile> HotLoop for WeightLoop<'_, K> {
 pub(super) struct Corrections<'a, 'b> {
     pub pairs: &'a RowPairs<'a>,
     pub rows: Range<usize>,
-    pub block: &'b mut Block,
+    pub block: &'b mut PairBlock,
 }
 
 impl HotLoop for Corrections<'_, '_> {
@@ -309,14 +309,14 @@ impl Corrections<'_, '_> {
     #[inline(always)]
     fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
         let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
-        let Block { ends, neighbors, weights, corrections, .. } = block;
+        let PairBlock { ends, neighbors, weights, corrections, .. } = block;
         corrections.clear();
         let mut start = 0;
         for (k, i) in rows.enumerate() {
             let end = ends[k];
             let row = match *source {
-                Source::Near { .. } => &neighbors[start..end],
-                Source::Known { offsets, neighbors, .. } => {
+                PairOrigin::Near { .. } => &neighbors[start..end],
+                PairOrigin::Known { offsets, neighbors, .. } => {
                     &neighbors[offsets[i] as usize..offsets[i + 1] as usize]
                 }
             };
@@ -329,12 +329,12 @@ impl Corrections<'_, '_> {
 #[inline(always)]
 fn correction<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    seen: &[Seen],
+    seen: &[SeenParticle],
     i: usize,
     row: &[u32],
     weights: &[f32],
 ) -> Correction {
-    let own = Own::new(a, &seen[i]);
+    let own = OwnParticle::new(a, &seen[i]);
     let (mut x, mut y, mut z) = (Vector::zero(a), Vector::zero(a), Vector::zero(a));
     let (mut reach, mut weight_sum) = (Vector::zero(a), Number::zero(a));
     for n in (0..row.len()).step_by(4) {

@@ -9,7 +9,7 @@ use crate::symmetry::{Ghost, Ghosts};
 /// A particle, or a ghost.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
-pub(super) struct Seen {
+pub(super) struct SeenParticle {
     /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of places: seen from both ends of a bond, these are then the
     /// same to the last bit.
     pub place: Lanes4,
@@ -24,7 +24,7 @@ pub(super) struct Seen {
 /// The columns of F_r.
 pub(super) type Columns = [Lanes4; 3];
 
-impl Seen {
+impl SeenParticle {
     fn of(ellipsoid: &Ellipsoid, support: f64, place: DVec3, volume: f64) -> Self {
         let g = &ellipsoid.tensor;
         Self {
@@ -49,24 +49,24 @@ impl Seen {
 
 /// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and their ghosts.
 pub(super) fn fill(
-    seen: &mut Vec<Seen>,
+    seen: &mut Vec<SeenParticle>,
     ghosts: &Ghosts,
     ellipsoids: &[Ellipsoid],
     support: &[f64],
     (places, volumes): (&[DVec3], &[f64]),
 ) {
-    seen.resize(places.len() + ghosts.len(), Seen::default());
-    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [Seen]| {
+    seen.resize(places.len() + ghosts.len(), SeenParticle::default());
+    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [SeenParticle]| {
         for (own, row) in seen.iter_mut().zip(first..) {
-            *own = Seen::of(&ellipsoids[row], support[row], places[row], volumes[row]);
+            *own = SeenParticle::of(&ellipsoids[row], support[row], places[row], volumes[row]);
         }
     });
     ghosts.fill(seen, |ghost, own| own.image(&ghost));
 }
 
 /// Moves the particles to other places, m, and gives them other volumes, m3; their ellipsoids stay.
-pub(super) fn place(seen: &mut [Seen], ghosts: &Ghosts, places: &[DVec3], volumes: &[f64]) {
-    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [Seen]| {
+pub(super) fn place(seen: &mut [SeenParticle], ghosts: &Ghosts, places: &[DVec3], volumes: &[f64]) {
+    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [SeenParticle]| {
         for (own, row) in seen.iter_mut().zip(first..) {
             own.place = Lanes4::new(places[row], volumes[row]);
         }
@@ -86,7 +86,7 @@ pub(super) fn fill_columns(columns: &mut Vec<Columns>, ghosts: &Ghosts, gradient
 
 /// A particle in every lane.
 #[derive(Clone, Copy)]
-pub(super) struct Own<A: FourLanes> {
+pub(super) struct OwnParticle<A: FourLanes> {
     place: Vector<A>,
     stretch: [Number<A>; 4],
     shear: [Number<A>; 4],
@@ -95,7 +95,7 @@ pub(super) struct Own<A: FourLanes> {
 
 /// Four pairs.
 #[derive(Clone, Copy)]
-pub(super) struct FourPairs<A: FourLanes> {
+pub(super) struct FourSeen<A: FourLanes> {
     /// Square of the distance as both measure it, m2.
     pub square: Number<A>,
     /// Factor of the kernel.
@@ -104,10 +104,10 @@ pub(super) struct FourPairs<A: FourLanes> {
     pub support: Number<A>,
 }
 
-impl<A: FourLanes> Own<A> {
+impl<A: FourLanes> OwnParticle<A> {
     /// That of a row.
     #[inline(always)]
-    pub fn new(a: A, seen: &Seen) -> Self {
+    pub fn new(a: A, seen: &SeenParticle) -> Self {
         Self {
             place: vector(a, seen.place),
             stretch: numbers(a, seen.stretch),
@@ -118,13 +118,13 @@ impl<A: FourLanes> Own<A> {
 
     /// That of a row with its F_r.
     #[inline(always)]
-    pub fn moving(a: A, seen: &Seen, [x, y, z]: &Columns) -> Self {
+    pub fn moving(a: A, seen: &SeenParticle, [x, y, z]: &Columns) -> Self {
         Self { columns: [vector(a, *x), vector(a, *y), vector(a, *z)], ..Self::new(a, seen) }
     }
 
     /// Pair vectors to four others, m, with their volumes, m3; `GHOSTS` where there are ghosts among them.
     #[inline(always)]
-    pub fn arms<const GHOSTS: bool>(&self, a: A, of: [&Seen; 4]) -> (Vector<A>, Number<A>) {
+    pub fn arms<const GHOSTS: bool>(&self, a: A, of: [&SeenParticle; 4]) -> (Vector<A>, Number<A>) {
         let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
         let arm = Vector::new(a, [x, y, z]) - self.place;
         if !GHOSTS {
@@ -149,7 +149,7 @@ impl<A: FourLanes> Own<A> {
 
     /// What both measure along pair vectors, m, to four others.
     #[inline(always)]
-    pub fn measure(&self, a: A, r: Vector<A>, of: [&Seen; 4]) -> FourPairs<A> {
+    pub fn measure(&self, a: A, r: Vector<A>, of: [&SeenParticle; 4]) -> FourSeen<A> {
         let [xx, yy, zz, density] = a.transpose([of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch]);
         let [xy, xz, yz, support] = a.transpose([of[0].shear, of[1].shear, of[2].shear, of[3].shear]);
         let ([own_xx, own_yy, own_zz, own_density], [own_xy, own_xz, own_yz, own_support]) =
@@ -161,7 +161,7 @@ impl<A: FourLanes> Own<A> {
             let shears = sum(a, own_xz, xz) * r.x + sum(a, own_yz, yz) * r.y;
             twice += (sum(a, own_zz, zz) * r.z + 2.0 * shears) * r.z;
         }
-        FourPairs {
+        FourSeen {
             square: twice * 0.5,
             density: sum(a, own_density, density) * 0.5,
             support: sum(a, own_support, support) * 0.5,

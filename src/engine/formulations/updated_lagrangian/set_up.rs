@@ -4,10 +4,10 @@ use glam::{DMat3, DVec3};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::Control;
-use super::lists::Lists;
+use super::lists::ReferenceLists;
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
-use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, Held, HessianRows, held_of};
+use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, HeldParticles, HessianRows, held_of};
 use crate::linalg::Sym3;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::removal::Leaving;
@@ -18,15 +18,15 @@ use crate::world::{
 };
 
 /// The bodies of a phase before the first step.
-pub(super) struct SetUp {
+pub(super) struct UpdatedSetUp {
     phase: PhaseId,
     bodies: Vec<BodySetUp>,
-    held: Held,
+    held: HeldParticles,
     /// Of every body: whether stabilizers act on it.
     is_stabilized: Vec<bool>,
 }
 
-impl SetUp {
+impl UpdatedSetUp {
     /// That of the bodies of a phase.
     pub fn of(
         phase: PhaseId,
@@ -100,7 +100,7 @@ impl SetUp {
             stable_step: Vec::with_capacity(bodies.len()),
             follows: Vec::with_capacity(bodies.len()),
             released_at_start: Vec::new(),
-            lists: Lists::default(),
+            lists: ReferenceLists::default(),
             force: Vec::new(),
             has_force: false,
             repeats: bodies.into_iter().map(|body| body.repeats).collect(),

@@ -39,7 +39,7 @@ pub(super) fn increments(packed: &UpdatedRows, plane: bool, gradient: &mut Vec<D
 
 /// What the reference places of a body are smoothed by.
 #[derive(Clone, Copy)]
-pub(super) struct Smoothing<'a> {
+pub(super) struct ReferenceSmoothing<'a> {
     pub packed: &'a UpdatedRows,
     /// Original positions, m.
     pub original: &'a [DVec3],
@@ -53,7 +53,7 @@ pub(super) struct Smoothing<'a> {
 
 /// Memory of the relaxation, of real rows and ghosts.
 #[derive(Default)]
-pub(super) struct Relaxation {
+pub(super) struct ReferenceRelaxation {
     held: Vec<Expected>,
     pulls: Vec<Pull>,
     /// What a place has moved from its particle, m, with the volume of what holds.
@@ -96,9 +96,14 @@ struct Pull {
     factor: f64,
 }
 
-impl Relaxation {
+impl ReferenceRelaxation {
     /// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
-    pub fn smooth(&mut self, by: &Smoothing<'_>, rows: Range<usize>, places: &mut [UpdatedReference]) {
+    pub fn smooth(
+        &mut self,
+        by: &ReferenceSmoothing<'_>,
+        rows: Range<usize>,
+        places: &mut [UpdatedReference],
+    ) {
         self.expect(by, &rows, places);
         let Self { held, pulls, moved, next } = self;
         let (bonds, ghosts, start) = (&by.packed.bonds, &by.packed.ghosts, rows.start);
@@ -124,8 +129,8 @@ impl Relaxation {
     }
 
     /// Fills what neighbours see of the rows of a body and its ghosts, from places near the middle of the body.
-    fn expect(&mut self, by: &Smoothing<'_>, rows: &Range<usize>, places: &[UpdatedReference]) {
-        let Smoothing { packed, original, deformation, damage, .. } = *by;
+    fn expect(&mut self, by: &ReferenceSmoothing<'_>, rows: &Range<usize>, places: &[UpdatedReference]) {
+        let ReferenceSmoothing { packed, original, deformation, damage, .. } = *by;
         let UpdatedRows { ghosts, volume, sites, .. } = packed;
         let middle = rows.start + rows.len() / 2;
         let (x_0, original_0, start) = (places[middle].0, original[middle], rows.start);

@@ -6,13 +6,15 @@ use glam::DMat3;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::control::{Control, ControlPass};
-use super::due::Rule;
+use super::due::UpdateRule;
 use super::force;
-use super::gradient::{GradientPass, GradientRows};
+use super::gradient::{GradientRows, UpdatedGradientPass};
 use super::lost_neighbors::widen;
 use super::phase::UpdatedRows;
-use super::smoothed_reference::{Relaxation, Smoothing, increments};
-use crate::formulations::total_lagrangian::{BondedSites, Ellipsoid, Frame, FrameIndifferent, Site};
+use super::smoothed_reference::{ReferenceRelaxation, ReferenceSmoothing, increments};
+use crate::formulations::total_lagrangian::{
+    AffineFrame, BondedSites, Ellipsoid, FrameIndifferent, PackedParticle,
+};
 use crate::notation::quantity;
 use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -35,7 +37,7 @@ pub(super) struct UpdatedSolids {
     plane: bool,
     solids: SolidBodies,
     /// Of every body: when its reference is updated.
-    rules: Vec<Rule>,
+    rules: Vec<UpdateRule>,
     /// Of every body: whether it keeps the reference that it has.
     keeps: Vec<bool>,
     /// Of every body: whether its reference is updated in this step.
@@ -46,13 +48,13 @@ pub(super) struct UpdatedSolids {
     failed: Vec<u32>,
     /// Whether the lists are those of another reference than that of the columns: after a restart.
     is_stale: bool,
-    kept: Kept,
+    kept: KeptMemory,
 }
 
 /// Memory that is kept from one update to the next.
 #[derive(Default)]
-struct Kept {
-    relaxation: Relaxation,
+struct KeptMemory {
+    relaxation: ReferenceRelaxation,
     /// f - I at the places of the reference.
     changes: Vec<DMat3>,
     /// Internal forces before the update, N.
@@ -61,7 +63,7 @@ struct Kept {
 
 impl UpdatedSolids {
     /// The system of these bodies, one rule for each.
-    pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies, rules: Vec<Rule>) -> Self {
+    pub fn new(phase: PhaseId, plane: bool, solids: SolidBodies, rules: Vec<UpdateRule>) -> Self {
         Self {
             phase,
             plane,
@@ -72,7 +74,7 @@ impl UpdatedSolids {
             removed: Vec::new(),
             failed: Vec::new(),
             is_stale: false,
-            kept: Kept::default(),
+            kept: KeptMemory::default(),
         }
     }
 
@@ -140,15 +142,17 @@ impl UpdatedSolids {
         let (follows, is_apart) = (follows[k], control.is_apart[k]);
         let middle = rows.start + rows.len() / 2;
         share_picked(&mut columns.deformation[middle..=middle], &[middle as u32], &rows);
-        let moved = |sites: &[Site]| Frame::of(rows.end, &columns.deformation[middle].0, &sites[middle]);
-        let frame = if follows { Frame::at_rest(rows.end) } else { moved(sites) };
-        let of_control = if is_apart { moved(&control.sites) } else { Frame::at_rest(rows.end) };
+        let moved = |sites: &[PackedParticle]| {
+            AffineFrame::of(rows.end, &columns.deformation[middle].0, &sites[middle])
+        };
+        let frame = if follows { AffineFrame::at_rest(rows.end) } else { moved(sites) };
+        let of_control = if is_apart { moved(&control.sites) } else { AffineFrame::at_rest(rows.end) };
         frames.push(frame);
         control.frames.push(of_control);
         let own_control = if is_apart { rows.clone() } else { 0..0 };
         let control_pass =
             ControlPass { bonds: &control.bonds, sites: &control.sites, frame: of_control, plane };
-        let pass = GradientPass {
+        let pass = UpdatedGradientPass {
             bonds,
             sites,
             gradient: follows.then_some(&gradient[..]),
@@ -259,7 +263,7 @@ impl UpdatedSolids {
         world: &World,
         packed: &UpdatedRows,
         is_due: &[bool],
-        relaxation: &mut Relaxation,
+        relaxation: &mut ReferenceRelaxation,
     ) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let (position, original) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
@@ -281,7 +285,7 @@ impl UpdatedSolids {
             if self.is_smoothed(k) {
                 let (damage, h) = (damage.as_deref(), self.rules[k].h);
                 let (original, plane) = (bytemuck::cast_slice(&original), self.plane);
-                let by = Smoothing { packed, original, deformation, damage, h, plane };
+                let by = ReferenceSmoothing { packed, original, deformation, damage, h, plane };
                 relaxation.smooth(&by, rows, &mut reference);
             }
         }
@@ -294,7 +298,7 @@ impl UpdatedSolids {
         world: &World,
         packed: &mut UpdatedRows,
         is_due: &[bool],
-        kept: &mut Kept,
+        kept: &mut KeptMemory,
     ) -> Result<(), StepError> {
         self.place_reference(world, packed, is_due, &mut kept.relaxation)?;
         let view = world.phase(self.phase);

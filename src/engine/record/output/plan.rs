@@ -12,15 +12,15 @@ use super::system::output_system;
 use super::track::Track;
 use crate::fields::{ChosenField, FieldTable};
 use crate::plugin::SimBuilder;
-use crate::record::probe::{EnergyColumns, Gauge, Probe};
+use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
 use crate::record::{Recorder, stop};
-use crate::scene::{Item, Place, Problem, Source};
+use crate::scene::{Item, Problem, Source, SourcePlace};
 use crate::schedule::Shared;
 use crate::world::BodySet;
 
 /// What will be written, if anything is.
 pub struct OutputPlan {
-    probes: Vec<Probe>,
+    probes: Vec<ResolvedProbe>,
     recorded: Vec<ChosenField>,
     written: Vec<ChosenField>,
     recorders: Vec<Box<dyn Recorder>>,
@@ -41,7 +41,7 @@ impl OutputPlan {
         let mut problems = Vec::new();
         let (mut recorded, mut written): (Vec<ChosenField>, Vec<ChosenField>) = Default::default();
         for (k, name) in scene.record.fields.iter().enumerate() {
-            let place = Place::Path(format!("record.fields[{k}]"));
+            let place = SourcePlace::Path(format!("record.fields[{k}]"));
             match table.choose(name, &everything, false) {
                 Ok(field) if field.width() > 3 && !scene.record.vtk => problems.push(tensor(&field, place)),
                 Ok(field) => {
@@ -55,7 +55,8 @@ impl OutputPlan {
         }
         for (k, recorder) in recorders.iter().enumerate() {
             for name in recorder.fields() {
-                let place = recorder_items.get(k).map_or(Place::Scene, |item| item.problem_with_name("").at);
+                let place =
+                    recorder_items.get(k).map_or(SourcePlace::Scene, |item| item.problem_with_name("").at);
                 match table.choose(&name, &everything, false) {
                     Ok(field) if field.width() > 3 => problems.push(tensor(&field, place)),
                     Ok(field) => add(&mut recorded, field),
@@ -65,7 +66,7 @@ impl OutputPlan {
         }
         let mut probes = Vec::new();
         for (k, probe) in scene.probes.iter().enumerate() {
-            match Probe::resolve(k, probe, sim, &table) {
+            match ResolvedProbe::resolve(k, probe, sim, &table) {
                 Ok(probe) => probes.push(probe),
                 Err(found) => problems.extend(found),
             }
@@ -80,7 +81,7 @@ impl OutputPlan {
     }
 
     /// The probes of the scene.
-    pub fn probes(&self) -> Vec<Probe> {
+    pub fn probes(&self) -> Vec<ResolvedProbe> {
         self.probes.clone()
     }
 
@@ -96,7 +97,7 @@ impl OutputPlan {
         let scene_name = name.unwrap_or_else(|| "scene".to_owned());
         let folder = OutputFolder::new(options, &scene_name, scene.record.vtk);
         let bodies = sim.bodies().iter().map(|body| (body.id, body.name.clone())).collect();
-        let ledger = Probe {
+        let ledger = ResolvedProbe {
             name: "energy".to_owned(),
             interval: scene.record_interval() / 10.0,
             may_be_empty: false,
@@ -137,7 +138,7 @@ fn add(fields: &mut Vec<ChosenField>, field: ChosenField) {
     }
 }
 
-fn tensor(field: &ChosenField, at: Place) -> Problem {
+fn tensor(field: &ChosenField, at: SourcePlace) -> Problem {
     let name = field.name();
     let message = format!("the field `{name}` is a tensor, and a recording shows numbers");
     let help = format!("name a component, such as `{name}.xx`, or a number such as `von_mises`");

@@ -46,7 +46,7 @@ impl Extreme {
 }
 
 /// A series file, once it is open.
-pub(super) struct Table {
+pub(super) struct SeriesFile {
     pub path: PathBuf,
     writer: Option<SeriesWriter>,
     pub extremes: Vec<Extreme>,
@@ -60,7 +60,7 @@ pub(super) struct TableState {
     extremes: Vec<Extreme>,
 }
 
-impl Table {
+impl SeriesFile {
     pub fn new(path: PathBuf) -> Self {
         Self { path, writer: None, extremes: Vec::new() }
     }
@@ -100,7 +100,7 @@ impl Table {
         self.writer.as_mut().map_or(Ok(()), |writer| writer.sync().map(|_| ()))
     }
 
-    /// The state as of the last [`Table::sync`].
+    /// The state as of the last [`SeriesFile::sync`].
     pub fn state(&self) -> TableState {
         let position = self.writer.as_ref().map(SeriesWriter::position);
         TableState { position, extremes: self.extremes.clone() }

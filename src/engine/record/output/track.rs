@@ -5,9 +5,9 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
-use super::table::{Table, TableState};
+use super::table::{SeriesFile, TableState};
 use crate::record::RecordError;
-use crate::record::probe::{EnergyColumns, Gauge, Probe};
+use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
 use crate::schedule::Trigger;
 use crate::schedule::{Ledger, Step, StepError};
 
@@ -23,7 +23,7 @@ pub(super) struct Track {
     may_be_empty: bool,
     gauge: Arc<Gauge>,
     trigger: Trigger,
-    pub table: Table,
+    pub table: SeriesFile,
     /// Time of the last sample, s.
     last: Option<f64>,
     /// Accounts that the file has columns for; none before all systems have run.
@@ -44,20 +44,20 @@ pub(super) struct TrackState {
 
 impl Track {
     /// The track of a probe.
-    pub fn of_probe(probe: Probe, folder: &OutputFolder) -> Self {
+    pub fn of_probe(probe: ResolvedProbe, folder: &OutputFolder) -> Self {
         let file = folder.file(&format!("{}.csv", probe.name));
         Self::new(format!("probe/{}", probe.name), probe, file)
     }
 
     /// A track whose series have the path `path` and whose file is `file`.
-    pub fn new(path: String, probe: Probe, file: std::path::PathBuf) -> Self {
+    pub fn new(path: String, probe: ResolvedProbe, file: std::path::PathBuf) -> Self {
         Self {
             path,
             name: probe.name,
             may_be_empty: probe.may_be_empty,
             gauge: probe.gauge,
             trigger: Trigger::new(probe.interval),
-            table: Table::new(file),
+            table: SeriesFile::new(file),
             last: None,
             accounts: None,
             held: None,

@@ -21,4 +21,4 @@ mod wear;
 
 pub use energies::EnergyColumns;
 pub use flow::{pressure_on_face, water_level};
-pub use resolve::{Gauge, Probe};
+pub use resolve::{Gauge, ResolvedProbe};

@@ -16,7 +16,7 @@ use crate::scene::{self, Line, Problem, Quantity, RelativeTo, Select, Take};
 use crate::world::BodySet;
 
 /// Where a probe measures.
-pub(super) struct Place<'a> {
+pub(super) struct ProbePlace<'a> {
     /// Number of the probe in the scene, and the path of the place in it: empty, or that of the second place.
     k: usize,
     path: &'static str,
@@ -28,7 +28,7 @@ pub(super) struct Place<'a> {
     may_be_empty: bool,
 }
 
-impl<'a> Place<'a> {
+impl<'a> ProbePlace<'a> {
     /// The place of a probe.
     pub fn of(k: usize, probe: &'a scene::Probe) -> Self {
         let default = if probe.quantity == Quantity::Force { Take::Sum } else { Take::Mean };
@@ -78,7 +78,7 @@ type Find<'a> = dyn Fn(&BodySet, bool) -> Result<ChosenField, Vec<Problem>> + 'a
 
 /// The gauge of a field at a place.
 pub(super) fn gauge_at(
-    place: &Place<'_>,
+    place: &ProbePlace<'_>,
     field: &Find<'_>,
     sim: &SimBuilder<'_>,
 ) -> Result<Gauge, Vec<Problem>> {
@@ -105,7 +105,7 @@ pub(super) fn gauge_at(
     }
 }
 
-fn check_number(place: &Place<'_>, field: &ChosenField) -> Result<(), Vec<Problem>> {
+fn check_number(place: &ProbePlace<'_>, field: &ChosenField) -> Result<(), Vec<Problem>> {
     if field.width() <= 3 {
         return Ok(());
     }
@@ -113,7 +113,11 @@ fn check_number(place: &Place<'_>, field: &ChosenField) -> Result<(), Vec<Proble
     Err(place.problem("take", "a tensor has no minimum or maximum", help))
 }
 
-fn points_of_space(place: &Place<'_>, field: &Find<'_>, sim: &SimBuilder<'_>) -> Result<Gauge, Vec<Problem>> {
+fn points_of_space(
+    place: &ProbePlace<'_>,
+    field: &Find<'_>,
+    sim: &SimBuilder<'_>,
+) -> Result<Gauge, Vec<Problem>> {
     // The particles of walls have the pressure that the fluid beside them is to feel, which is not that at their places.
     let all = || sim.bodies().iter();
     let flows = all().any(|body| body.kind == BodyKind::Fluid);
@@ -140,7 +144,7 @@ fn points_of_space(place: &Place<'_>, field: &Find<'_>, sim: &SimBuilder<'_>) ->
 }
 
 fn points_of_body(
-    place: &Place<'_>,
+    place: &ProbePlace<'_>,
     name: &str,
     field: &Find<'_>,
     sim: &SimBuilder<'_>,
@@ -169,7 +173,7 @@ fn points_of_body(
 
 /// The gauge of the surface of one body, at the middles of its facets.
 fn surface(
-    place: &Place<'_>,
+    place: &ProbePlace<'_>,
     on: &Select,
     field: &Find<'_>,
     sim: &SimBuilder<'_>,

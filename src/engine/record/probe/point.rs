@@ -29,7 +29,7 @@ pub struct PointGauge {
 }
 
 /// A particle near the point.
-struct Near {
+struct NearPoint {
     phase: PhaseId,
     weight: f64,
     offset: DVec3,
@@ -48,7 +48,7 @@ impl PointGauge {
         let component = |c: usize| {
             let mean = near.iter().map(|p| p.weight * p.values[c]).sum::<f64>() / total;
             let slope = inverse.map_or(DVec3::ZERO, |inverse| {
-                let centred = |p: &Near| p.weight * (p.values[c] - mean) * (p.offset - mean_offset);
+                let centred = |p: &NearPoint| p.weight * (p.values[c] - mean) * (p.offset - mean_offset);
                 inverse * near.iter().map(centred).sum::<DVec3>()
             });
             mean - slope.dot(mean_offset)
@@ -66,7 +66,7 @@ impl PointGauge {
     }
 
     /// Particles of one phase within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.
-    fn near(&self, world: &World, resources: &Resources) -> Result<Vec<Near>, MissingColumn> {
+    fn near(&self, world: &World, resources: &Resources) -> Result<Vec<NearPoint>, MissingColumn> {
         let mut near = Vec::new();
         for (k, body) in world.bodies().iter().enumerate().filter(|(k, _)| self.field.is_in(BodyId(*k))) {
             let reach = REACH * body.spacing;
@@ -85,10 +85,10 @@ impl PointGauge {
             for (row, offset) in found {
                 let weight = volume * (1.0 - offset.length() / reach).powi(2);
                 let values = self.field.read(world, resources, BodyId(k), row..row + 1)?;
-                near.push(Near { phase: body.phase, weight, offset, values });
+                near.push(NearPoint { phase: body.phase, weight, offset, values });
             }
         }
-        let distance = |particle: &Near| particle.offset.length_squared();
+        let distance = |particle: &NearPoint| particle.offset.length_squared();
         let nearest = near.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(phase) = nearest.map(|particle| particle.phase) {
             near.retain(|particle| particle.phase == phase);

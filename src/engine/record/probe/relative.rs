@@ -6,14 +6,14 @@ use crate::schedule::Resources;
 use crate::world::{MissingColumn, World};
 
 /// Two gauges of the same columns.
-pub(super) struct Relative {
+pub(super) struct RelativeGauge {
     pub first: Gauge,
     pub second: Gauge,
     /// The length of the difference instead of its components.
     pub distance: bool,
 }
 
-impl Measure for Relative {
+impl Measure for RelativeGauge {
     fn columns(&self) -> Vec<(String, &'static str)> {
         if self.distance { vec![("distance".to_owned(), "m")] } else { self.first.columns() }
     }

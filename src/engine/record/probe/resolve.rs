@@ -6,10 +6,10 @@ use super::energies::EnergyColumns;
 use super::flow;
 use super::measure::Measure;
 use super::particles::ParticleGauge;
-use super::place::{Place, gauge_at};
+use super::place::{ProbePlace, gauge_at};
 use super::planar::Planar;
 use super::point::PointGauge;
-use super::relative::Relative;
+use super::relative::RelativeGauge;
 use super::torque::TorqueGauge;
 use super::wear;
 use crate::fields::{ChosenField, FieldTable};
@@ -34,7 +34,7 @@ pub enum Gauge {
 
 /// A probe of the scene, ready to measure.
 #[derive(Clone)]
-pub struct Probe {
+pub struct ResolvedProbe {
     /// Name.
     pub name: String,
     /// Time between two samples, s.
@@ -90,7 +90,7 @@ impl Gauge {
     }
 }
 
-impl Probe {
+impl ResolvedProbe {
     /// Finds what the probe of the scene means.
     ///
     /// # Errors
@@ -156,13 +156,13 @@ fn field_gauge(
     };
     let field = |bodies: &BodySet, all| {
         let found = table.choose(name, bodies, all);
-        found.map_err(|problem| vec![Problem { at: scene::Place::Path(path.clone()), ..*problem }])
+        found.map_err(|problem| vec![Problem { at: scene::SourcePlace::Path(path.clone()), ..*problem }])
     };
-    let first = gauge_at(&Place::of(k, probe), &field, sim)?;
+    let first = gauge_at(&ProbePlace::of(k, probe), &field, sim)?;
     let Some(to) = &probe.relative_to else { return Ok(first) };
-    let second = gauge_at(&Place::of_second(k, probe, to), &field, sim)?;
+    let second = gauge_at(&ProbePlace::of_second(k, probe, to), &field, sim)?;
     let distance = probe.quantity == Quantity::Distance;
-    Ok(Gauge::Measure(Box::new(Relative { first, second, distance })))
+    Ok(Gauge::Measure(Box::new(RelativeGauge { first, second, distance })))
 }
 
 fn energies(k: usize, on: Option<&Select>, sim: &SimBuilder<'_>) -> Result<EnergyColumns, Vec<Problem>> {

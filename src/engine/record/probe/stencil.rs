@@ -17,7 +17,7 @@ const OUTSIDE: f64 = 1.5;
 
 /// A particle near a point of a body.
 #[derive(Clone, Copy, Debug)]
-struct Near {
+struct StencilParticle {
     /// Number of the particle in its body.
     particle: u32,
     weight: f64,
@@ -27,7 +27,7 @@ struct Near {
 
 /// The particles near a point of a body.
 #[derive(Clone, Debug)]
-pub(super) struct Stencil(Vec<Near>);
+pub(super) struct Stencil(Vec<StencilParticle>);
 
 impl Stencil {
     /// Those of points in the reference configuration; none for points that are not of the body.
@@ -54,7 +54,7 @@ impl Stencil {
                     let offset = site.position - point;
                     let closeness = 1.0 - offset.length() / reach;
                     let weight = site.volume * closeness * closeness;
-                    (closeness > 0.0).then_some(Near { particle, weight, offset })
+                    (closeness > 0.0).then_some(StencilParticle { particle, weight, offset })
                 };
                 list.row(row).iter().filter_map(of).collect::<Vec<_>>()
             };
@@ -75,14 +75,15 @@ impl Stencil {
     /// The shares of the particles in the value at the point, by which linear functions are exact: those of the weighted
     /// least-squares plane. Particles that are not `there` have none.
     pub fn shares(&self, axes: usize, there: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
-        let near: Vec<&Near> = self.0.iter().filter(|near| there(near.particle)).collect();
+        let near: Vec<&StencilParticle> = self.0.iter().filter(|near| there(near.particle)).collect();
         let total: f64 = near.iter().map(|near| near.weight).sum();
         let middle = near.iter().map(|near| near.weight * near.offset).sum::<DVec3>() / total;
         let mut moment = MomentMatrix::new(axes);
         near.iter().for_each(|near| moment.add(near.weight, near.offset - middle));
         let slope = moment.inverse().map_or(DVec3::ZERO, |inverse| inverse * middle);
-        let share =
-            |near: &&Near| (near.particle, near.weight * (1.0 / total - slope.dot(near.offset - middle)));
+        let share = |near: &&StencilParticle| {
+            (near.particle, near.weight * (1.0 / total - slope.dot(near.offset - middle)))
+        };
         near.iter().map(share).collect()
     }
 }

@@ -9,14 +9,14 @@ use super::SeriesError;
 
 /// A column of a series.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Column {
+pub struct SeriesColumn {
     /// Its name, without the unit.
     pub name: String,
     /// Its unit, where the header ends in one in brackets: `x[m]`.
     pub unit: Option<String>,
 }
 
-impl Column {
+impl SeriesColumn {
     pub(super) fn new(header: &str) -> Self {
         match header.strip_suffix(']').and_then(|text| text.rsplit_once('[')) {
             Some((name, unit)) => Self { name: name.to_owned(), unit: Some(unit.to_owned()) },
@@ -36,19 +36,19 @@ impl Column {
 #[derive(Debug)]
 pub struct Series {
     path: PathBuf,
-    columns: Vec<Column>,
-    rows: Vec<Row>,
+    columns: Vec<SeriesColumn>,
+    rows: Vec<SeriesRow>,
 }
 
 #[derive(Debug)]
-struct Row {
+struct SeriesRow {
     line: u64,
     cells: StringRecord,
 }
 
 impl Series {
     /// The columns, from left to right.
-    pub fn columns(&self) -> &[Column] {
+    pub fn columns(&self) -> &[SeriesColumn] {
         &self.columns
     }
 
@@ -118,7 +118,7 @@ pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
         let line = lines.of_next(reader.position());
         let mut cells = StringRecord::new();
         match reader.read_record(&mut cells).map_err(csv::Error::into_kind) {
-            Ok(true) => rows.push(Row { line, cells }),
+            Ok(true) => rows.push(SeriesRow { line, cells }),
             Ok(false) => break,
             Err(csv::ErrorKind::UnequalLengths { expected_len, len, .. }) => {
                 let what = format!("line {line} has {len} cells, expected {expected_len}");
@@ -131,9 +131,9 @@ pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
         .first()
         .ok_or_else(|| malformed(path, "it is empty, expected a line of column names".to_owned()))?;
     let columns = if first.cells.iter().all(|cell| cell.parse::<f64>().is_ok()) {
-        (0..first.cells.len()).map(|index| Column { name: index.to_string(), unit: None }).collect()
+        (0..first.cells.len()).map(|index| SeriesColumn { name: index.to_string(), unit: None }).collect()
     } else {
-        rows.remove(0).cells.iter().map(Column::new).collect::<Vec<_>>()
+        rows.remove(0).cells.iter().map(SeriesColumn::new).collect::<Vec<_>>()
     };
     check_names(path, &columns)?;
     Ok(Series { path: path.to_path_buf(), columns, rows })
@@ -169,9 +169,9 @@ impl LineCounter<'_> {
 }
 
 /// Every column must be found by its name.
-pub(super) fn check_names(path: &Path, columns: &[Column]) -> Result<(), SeriesError> {
+pub(super) fn check_names(path: &Path, columns: &[SeriesColumn]) -> Result<(), SeriesError> {
     for (index, column) in columns.iter().enumerate() {
-        let Column { name, .. } = column;
+        let SeriesColumn { name, .. } = column;
         if name.is_empty() {
             return Err(malformed(path, format!("column {} has no name", index + 1)));
         }

@@ -136,7 +136,7 @@ fn reference_data_of_all_habits_is_read() {
     assert_eq!(series.numbers("1").unwrap(), [7.0e-4, 9.7e-4]);
 
     let series = read_text("t[s],x[m/s]\n0,1\n").unwrap();
-    assert_eq!(series.columns()[1], Column { name: "x".to_owned(), unit: Some("m/s".to_owned()) });
+    assert_eq!(series.columns()[1], SeriesColumn { name: "x".to_owned(), unit: Some("m/s".to_owned()) });
     assert_eq!(series.numbers("x").unwrap(), series.numbers("x[m/s]").unwrap());
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::neighbors::{Cloud, NeighborList, Periodic, Support};
+use crate::neighbors::{Cloud, NeighborList, Periodic, SupportRadii};
 use crate::notation::{place, quantity};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::schedule::{Step, StepError};
@@ -13,14 +13,14 @@ use crate::world::{BodyId, Position, Removed};
 const OVERLAP: f64 = 0.6;
 
 /// Looks for particles of bodies inside of each other.
-pub(super) struct Passing {
+pub(super) struct PassingBodies {
     pairs: Vec<[BodyId; 2]>,
     spacings: Vec<f64>,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
 }
 
-impl Passing {
+impl PassingBodies {
     /// All pairs of solids and rigid bodies that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let touching = sim.scene().touching_pairs();
@@ -78,7 +78,7 @@ fn overlap(step: &Step<'_>, bodies: [BodyId; 2], distance: f64) -> Result<Option
             firsts = positions.len();
         }
     }
-    let cloud = Cloud { positions: &positions, support: Support::Uniform(distance) };
+    let cloud = Cloud { positions: &positions, support: SupportRadii::Uniform(distance) };
     let Ok(list) = NeighborList::reference(cloud, &Periodic::NONE) else { return Ok(None) };
     let meets = |i: &usize| list.row(*i).iter().any(|&j| j as usize >= firsts);
     Ok((0..firsts).find(meets).map(|i| positions[i]))

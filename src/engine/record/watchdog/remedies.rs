@@ -1,6 +1,6 @@
 //! What may help a flow that goes wrong: never a plugin that it has.
 
-use crate::formulations::fluid::{FlowCloud, Record};
+use crate::formulations::fluid::{FlowCloud, FlowParticle};
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, SimBuilder};
 use crate::scene::Item;
@@ -54,7 +54,7 @@ impl Remedies {
             if name.is_some_and(|name| name != body) || self.has(group.body, "tensile_control") {
                 return None;
             }
-            let pressures = cloud.records()[group.cloud.clone()].iter().map(Record::pressure);
+            let pressures = cloud.records()[group.cloud.clone()].iter().map(FlowParticle::pressure);
             let (least, largest) = pressures.fold((0.0_f64, 0.0_f64), |(least, largest), pressure| {
                 (least.min(pressure), largest.max(pressure.abs()))
             });

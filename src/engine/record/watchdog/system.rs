@@ -3,7 +3,7 @@
 use super::domain::DomainCheck;
 use super::energy_growth::{EnergyGrowth, resolution};
 use super::hourglass::HourglassShare;
-use super::passing::Passing;
+use super::passing::PassingBodies;
 use super::remedies::Remedies;
 use super::wrong_sign::WrongSign;
 use crate::plugin::SimBuilder;
@@ -24,7 +24,7 @@ struct Watchdog {
     resolution: f64,
     hourglass: HourglassShare,
     wrong_sign: WrongSign,
-    passing: Passing,
+    passing: PassingBodies,
     remedies: Remedies,
     domain: Option<DomainCheck>,
     /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
@@ -40,7 +40,7 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
         resolution: resolution(sim),
         hourglass: HourglassShare::new(sim),
         wrong_sign: WrongSign::new(sim),
-        passing: Passing::new(sim),
+        passing: PassingBodies::new(sim),
         remedies: Remedies::new(sim),
         domain,
         frames: Trigger::after_interval(sim.scene().record_interval()),

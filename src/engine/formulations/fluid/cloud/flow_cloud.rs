@@ -6,7 +6,7 @@ use super::group::{FluidState, Group, Role};
 use super::neighborhood::Neighborhood;
 use super::repelled::Repelled;
 use super::viscosities::Viscosities;
-use crate::formulations::fluid::lanes::{FluidKernel, Periods, Record};
+use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::formulations::fluid::lists::{FlowPairs, NearRows};
 use crate::parallel::{EIGHT, Lanes4};
@@ -43,7 +43,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) periods: Periods,
     /// Positions of what bounds the flow at the start of the step, of bodies that take sub-steps alone.
     pub(in crate::formulations::fluid) before: Vec<DVec3>,
-    pub(in crate::formulations::fluid) records: Vec<Record>,
+    pub(in crate::formulations::fluid) records: Vec<FlowParticle>,
     pub(in crate::formulations::fluid) pairs: FlowPairs,
     /// The blocks of passes in single precision; none in double precision.
     pub(in crate::formulations::fluid) blocks: Option<Box<Blocks>>,
@@ -105,7 +105,7 @@ impl FlowCloud {
     }
 
     /// All particles as the last passes over pairs have seen them, fluids first.
-    pub fn records(&self) -> &[Record] {
+    pub fn records(&self) -> &[FlowParticle] {
         &self.records
     }
 

@@ -41,12 +41,12 @@ pub enum Role {
     /// They flow.
     Fluid(FluidState),
     /// They bound the flow.
-    Boundary(Surface),
+    Boundary(BoundarySurface),
 }
 
 /// What the surface of a boundary does to the fluid.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct BoundarySurface {
     /// Whether the fluid sticks to it.
     pub no_slip: bool,
     /// Whether its pressure may be negative.

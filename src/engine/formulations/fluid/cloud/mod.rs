@@ -36,7 +36,7 @@ mod neighbors;
 
 pub use arrangement::ArrangementPass;
 pub use flow_cloud::{FlowCloud, Near};
-pub use group::{FluidState, Group, Role, Surface};
+pub use group::{BoundarySurface, FluidState, Group, Role};
 pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{ListPosition, NEIGHBORS, Neighbors};

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::flow_cloud::FlowCloud;
 use super::row_pass::NearPairs;
-use crate::formulations::fluid::lanes::{FILLS, Places, as_rows, filled_up};
+use crate::formulations::fluid::lanes::{FILLS, FourPlaces, as_rows, filled_up};
 use crate::parallel::{FourLanes, Number, Vector};
 
 /// Four neighbours of a particle, of one body. Lanes without a neighbour repeat one.
@@ -31,7 +31,8 @@ impl FlowCloud {
     #[inline(always)]
     pub(super) fn four<A: FourLanes>(&self, a: A, i: usize, group: usize, chunk: &[u32]) -> FourNear<A> {
         let rows = as_rows(filled_up(chunk));
-        let Places { x, volume } = Places::gather(a, &self.records, &self.records[i], rows, &self.periods);
+        let FourPlaces { x, volume } =
+            FourPlaces::gather(a, &self.records, &self.records[i], rows, &self.periods);
         let x_ij = Vector::new(a, x);
         let square = x_ij.length_squared().lanes();
         let (square, volume) = self.kernel.within(a, square, FILLS[chunk.len()], volume);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::Sym3;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
 use crate::plugin::BodyPlan;
@@ -38,7 +38,7 @@ impl Neighborhood {
     }
 
     /// The cluster of particle `k`, all zero for a removed particle.
-    pub fn cluster(&self, records: &[Record], k: usize, periodic: &Periodic) -> Cluster {
+    pub fn cluster(&self, records: &[FlowParticle], k: usize, periodic: &Periodic) -> Cluster {
         let own = &records[k];
         if own.volume() == 0.0 {
             return Cluster::default();

@@ -5,9 +5,9 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
-use crate::formulations::fluid::lists::{Growing, Spread};
+use crate::formulations::fluid::lists::{DisplacementBounds, Growing};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 use crate::world::{
     Density, Mass, MissingColumn, Position, Pressure, ReferenceVolume, Removed, Velocity, World,
@@ -16,8 +16,11 @@ use crate::world::{
 impl FlowCloud {
     /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far the particles have moved since
     /// they were packed before.
-    pub(in crate::formulations::fluid) fn pack(&mut self, world: &World) -> Result<Spread, MissingColumn> {
-        let mut moved = Spread::NONE;
+    pub(in crate::formulations::fluid) fn pack(
+        &mut self,
+        world: &World,
+    ) -> Result<DisplacementBounds, MissingColumn> {
+        let mut moved = DisplacementBounds::NONE;
         for group in &self.groups {
             let (view, rows) = (world.phase(group.phase), group.rows.clone());
             let (x, v, removed) =
@@ -55,25 +58,26 @@ impl FlowCloud {
     /// Writes down where the particles are, m.
     pub(in crate::formulations::fluid) fn read_positions(&self, positions: &mut Vec<DVec3>) {
         positions.resize(self.records.len(), DVec3::ZERO);
-        sum_over_blocks(
-            (&mut positions[..], &self.records[..]),
-            &|_, (to, from): (&mut [DVec3], &[Record])| {
-                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.position());
-            },
-        );
+        sum_over_blocks((&mut positions[..], &self.records[..]), &|_,
+                                                                   (to, from): (
+            &mut [DVec3],
+            &[FlowParticle],
+        )| {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = from.position());
+        });
     }
 }
 
-type Common<'a> = (&'a mut [Record], &'a [Position], &'a [Velocity], &'a [Removed]);
+type Common<'a> = (&'a mut [FlowParticle], &'a [Position], &'a [Velocity], &'a [Removed]);
 type Fluids<'a> = (&'a [Mass], &'a [Density], &'a [Pressure]);
 
 struct PackFluid<'a>(Common<'a>, Fluids<'a>);
 
 impl HotLoop for PackFluid<'_> {
-    type Output = Spread;
+    type Output = DisplacementBounds;
 
     #[inline(always)]
-    fn run<A: FourLanes>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let Self((records, x, v, removed), (mass, density, pressure)) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
@@ -88,10 +92,10 @@ impl HotLoop for PackFluid<'_> {
 struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume]);
 
 impl HotLoop for PackBoundary<'_> {
-    type Output = Spread;
+    type Output = DisplacementBounds;
 
     #[inline(always)]
-    fn run<A: FourLanes>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let Self((records, x, v, removed), volume) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
@@ -105,7 +109,7 @@ impl HotLoop for PackBoundary<'_> {
 
 /// Writes the place of a particle, and adds to `moved` how far it is from where it was.
 #[inline(always)]
-fn write<A: FourLanes>(a: A, record: &mut Record, place: Lanes4, moved: &mut Growing) {
+fn write<A: FourLanes>(a: A, record: &mut FlowParticle, place: Lanes4, moved: &mut Growing) {
     moved.add(a, a.minus(place, record.place));
     record.place = place;
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::flow_cloud::FlowCloud;
 use super::near::part_of;
 use super::row_pass::{NearPairs, RowPass};
-use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Rows, SEEN, dot};
+use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, OwnBlock, Rows, SEEN, dot};
 use crate::parallel::{
     BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector, for_each_block, for_each_own_block, run_blocks_on,
     share_wide_rows,
@@ -44,7 +44,7 @@ impl FlowCloud {
             for_each_own_block(of_blocks, &mut Vec::new(), &|k, sums: BlockSums<'_>| {
                 run_blocks_on(
                     self.plane,
-                    SomeBlocks { cloud: self, blocks, pass, first: fluid.start + k, sums },
+                    RowPassBlocks { cloud: self, blocks, pass, first: fluid.start + k, sums },
                 );
             });
             share_wide_rows(lanes, stride);
@@ -67,7 +67,7 @@ impl FlowCloud {
     }
 }
 
-struct SomeBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
+struct RowPassBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
     cloud: &'a FlowCloud,
     blocks: &'a Blocks,
     pass: &'a P,
@@ -75,7 +75,7 @@ struct SomeBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
     sums: BlockSums<'a>,
 }
 
-impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for SomeBlocks<'_, R, S, P> {
+impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBlocks<'_, R, S, P> {
     type Output = ();
 
     #[inline(always)]
@@ -96,7 +96,7 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for SomeBlocks<
                 is_wanted |= !pass.skips(rows[lane] as usize);
             }
             if is_wanted {
-                let own = Own::new(packed, rows);
+                let own = OwnBlock::new(packed, rows);
                 let of_i = lanes_of(a, pass, rows);
                 let row = near.row(first + k);
                 let seen = if *hides { near.lanes(first + k) } else { &[] };

@@ -39,7 +39,7 @@ impl FlowCloud {
         for body in self.bodies_in(first..first + out.len()) {
             let rows = &mut sums[body.start - first..body.end - first];
             for_each_own_block(&mut *rows, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
-                run_hot_on(self.plane, Rows { cloud: self, pass, first: body.start + start, sums });
+                run_hot_on(self.plane, RowPassRows { cloud: self, pass, first: body.start + start, sums });
             });
             share_wide_rows(rows.as_flattened_mut(), S);
         }
@@ -59,14 +59,14 @@ impl FlowCloud {
 }
 
 /// Some particles, whose neighbours are taken four at a time.
-struct Rows<'a, const R: usize, const S: usize, P> {
+struct RowPassRows<'a, const R: usize, const S: usize, P> {
     cloud: &'a FlowCloud,
     pass: &'a P,
     first: usize,
     sums: &'a mut [[DVec3; S]],
 }
 
-impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for Rows<'_, R, S, P> {
+impl<const R: usize, const S: usize, P: RowPass<R, S>> HotLoop for RowPassRows<'_, R, S, P> {
     type Output = ();
 
     #[inline(always)]

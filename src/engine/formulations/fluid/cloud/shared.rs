@@ -1,6 +1,6 @@
 //! Names of what the systems of a flow share beside columns, for their declared access.
 
-/// Position, volume, velocity and pressure of every particle of a flow ([`Record`](crate::formulations::fluid::Record)).
+/// Position, volume, velocity and pressure of every particle of a flow ([`FlowParticle`](crate::formulations::fluid::FlowParticle)).
 pub const FLOW_RECORDS: &str = "flow_records";
 /// Rates of compression of fluid particles.
 pub const COMPRESSION_RATES: &str = "compression_rates";

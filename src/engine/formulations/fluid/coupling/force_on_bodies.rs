@@ -12,7 +12,7 @@ use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
 use crate::formulations::fluid::rotation::Couples;
 use crate::parallel::{Lanes4, for_each_block};
@@ -100,7 +100,7 @@ impl FlowCloud {
         for group in groups.iter().filter(|group| group.short) {
             let before = &before[group.cloud.start - *fluid..group.cloud.end - *fluid];
             let slices = (&mut records[group.cloud.clone()], before);
-            type Rows<'a> = (&'a mut [Record], &'a [DVec3]);
+            type Rows<'a> = (&'a mut [FlowParticle], &'a [DVec3]);
             for_each_block(slices, &mut Vec::new(), &|_, (records, before): Rows<'_>| {
                 for (record, before) in records.iter_mut().zip(before) {
                     record.motion = Lanes4::new((record.position() - *before) / dt, 0.0);

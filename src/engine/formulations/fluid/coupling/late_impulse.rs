@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::drag::DragRows;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use crate::formulations::fluid::cloud::PARTS;
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::integrate::constrained;
 use crate::parallel::{Split, for_each_block, split_by_rows};
 use crate::rigid::RigidBody;
@@ -27,7 +27,7 @@ pub struct Particles<'a> {
     /// Length of the long step, s; zero before the first.
     pub dt: f64,
     /// The particles as they are now.
-    pub records: &'a [Record],
+    pub records: &'a [FlowParticle],
     /// Positions at the start of the long step, m.
     pub before: &'a [DVec3],
     pub mass: &'a [Mass],

@@ -70,7 +70,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                run_hot(Advance { state, dt, by_terms, shift, first, rows })
+                run_hot(AdvanceDensity { state, dt, by_terms, shift, first, rows })
             });
             if change.broken > 0 {
                 return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
@@ -95,7 +95,7 @@ impl Run for Continuity {
 type Rows<'a> = (&'a mut [Density], &'a [f64], &'a [DensityRate], &'a [Mass], &'a [Removed]);
 
 /// The densities of a block.
-struct Advance<'a> {
+struct AdvanceDensity<'a> {
     state: &'a FluidState,
     dt: f64,
     by_terms: bool,
@@ -104,7 +104,7 @@ struct Advance<'a> {
     rows: Rows<'a>,
 }
 
-impl HotLoop for Advance<'_> {
+impl HotLoop for AdvanceDensity<'_> {
     type Output = Change;
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FluidState, Group};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::schedule::{Step, StepError, warn_anew};
 
@@ -20,7 +20,7 @@ const SLOWER: f64 = 0.9;
 
 /// Largest speed of a fluid against the frame of its flow, m/s; `at_rest` is the one against rest. At the speeds of fluids that are no warning
 /// nothing is looked for.
-pub fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], records: &[Record]) -> f64 {
+pub fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], records: &[FlowParticle]) -> f64 {
     if group.fluid().is_none_or(|state| at_rest <= FAST * state.sound_speed) {
         return at_rest;
     }
@@ -30,7 +30,7 @@ pub fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], records: &[
     };
     let bounds = || groups.iter().filter(|group| group.fluid().is_none());
     let mean = |groups: &[Group]| {
-        let sum: DVec3 = groups.iter().flat_map(rows).map(Record::velocity).sum();
+        let sum: DVec3 = groups.iter().flat_map(rows).map(FlowParticle::velocity).sum();
         sum / groups.iter().flat_map(rows).count().max(1) as f64
     };
     let of_bounds = bounds().map(|group| mean(std::slice::from_ref(group)));

@@ -8,4 +8,4 @@ mod state;
 
 pub use continuity::{Continuity, DensityShift, SHIFTING_ENERGY};
 pub use mach::relative_speed;
-pub use state::EquationOfState;
+pub use state::ApplyState;

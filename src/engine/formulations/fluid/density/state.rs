@@ -2,7 +2,7 @@
 
 use super::mach::{Mach, relative_speed};
 use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
@@ -18,7 +18,7 @@ const INTERFACE: f64 = 1.7;
 const VISCOUS: f64 = 0.32;
 
 /// Sets pressure and volume from the density.
-pub struct EquationOfState {
+pub struct ApplyState {
     /// Largest Mach numbers of the bodies that the user has been warned of.
     pub mach: Vec<Mach>,
     pub sums: Vec<StateSum>,
@@ -40,9 +40,9 @@ impl BlockSum for StateSum {
     }
 }
 
-type Rows<'a> = (&'a mut [Pressure], &'a mut [Record], &'a [Density], &'a [Mass], &'a [Removed]);
+type Rows<'a> = (&'a mut [Pressure], &'a mut [FlowParticle], &'a [Density], &'a [Mass], &'a [Removed]);
 
-impl Run for EquationOfState {
+impl Run for ApplyState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let FlowCloud { groups, records, kernel, viscosities, .. } = &mut *cloud;

@@ -12,7 +12,7 @@ const NO_LENGTH: f64 = 1e-24;
 
 /// Which kernel it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shape {
+enum KernelShape {
     WendlandC2,
     WendlandC4,
     WendlandC6,
@@ -22,7 +22,7 @@ enum Shape {
 /// A kernel of one support radius: functions of the distance r, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluidKernel {
-    shape: Shape,
+    shape: KernelShape,
     /// Support radius H, m.
     pub support: f64,
     inverse_support: f64,
@@ -39,16 +39,16 @@ impl FluidKernel {
 
     /// Largest support radius over spacing with which particles do not pair.
     pub fn largest_support(&self) -> f64 {
-        if self.shape == Shape::QuinticSpline { 3.5 } else { 10.0 }
+        if self.shape == KernelShape::QuinticSpline { 3.5 } else { 10.0 }
     }
 
     /// The kernel of that name and support radius H, m, in two or three dimensions; none if particles pair with it.
     pub fn new(name: KernelName, support: f64, dimension: usize) -> Option<Self> {
         let shape = match name {
-            KernelName::WendlandC2 => Shape::WendlandC2,
-            KernelName::WendlandC4 => Shape::WendlandC4,
-            KernelName::WendlandC6 => Shape::WendlandC6,
-            KernelName::QuinticSpline => Shape::QuinticSpline,
+            KernelName::WendlandC2 => KernelShape::WendlandC2,
+            KernelName::WendlandC4 => KernelShape::WendlandC4,
+            KernelName::WendlandC6 => KernelShape::WendlandC6,
+            KernelName::QuinticSpline => KernelShape::QuinticSpline,
             _ => return None,
         };
         let kernel = Kernel::new(name, dimension)?;
@@ -66,10 +66,10 @@ impl FluidKernel {
     /// stable steps depend: 14, 18, 22.286 and 17.397 over the square of the support.
     pub fn smoothing_length(&self) -> f64 {
         let share = match self.shape {
-            Shape::WendlandC2 => 0.5,
-            Shape::WendlandC4 => 0.440_958_551_844_098_4,
-            Shape::WendlandC6 => 0.396_296_961_950_608_5,
-            Shape::QuinticSpline => 0.448_529_218_995_858_5,
+            KernelShape::WendlandC2 => 0.5,
+            KernelShape::WendlandC4 => 0.440_958_551_844_098_4,
+            KernelShape::WendlandC6 => 0.396_296_961_950_608_5,
+            KernelShape::QuinticSpline => 0.448_529_218_995_858_5,
         };
         share * self.support
     }
@@ -90,13 +90,13 @@ impl FluidKernel {
         let q = a.scale(self.inverse_support, r);
         let one = a.splat(1.0);
         match self.shape {
-            Shape::WendlandC2 => cube,
-            Shape::WendlandC4 => a.times(a.times(cube, square), a.scale_add(5.0, q, one)),
-            Shape::WendlandC6 => {
+            KernelShape::WendlandC2 => cube,
+            KernelShape::WendlandC4 => a.times(a.times(cube, square), a.scale_add(5.0, q, one)),
+            KernelShape::WendlandC6 => {
                 let slope = a.scale_add(16.0, q, a.splat(7.0));
                 a.times(a.times(a.times(cube, square), square), a.times_add(q, slope, one))
             }
-            Shape::QuinticSpline => {
+            KernelShape::QuinticSpline => {
                 let above_zero = a.larger(q, a.splat(LEAST_LENGTH));
                 a.scale(QUINTIC_WEIGHT, a.over(spline::<A, 4>(a, q), above_zero))
             }
@@ -106,7 +106,7 @@ impl FluidKernel {
     /// Runs a loop over the weights of this kernel: compiled for Wendland C2 alone, which is the default, and for all others.
     pub(in crate::formulations::fluid) fn run<L: KernelLoop>(&self, hot: L) -> L::Output {
         match self.shape {
-            Shape::WendlandC2 => hot.run(WendlandC2 { slope: -self.inverse_support }),
+            KernelShape::WendlandC2 => hot.run(WendlandC2Lanes { slope: -self.inverse_support }),
             _ => hot.run(self),
         }
     }
@@ -127,16 +127,16 @@ impl FluidKernel {
         let one = a.splat(1.0);
         let q = a.scale(self.inverse_support, r);
         let shape = match self.shape {
-            Shape::WendlandC2 => a.times(fourth, a.scale_add(4.0 * self.inverse_support, r, one)),
-            Shape::WendlandC4 => {
+            KernelShape::WendlandC2 => a.times(fourth, a.scale_add(4.0 * self.inverse_support, r, one)),
+            KernelShape::WendlandC4 => {
                 let slope = a.scale_add(35.0 / 3.0, q, a.splat(6.0));
                 a.times(a.times(fourth, square), a.times_add(q, slope, one))
             }
-            Shape::WendlandC6 => {
+            KernelShape::WendlandC6 => {
                 let slope = a.times_add(q, a.scale_add(32.0, q, a.splat(25.0)), a.splat(8.0));
                 a.times(a.times(fourth, fourth), a.times_add(q, slope, one))
             }
-            Shape::QuinticSpline => a.scale(1.0 / 66.0, spline::<A, 5>(a, q)),
+            KernelShape::QuinticSpline => a.scale(1.0 / 66.0, spline::<A, 5>(a, q)),
         };
         a.scale(self.value_scale, shape)
     }
@@ -169,11 +169,11 @@ impl FluidKernel {
         let q = r * self.inverse_support;
         let s = (1.0 - q).max(0.0);
         let shape = match self.shape {
-            Shape::WendlandC2 => s * s * s,
-            Shape::WendlandC4 => s.powi(5) * (1.0 + 5.0 * q),
-            Shape::WendlandC6 => s.powi(7) * (1.0 + q * (7.0 + 16.0 * q)),
-            Shape::QuinticSpline if q == 0.0 => 1.0,
-            Shape::QuinticSpline => QUINTIC_WEIGHT * truncated_powers(4, q) / q,
+            KernelShape::WendlandC2 => s * s * s,
+            KernelShape::WendlandC4 => s.powi(5) * (1.0 + 5.0 * q),
+            KernelShape::WendlandC6 => s.powi(7) * (1.0 + q * (7.0 + 16.0 * q)),
+            KernelShape::QuinticSpline if q == 0.0 => 1.0,
+            KernelShape::QuinticSpline => QUINTIC_WEIGHT * truncated_powers(4, q) / q,
         };
         self.weight_scale * shape
     }
@@ -184,10 +184,10 @@ impl FluidKernel {
         let q = r * self.inverse_support;
         let s = (1.0 - q).max(0.0);
         let shape = match self.shape {
-            Shape::WendlandC2 => (s * s) * (s * s) * (1.0 + 4.0 * r * self.inverse_support),
-            Shape::WendlandC4 => s.powi(6) * (1.0 + q * (6.0 + 35.0 / 3.0 * q)),
-            Shape::WendlandC6 => s.powi(8) * (1.0 + q * (8.0 + q * (25.0 + 32.0 * q))),
-            Shape::QuinticSpline => truncated_powers(5, q) / 66.0,
+            KernelShape::WendlandC2 => (s * s) * (s * s) * (1.0 + 4.0 * r * self.inverse_support),
+            KernelShape::WendlandC4 => s.powi(6) * (1.0 + q * (6.0 + 35.0 / 3.0 * q)),
+            KernelShape::WendlandC6 => s.powi(8) * (1.0 + q * (8.0 + q * (25.0 + 32.0 * q))),
+            KernelShape::QuinticSpline => truncated_powers(5, q) / 66.0,
         };
         self.value_scale * shape
     }
@@ -201,12 +201,12 @@ pub trait PairShape: Copy + Sync {
 
 /// `(1 - r/H)^3`.
 #[derive(Clone, Copy)]
-pub struct WendlandC2 {
+pub struct WendlandC2Lanes {
     /// -1/H, 1/m.
     slope: f64,
 }
 
-impl PairShape for WendlandC2 {
+impl PairShape for WendlandC2Lanes {
     #[inline(always)]
     fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.or_zero(a.scale_add(self.slope, r, a.splat(1.0)));

@@ -11,4 +11,6 @@ mod batch;
 pub use axial::{Axial, pack_axial, unpack_axial};
 pub use batch::{BATCH, Batch};
 pub use kernel::{FluidKernel, KernelLoop, PairShape};
-pub use record::{FILLS, Four, MASKS, Own, Periods, Places, Record, as_rows, dot, filled_up, sums};
+pub use record::{
+    FILLS, FlowParticle, Four, FourPlaces, MASKS, OwnRecord, Periods, as_rows, dot, filled_up, sums,
+};

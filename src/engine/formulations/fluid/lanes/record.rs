@@ -9,14 +9,14 @@ use crate::parallel::{FourLanes, Lanes4};
 /// A particle as its neighbours see it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
-pub struct Record {
+pub struct FlowParticle {
     /// Position x, m, and volume V, m3.
     pub place: Lanes4,
     /// Velocity v, m/s, and pressure p, Pa.
     pub motion: Lanes4,
 }
 
-impl Record {
+impl FlowParticle {
     /// Position, m.
     #[inline(always)]
     pub fn position(&self) -> DVec3 {
@@ -78,7 +78,7 @@ const SHIFT: f64 = 6755399441055744.0;
 
 /// A particle in every lane, made once for all of its neighbours.
 #[derive(Clone, Copy)]
-pub struct Own<const D: usize> {
+pub struct OwnRecord<const D: usize> {
     /// x_i per axis.
     x: [Lanes4; D],
     /// v_i per axis.
@@ -87,10 +87,10 @@ pub struct Own<const D: usize> {
     pub pressure: Lanes4,
 }
 
-impl<const D: usize> Own<D> {
+impl<const D: usize> OwnRecord<D> {
     /// The lanes of a particle.
     #[inline(always)]
-    pub fn new(record: &Record) -> Self {
+    pub fn new(record: &FlowParticle) -> Self {
         let (mut x, mut v) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
         for axis in 0..D {
             x[axis] = Lanes4::splat(record.place.0[axis]);
@@ -146,20 +146,20 @@ pub const MASKS: [Lanes4; 5] = [
 
 /// Where four neighbours of a particle are.
 #[derive(Clone, Copy)]
-pub struct Places {
+pub struct FourPlaces {
     /// x_ij per axis.
     pub x: [Lanes4; 3],
     /// V_j.
     pub volume: Lanes4,
 }
 
-impl Places {
+impl FourPlaces {
     /// Reads four neighbours.
     #[inline(always)]
     pub fn gather<A: FourLanes>(
         a: A,
-        records: &[Record],
-        own: &Record,
+        records: &[FlowParticle],
+        own: &FlowParticle,
         [j, k, l, m]: [usize; 4],
         periods: &Periods,
     ) -> Self {
@@ -182,8 +182,8 @@ impl<const D: usize> Four<D> {
     #[inline(always)]
     pub fn gather<A: FourLanes, const P: bool>(
         a: A,
-        records: &[Record],
-        own: &Own<D>,
+        records: &[FlowParticle],
+        own: &OwnRecord<D>,
         [j, k, l, m]: [usize; 4],
         periods: &Periods,
     ) -> Self {

@@ -7,8 +7,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::spread::{Growing, Spread};
-use crate::formulations::fluid::lanes::Record;
+use super::spread::{DisplacementBounds, Growing};
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 
@@ -46,7 +46,7 @@ impl Skins {
 }
 
 /// Displacements in a cell: of fluids, and of what bounds them.
-type Pair = [Spread; 2];
+type Pair = [DisplacementBounds; 2];
 
 /// The cells, with the particles that were in each when the lists were built.
 #[derive(Debug, Default)]
@@ -84,12 +84,12 @@ impl Drift {
 
     /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
     /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid.
-    pub fn room(&mut self, records: &[Record], fluid: usize, skins: Skins) -> f64 {
+    pub fn room(&mut self, records: &[FlowParticle], fluid: usize, skins: Skins) -> f64 {
         if self.then.len() != records.len() {
             return f64::NEG_INFINITY;
         }
         let Self { cells, then, spreads, periods, .. } = self;
-        spreads.resize(cells.count(), [Spread::NONE; 2]);
+        spreads.resize(cells.count(), [DisplacementBounds::NONE; 2]);
         spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
             let range = cells.range(cell);
             let (rows, then) = (&cells.rows[range.clone()], &then[range]);
@@ -97,7 +97,9 @@ impl Drift {
             let part = |rows, then| run_hot(Moved { records, rows, then, periods });
             *spread = [part(&rows[..wet], &then[..wet]), part(&rows[wet..], &then[wet..])];
         });
-        let all = spreads.iter().fold(Spread::NONE, |all, [fluid, walls]| all.with(*fluid).with(*walls));
+        let all = spreads
+            .iter()
+            .fold(DisplacementBounds::NONE, |all, [fluid, walls]| all.with(*fluid).with(*walls));
         let far_apart = self.length - skins.support - all.farthest(all);
         if far_apart < 0.0 {
             return far_apart;
@@ -136,17 +138,17 @@ impl Drift {
 
 /// What some particles have moved.
 struct Moved<'a> {
-    records: &'a [Record],
+    records: &'a [FlowParticle],
     rows: &'a [u32],
     then: &'a [Lanes4],
     periods: &'a [Lanes4; 2],
 }
 
 impl HotLoop for Moved<'_> {
-    type Output = Spread;
+    type Output = DisplacementBounds;
 
     #[inline(always)]
-    fn run<A: FourLanes>(self, a: A) -> Spread {
+    fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
         let [period, inverse] = *self.periods;
         let shift = Lanes4::splat(SHIFT);
         let mut moved = Growing::new();
@@ -176,8 +178,11 @@ mod tests {
         (0..fluid).map(place).chain((0..floor).map(tile)).collect()
     }
 
-    fn records(positions: &[DVec3]) -> Vec<Record> {
-        positions.iter().map(|&x| Record { place: Lanes4::new(x, 1e-3), ..Record::default() }).collect()
+    fn records(positions: &[DVec3]) -> Vec<FlowParticle> {
+        positions
+            .iter()
+            .map(|&x| FlowParticle { place: Lanes4::new(x, 1e-3), ..FlowParticle::default() })
+            .collect()
     }
 
     /// Whether a pair that the lists do not hold is within the support.

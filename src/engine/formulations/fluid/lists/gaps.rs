@@ -24,7 +24,7 @@ pub enum Moves {
 
 /// A boundary as the search for gaps sees it. A thin body has one for each of its sides.
 #[derive(Clone, Debug)]
-pub struct Side {
+pub struct GapSide {
     pub body: BodyId,
     /// Its rows in the cloud.
     pub rows: Range<usize>,
@@ -37,7 +37,7 @@ pub struct Side {
 #[derive(Debug, Default)]
 pub struct GapPairs {
     /// All boundaries, in the order of the cloud.
-    sides: Vec<Side>,
+    sides: Vec<GapSide>,
     ends: Vec<u32>,
     search: NeighborSearch,
     /// The particles that are looked at, as rows of the cloud, and where they are, m.
@@ -51,7 +51,7 @@ pub struct GapPairs {
 
 impl GapPairs {
     /// Of these boundaries, whose rows begin behind those of the fluids.
-    pub fn new(sides: Vec<Side>) -> Self {
+    pub fn new(sides: Vec<GapSide>) -> Self {
         let first = sides.first().map_or(0, |side| side.rows.start);
         let ends = sides.iter().map(|side| (side.rows.end - first) as u32).collect();
         Self { sides, ends, ..Self::default() }
@@ -81,7 +81,7 @@ impl GapPairs {
     }
 
     /// The boundary of a particle.
-    pub fn side_of(&self, row: usize) -> &Side {
+    pub fn side_of(&self, row: usize) -> &GapSide {
         side_of(&self.sides, row)
     }
 
@@ -126,6 +126,6 @@ impl GapPairs {
     }
 }
 
-fn side_of(sides: &[Side], row: usize) -> &Side {
+fn side_of(sides: &[GapSide], row: usize) -> &GapSide {
     &sides[sides.partition_point(|side| side.rows.end <= row)]
 }

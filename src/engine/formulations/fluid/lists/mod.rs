@@ -17,9 +17,9 @@ mod gaps;
 mod pairs;
 
 pub use drift::Skins;
-pub use gaps::{GapPairs, Moves, Side};
+pub use gaps::{GapPairs, GapSide, Moves};
 pub use near_rows::{NearRow, NearRows, NearWriter};
 pub use pairs::FlowPairs;
 pub use sides::ThinBody;
-pub use spread::{Growing, Spread};
+pub use spread::{DisplacementBounds, Growing};
 pub use thickness::{Thickness, Thin};

@@ -6,9 +6,9 @@ use glam::DVec3;
 use super::drift::{Drift, Skins};
 use super::gaps::GapPairs;
 use super::sides::{Sides, ThinBody};
-use super::spread::Spread;
-use crate::formulations::fluid::lanes::Record;
-use crate::formulations::fluid::lists::blocks::{Lists, Sources};
+use super::spread::DisplacementBounds;
+use crate::formulations::fluid::lanes::FlowParticle;
+use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources};
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 
 /// Length of the cells in which particles move together, over the support.
@@ -77,7 +77,7 @@ impl FlowPairs {
 
     /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are those of the fluid. `moved` says how
     /// far particles have moved since the question was last asked.
-    pub fn are_stale(&mut self, records: &[Record], fluid: usize, moved: Spread) -> bool {
+    pub fn are_stale(&mut self, records: &[FlowParticle], fluid: usize, moved: DisplacementBounds) -> bool {
         // Looking is needed when the particles may have used up the room that they had when it was last looked.
         self.room -= moved.farthest(moved);
         if self.room <= CERTAIN * self.skins.support {
@@ -91,7 +91,7 @@ impl FlowPairs {
         &mut self,
         positions: &[DVec3],
         fluid: usize,
-        blocks: Option<&mut Lists>,
+        blocks: Option<&mut BlockLists>,
     ) -> Result<(), NeighborError> {
         let Skins { support, fluid: skin, walls: wall_skin, .. } = self.skins;
         let (wet, dry) = (Cloud::uniform(&positions[..fluid], support), &positions[fluid..]);
@@ -116,7 +116,7 @@ impl FlowPairs {
         }
         if let Some(lists) = blocks {
             let ends = &self.groups;
-            let sources = Sources {
+            let sources = ListSources {
                 positions: &positions[..fluid],
                 fluids: &ends[..ends.partition_point(|&end| end as usize <= fluid)],
                 support,

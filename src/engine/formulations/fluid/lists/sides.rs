@@ -23,12 +23,12 @@ pub struct ThinBody {
     /// Rows of the copies for the side of the normal and for the other.
     pub copies: [Range<usize>; 2],
     spacing: f64,
-    frames: Vec<Frame>,
+    frames: Vec<SurfaceFrame>,
 }
 
 /// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the body.
 #[derive(Clone, Debug)]
-struct Frame {
+struct SurfaceFrame {
     along: [u32; 2],
     /// None in two dimensions, where the other direction is that of z.
     across: Option<[u32; 2]>,
@@ -56,8 +56,11 @@ impl ThinBody {
                 list.row(i).iter().fold(i as u32, better)
             };
             let pair = |axis: DVec3| [farthest(-axis), farthest(axis)];
-            let frame =
-                Frame { along: pair(axes.col(1)), across: (!plane).then(|| pair(axes.col(2))), sign: 1.0 };
+            let frame = SurfaceFrame {
+                along: pair(axes.col(1)),
+                across: (!plane).then(|| pair(axes.col(2))),
+                sign: 1.0,
+            };
             normals.push(frame.normal(|k| sites[k]));
             frames.push(frame);
         }
@@ -71,7 +74,7 @@ impl ThinBody {
     }
 }
 
-impl Frame {
+impl SurfaceFrame {
     fn normal(&self, position: impl Fn(usize) -> DVec3) -> DVec3 {
         let between = |[from, to]: [u32; 2]| position(to as usize) - position(from as usize);
         self.sign * between(self.along).cross(self.across.map_or(DVec3::Z, between))
@@ -79,7 +82,7 @@ impl Frame {
 }
 
 /// Turns the normals of neighbours to one side: from each particle that is known to the one that is most parallel to it.
-fn orient(frames: &mut [Frame], normals: &[DVec3], list: &NeighborList) {
+fn orient(frames: &mut [SurfaceFrame], normals: &[DVec3], list: &NeighborList) {
     let mut known = vec![false; frames.len()];
     let mut waiting = BinaryHeap::new();
     for start in 0..frames.len() {

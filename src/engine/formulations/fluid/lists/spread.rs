@@ -4,25 +4,25 @@ use crate::parallel::{BlockSum, FourLanes, Lanes4};
 
 /// Displacements of some particles, m: the box around them; inverted where there are none.
 #[derive(Clone, Copy, Debug)]
-pub struct Spread {
+pub struct DisplacementBounds {
     low: Lanes4,
     high: Lanes4,
 }
 
-impl Default for Spread {
+impl Default for DisplacementBounds {
     #[inline(always)]
     fn default() -> Self {
         Self::NONE
     }
 }
 
-impl BlockSum for Spread {
+impl BlockSum for DisplacementBounds {
     fn add(&mut self, next: &Self) {
         *self = self.with(*next);
     }
 }
 
-impl Spread {
+impl DisplacementBounds {
     /// That of no displacement.
     pub const NONE: Self = Self { low: Lanes4([f64::INFINITY; 4]), high: Lanes4([f64::NEG_INFINITY; 4]) };
     /// As much as can be.
@@ -59,14 +59,14 @@ fn larger(Lanes4(a): Lanes4, Lanes4(b): Lanes4) -> Lanes4 {
 /// A spread that grows by one displacement after the other.
 #[derive(Clone, Copy)]
 pub struct Growing {
-    spread: Spread,
+    spread: DisplacementBounds,
     sum: Lanes4,
 }
 
 impl Growing {
     #[inline(always)]
     pub fn new() -> Self {
-        Self { spread: Spread::NONE, sum: Lanes4::ZERO }
+        Self { spread: DisplacementBounds::NONE, sum: Lanes4::ZERO }
     }
 
     /// Adds a displacement; the fourth lane does not matter.
@@ -80,7 +80,7 @@ impl Growing {
 
     /// The spread, as large as can be where a displacement was no number.
     #[inline(always)]
-    pub fn end(self) -> Spread {
-        if self.sum.xyz().is_finite() { self.spread } else { Spread::ALL }
+    pub fn end(self) -> DisplacementBounds {
+        if self.sum.xyz().is_finite() { self.spread } else { DisplacementBounds::ALL }
     }
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{
-    BATCH, Batch, FluidKernel, Four, MASKS, Own, as_rows, dot, filled_up,
+    BATCH, Batch, FluidKernel, Four, MASKS, OwnRecord, as_rows, dot, filled_up,
 };
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
@@ -45,7 +45,10 @@ impl FlowCloud {
             rest = behind;
             for_each_own_block(rows, &mut Vec::new(), &|first, (out, is_close, near)| {
                 let first = fluid.start + first;
-                run_hot_in(self.plane, Rows { cloud: self, back: -0.5 * dt, first, out, is_close, near });
+                run_hot_in(
+                    self.plane,
+                    CompressionRows { cloud: self, back: -0.5 * dt, first, out, is_close, near },
+                );
             });
         }
         share_rows_of(&mut rates, self.fluids());
@@ -63,7 +66,7 @@ impl FlowCloud {
     }
 }
 
-struct Rows<'a> {
+struct CompressionRows<'a> {
     cloud: &'a FlowCloud,
     /// Time from the end of the step to its middle, s.
     back: f64,
@@ -73,14 +76,14 @@ struct Rows<'a> {
     near: NearWriter<'a>,
 }
 
-impl PlaneOrSolid for Rows<'_> {
+impl PlaneOrSolid for CompressionRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
-impl Rows<'_> {
+impl CompressionRows<'_> {
     #[inline(always)]
     fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
         let FlowCloud { records, pairs: lists, kernel, .. } = self.cloud;
@@ -89,8 +92,8 @@ impl Rows<'_> {
         let reach = Lanes4::splat(self.cloud.reach * self.cloud.reach);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = self.first + k;
-            let own = Own::<D>::new(&records[i]);
-            let pairs = Pairs { cloud: self.cloud, kernel, own, back: self.back };
+            let own = OwnRecord::<D>::new(&records[i]);
+            let pairs = ListPairs { cloud: self.cloud, kernel, own, back: self.back };
             let mut near = self.near.row(k);
             let mut least = Lanes4::splat(f64::INFINITY);
             let sum = pairs.add::<A, P>(a, lists.fluid.row(i), (&mut near, &mut batch), Lanes4::ZERO, None);
@@ -104,14 +107,14 @@ impl Rows<'_> {
 }
 
 /// The neighbours of one list.
-struct Pairs<'a, const D: usize> {
+struct ListPairs<'a, const D: usize> {
     cloud: &'a FlowCloud,
     kernel: FluidKernel,
-    own: Own<D>,
+    own: OwnRecord<D>,
     back: f64,
 }
 
-impl<const D: usize> Pairs<'_, D> {
+impl<const D: usize> ListPairs<'_, D> {
     #[inline(always)]
     fn add<A: FourLanes, const P: bool>(
         &self,

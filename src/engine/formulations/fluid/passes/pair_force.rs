@@ -9,9 +9,9 @@
 
 use glam::DVec3;
 
-use super::pair_sums::{Between, Forces, Pairs};
+use super::pair_sums::{Between, Forces, PairsOfRow};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
-use crate::formulations::fluid::lanes::{FluidKernel, Own, sums};
+use crate::formulations::fluid::lanes::{FluidKernel, OwnRecord, sums};
 use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
 use crate::parallel::{
     BlockSum, FourLanes, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows, share_wide_rows,
@@ -57,7 +57,7 @@ impl PairForce<'_> {
     pub fn run_own(&self, total: &mut [Force], parts: &mut [DVec3]) {
         let rows = ForceRows { written: TermRows::without_terms(total), parts };
         for_each_own_block(rows, &mut Vec::new(), &|first, rows| {
-            run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms: None });
+            run_hot_in(self.cloud.plane, PairForceRows { pass: self, first, rows, terms: None });
         });
     }
 
@@ -76,7 +76,7 @@ impl PairForce<'_> {
                 let mut fastest = Fastest::default();
                 with_batch(|batch| {
                     let terms = Some(Terms { terms, batch, fastest: &mut fastest });
-                    run_hot_in(self.cloud.plane, Rows { pass: self, first, rows, terms });
+                    run_hot_in(self.cloud.plane, PairForceRows { pass: self, first, rows, terms });
                 });
                 fastest
             })
@@ -86,7 +86,7 @@ impl PairForce<'_> {
     }
 }
 
-struct Rows<'a> {
+struct PairForceRows<'a> {
     pass: &'a PairForce<'a>,
     first: usize,
     rows: ForceRows<'a>,
@@ -100,20 +100,20 @@ struct Terms<'a> {
     fastest: &'a mut Fastest,
 }
 
-impl PlaneOrSolid for Rows<'_> {
+impl PlaneOrSolid for PairForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
-impl Rows<'_> {
+impl PairForceRows<'_> {
     #[inline(always)]
     fn rows<A: FourLanes, const D: usize, const P: bool>(self, a: A) {
         let PairForce { cloud, group, adds } = *self.pass;
         let ForceRows { mut written, parts } = self.rows;
         let mut terms = self.terms;
-        let row = Row::of_group(cloud, group);
+        let row = RowConstants::of_group(cloud, group);
         let first = group.cloud.start + self.first;
         let count = written.total.len();
         // Rows whose terms have not been run begin here.
@@ -148,7 +148,7 @@ impl Rows<'_> {
 }
 
 /// What the sums over the neighbours of all particles of a group have in common.
-struct Row<'a> {
+struct RowConstants<'a> {
     cloud: &'a FlowCloud,
     group: &'a Group,
     kernel: FluidKernel,
@@ -157,7 +157,7 @@ struct Row<'a> {
     is_fluid: bool,
 }
 
-impl<'a> Row<'a> {
+impl<'a> RowConstants<'a> {
     #[inline(always)]
     fn of_group(cloud: &'a FlowCloud, group: &'a Group) -> Self {
         Self {
@@ -180,7 +180,7 @@ impl<'a> Row<'a> {
     ) -> (Forces<D>, bool) {
         let Self { cloud, group, kernel, viscosities, factor, is_fluid } = *self;
         let own = &cloud.records[i];
-        let lanes = Own::<D>::new(own);
+        let lanes = OwnRecord::<D>::new(own);
         let mut rest = cloud.near_row(i);
         let (groups, mut forces, mut is_in_batch) = (&cloud.groups[..], Forces::<D>::ZERO, false);
         // By number: zipped iterators would be called.
@@ -193,7 +193,7 @@ impl<'a> Row<'a> {
             if row.is_empty() {
                 continue;
             }
-            let pairs = Pairs { cloud, kernel, own: lanes, i, row, viscosity };
+            let pairs = PairsOfRow { cloud, kernel, own: lanes, i, row, viscosity };
             match terms {
                 Some(Terms { terms, batch, .. })
                     if other.cloud.start == group.cloud.start && own.volume() > 0.0 =>

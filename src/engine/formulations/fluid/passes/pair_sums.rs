@@ -1,15 +1,15 @@
 //! Sums over the pairs of one particle with the particles of one body: the forces of the second pass.
 
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
-use crate::formulations::fluid::lanes::{FluidKernel, Four, MASKS, Own, as_rows, dot, filled_up};
+use crate::formulations::fluid::lanes::{FluidKernel, Four, MASKS, OwnRecord, as_rows, dot, filled_up};
 use crate::pair::{FourPairs, Room};
 use crate::parallel::{FourLanes, Lanes4};
 
 /// The pairs of a particle with the neighbours in `row`.
-pub struct Pairs<'a, const D: usize> {
+pub struct PairsOfRow<'a, const D: usize> {
     pub cloud: &'a FlowCloud,
     pub kernel: FluidKernel,
-    pub own: Own<D>,
+    pub own: OwnRecord<D>,
     /// The particle, as a row of the cloud.
     pub i: usize,
     pub row: &'a [u32],
@@ -87,7 +87,7 @@ struct PairSpin {
     share: f64,
 }
 
-impl<const D: usize> Pairs<'_, D> {
+impl<const D: usize> PairsOfRow<'_, D> {
     fn pair_spin(&self, between: Between) -> PairSpin {
         let [own, share] = between.shares();
         let spin = self.cloud.spins.get(self.i).map_or(glam::DVec3::ZERO, |spin| spin.xyz());

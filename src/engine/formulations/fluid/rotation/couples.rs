@@ -15,7 +15,7 @@ use super::spin::rotation;
 use crate::formulations::fluid::cloud::{
     Cluster, FlowCloud, Group, NearPairs, Neighborhood, PARTS, RowPass, RowSums,
 };
-use crate::formulations::fluid::lanes::{Axial, Record, pack_axial, unpack_axial};
+use crate::formulations::fluid::lanes::{Axial, FlowParticle, pack_axial, unpack_axial};
 use crate::neighbors::Periodic;
 use crate::parallel::{Arithmetic, Lanes4, Vector, for_each_block};
 use crate::world::Force;
@@ -81,7 +81,7 @@ impl Couples {
 /// The force on particle `k` of all clusters that it is in.
 fn force_on(
     near: &Neighborhood,
-    records: &[Record],
+    records: &[FlowParticle],
     turned: &[Turned],
     k: usize,
     periodic: &Periodic,

@@ -27,7 +27,7 @@ use crate::schedule::{Run, Step, StepError};
 /// Finds the spins of all fluid particles.
 #[derive(Default)]
 pub struct Spin {
-    fits: Vec<Fit>,
+    fits: Vec<SpinFit>,
     sums: RowSums,
 }
 
@@ -35,7 +35,7 @@ impl Run for Spin {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let mut spins = std::mem::take(&mut cloud.spins);
-        self.fits.resize(cloud.fluid, Fit::default());
+        self.fits.resize(cloud.fluid, SpinFit::default());
         let fluids = || cloud.groups.iter().filter(|group| group.fluid().is_some());
         for group in fluids() {
             let (rows, viscosities) = (group.cloud.clone(), cloud.viscosities.of(group));
@@ -54,7 +54,7 @@ impl Run for Spin {
 
 /// The best fit around a particle.
 #[derive(Clone, Copy, Debug, Default)]
-struct Fit {
+struct SpinFit {
     /// w_i, 1/s.
     spin: Lanes4,
     /// `sum_j c_ij x_ij (x) x_ij`, Pa s.
@@ -68,7 +68,7 @@ struct BestFit<'a> {
 }
 
 impl RowPass<1, 4> for BestFit<'_> {
-    type Output = Fit;
+    type Output = SpinFit;
 
     fn among(&self) -> Range<usize> {
         self.cloud.everything()
@@ -93,17 +93,17 @@ impl RowPass<1, 4> for BestFit<'_> {
     }
 
     #[inline(always)]
-    fn output(&self, _: usize, &[xx, yy, zz, angular]: &[DVec3; 4]) -> Fit {
+    fn output(&self, _: usize, &[xx, yy, zz, angular]: &[DVec3; 4]) -> SpinFit {
         let plane = self.cloud.plane;
         let moment = *moment_of([xx, yy, zz], plane).matrix();
-        Fit { spin: Lanes4::new(rotation(&moment, unpack_axial(angular, plane), plane), 0.0), moment }
+        SpinFit { spin: Lanes4::new(rotation(&moment, unpack_axial(angular, plane), plane), 0.0), moment }
     }
 }
 
 struct Sharpened<'a> {
     cloud: &'a FlowCloud,
     viscosities: &'a [f64],
-    fits: &'a [Fit],
+    fits: &'a [SpinFit],
 }
 
 impl RowPass<1, 1> for Sharpened<'_> {
@@ -133,7 +133,7 @@ impl RowPass<1, 1> for Sharpened<'_> {
 
     #[inline(always)]
     fn output(&self, i: usize, &[torque]: &[DVec3; 1]) -> Lanes4 {
-        let (Fit { spin, moment }, plane) = (&self.fits[i], self.cloud.plane);
+        let (SpinFit { spin, moment }, plane) = (&self.fits[i], self.cloud.plane);
         Lanes4::new(spin.xyz() + rotation(moment, unpack_axial(torque, plane), plane), 0.0)
     }
 }

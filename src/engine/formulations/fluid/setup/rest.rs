@@ -32,7 +32,7 @@ struct Layer {
 }
 
 /// Everything that lines can meet.
-struct Rest {
+struct RestLines {
     layers: Vec<Layer>,
     covers: Vec<Box<dyn Region>>,
     gravity: DVec3,
@@ -45,7 +45,7 @@ pub fn pressures(
     support: f64,
     sim: &SimBuilder<'_>,
 ) -> Result<Vec<StartPressure>, SetupError> {
-    let rest = Rest::new(fluids, sim);
+    let rest = RestLines::new(fluids, sim);
     let mut found: Vec<Vec<Option<f64>>> =
         (0..rest.layers.len()).map(|k| rest.below_surface(k, sim)).collect();
     if found.iter().flatten().any(Option::is_none) {
@@ -58,7 +58,7 @@ pub fn pressures(
     Ok(pressures.collect())
 }
 
-impl Rest {
+impl RestLines {
     fn new(fluids: Vec<(BodyId, Option<Expression>)>, sim: &SimBuilder<'_>) -> Self {
         let region = |id: BodyId| {
             let shape = &sim.scene().bodies[id.0].shape;

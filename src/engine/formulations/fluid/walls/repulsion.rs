@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use super::surface_distance::Shape;
+use super::surface_distance::BoundaryShape;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, Repelled, Role, Shares, part};
 use crate::parallel::for_each_block;
 use crate::plugin::SimBuilder;
@@ -32,7 +32,7 @@ const NEAREST: f64 = 1.2;
 
 /// Finds the particles that are repelled.
 pub struct Repulsion {
-    surfaces: Vec<Shape>,
+    surfaces: Vec<BoundaryShape>,
     range: f64,
     /// Particles near boundaries, as rows of the cloud.
     close: Vec<u32>,
@@ -65,7 +65,7 @@ impl Repulsion {
             let reach = range + NEAREST * body.spacing;
             widest = f64::max(widest, reach);
             let (group, spacing) = (group.clone(), body.spacing);
-            surfaces.push(Shape { group, region, stiffness, spacing, is_worn: false, reach });
+            surfaces.push(BoundaryShape { group, region, stiffness, spacing, is_worn: false, reach });
         }
         (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }

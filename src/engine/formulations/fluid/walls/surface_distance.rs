@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 
 use super::body_motion::BodyMotion;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
@@ -23,7 +23,7 @@ const OUTSIDE: f64 = 16.0;
 const SPHERES: [f64; 2] = [0.65, 0.75];
 
 /// The shape of a boundary.
-pub struct Shape {
+pub struct BoundaryShape {
     pub group: Group,
     pub region: Box<dyn Region>,
     /// Stiffness of its repulsion of each fluid, N/m.
@@ -37,7 +37,7 @@ pub struct Shape {
 }
 
 /// A fluid particle in the body as the scene has it.
-pub struct Place {
+pub struct PlaceInBody {
     /// Where it is there, m; beside one particle alone, the direction away from that.
     at: DVec3,
     /// Distance from the shape, negative inside of it, m.
@@ -48,7 +48,7 @@ pub struct Place {
     pub shares: Shares,
 }
 
-impl Shape {
+impl BoundaryShape {
     /// Takes notice of the first particle that is gone.
     pub fn wear(&mut self, cloud: &FlowCloud) {
         if !self.is_worn {
@@ -59,7 +59,7 @@ impl Shape {
 
     /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
     pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
-        let now = cloud.records[self.group.cloud.clone()].iter().map(Record::position);
+        let now = cloud.records[self.group.cloud.clone()].iter().map(FlowParticle::position);
         BodyMotion::new(now, reference.iter().map(|x| x.0), self.spacing, cloud.plane)
     }
 
@@ -77,7 +77,7 @@ impl Shape {
         i: usize,
         reference: &[ReferencePosition],
         motion: Option<&BodyMotion>,
-    ) -> Option<Place> {
+    ) -> Option<PlaceInBody> {
         let row = part(cloud.near_row(i), &self.group.cloud);
         let from = cloud.records[i].position();
         let offset = |j: u32| cloud.offset(from, cloud.records[j as usize].position());
@@ -126,14 +126,14 @@ impl Shape {
         };
         let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
         let shares = Shares { total, mean, slope, only: None };
-        Some(Place { at, distance: self.distance(cloud, at), map, shares })
+        Some(PlaceInBody { at, distance: self.distance(cloud, at), map, shares })
     }
 
     /// Beside the sphere of one particle, which is at `offset` from here.
-    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> Place {
+    fn beside(&self, cloud: &FlowCloud, particle: u32, offset: DVec3) -> PlaceInBody {
         let distance = offset.length() - SPHERES[usize::from(!cloud.plane)] * self.spacing;
         let shares = Shares { only: Some(particle), ..Shares::default() };
-        Place { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
+        PlaceInBody { at: -offset.normalize_or_zero(), distance, map: DMat3::IDENTITY, shares }
     }
 
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
@@ -161,7 +161,7 @@ impl Shape {
     }
 
     /// Gradient of the distance with respect to the place in space, by central differences.
-    pub fn direction(&self, cloud: &FlowCloud, place: &Place) -> DVec3 {
+    pub fn direction(&self, cloud: &FlowCloud, place: &PlaceInBody) -> DVec3 {
         if place.shares.only.is_some() {
             return place.at;
         }

@@ -10,7 +10,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::FlowCloud;
-use crate::formulations::fluid::lanes::{Four, MASKS, Own, as_rows, dot, filled_up, sums};
+use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
 use crate::parallel::{
     FourLanes, Lanes4, PlaneOrSolid, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
@@ -23,7 +23,7 @@ const LEAST_SHARE: f64 = 1e-10;
 /// The fluid beside a particle of a boundary.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub struct Beside {
+pub struct FluidBeside {
     /// Mean pressure, with what loads on the fluid add on the way from it, Pa.
     pub pressure: f64,
     /// Mean of rho_f x_wf, kg/m2.
@@ -41,7 +41,7 @@ pub struct WallPressure<'a> {
 
 impl WallPressure<'_> {
     /// Writes what is beside every particle of a boundary, and its neighbours within the support.
-    pub fn run(&self, out: &mut [Beside], near: &mut NearRows) {
+    pub fn run(&self, out: &mut [FluidBeside], near: &mut NearRows) {
         let cloud = self.cloud;
         // Who looks at gaps asks every particle beside one for its neighbours.
         let looks_at_all = !cloud.pairs.gaps.particles.is_empty();
@@ -50,8 +50,11 @@ impl WallPressure<'_> {
         for Range { start, end } in bodies.map(|group| group.cloud.clone()) {
             let (rows, behind) = rest.split(end - start);
             rest = behind;
-            let body = |first, (out, near): (&mut [Beside], NearWriter<'_>)| {
-                run_hot_in(cloud.plane, Rows { cloud, first: start - cloud.fluid + first, out, near });
+            let body = |first, (out, near): (&mut [FluidBeside], NearWriter<'_>)| {
+                run_hot_in(
+                    cloud.plane,
+                    WallPressureRows { cloud, first: start - cloud.fluid + first, out, near },
+                );
             };
             match looks_at_all {
                 true => for_each_block(rows, &mut Vec::new(), &body),
@@ -65,7 +68,7 @@ impl WallPressure<'_> {
 }
 
 /// Gives all ranks what is beside the particles of boundaries that have fluid in their lists; beside the others there is nothing.
-fn share_wetted(cloud: &FlowCloud, out: &mut [Beside]) {
+fn share_wetted(cloud: &FlowCloud, out: &mut [FluidBeside]) {
     if !ranks::has_several() {
         return;
     }
@@ -76,35 +79,35 @@ fn share_wetted(cloud: &FlowCloud, out: &mut [Beside]) {
         let rows = start - cloud.fluid..end - cloud.fluid;
         let wetted: Vec<u32> =
             rows.clone().filter(|&row| !lists.row(row).is_empty()).map(|row| row as u32).collect();
-        let mut beside: Vec<Beside> = wetted.iter().map(|&row| out[row as usize]).collect();
+        let mut beside: Vec<FluidBeside> = wetted.iter().map(|&row| out[row as usize]).collect();
         share_picked(&mut beside, &wetted, &rows);
-        out[rows].fill(Beside::default());
+        out[rows].fill(FluidBeside::default());
         wetted.iter().zip(beside).for_each(|(&row, beside)| out[row as usize] = beside);
     }
 }
 
-struct Rows<'a> {
+struct WallPressureRows<'a> {
     cloud: &'a FlowCloud,
     first: usize,
-    out: &'a mut [Beside],
+    out: &'a mut [FluidBeside],
     near: NearWriter<'a>,
 }
 
-impl PlaneOrSolid for Rows<'_> {
+impl PlaneOrSolid for WallPressureRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
     }
 }
 
-impl Rows<'_> {
+impl WallPressureRows<'_> {
     #[inline(always)]
     fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
         let (cloud, kernel) = (self.cloud, self.cloud.kernel);
         let limit = Lanes4::splat(kernel.support * kernel.support);
         for (k, out) in self.out.iter_mut().enumerate() {
             let i = cloud.fluid + self.first + k;
-            let own = Own::<D>::new(&cloud.records[i]);
+            let own = OwnRecord::<D>::new(&cloud.records[i]);
             let mut near = self.near.row(k);
             let mut rest = cloud.pairs.boundary.row(self.first + k);
             let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
@@ -143,7 +146,7 @@ impl Rows<'_> {
             }
             near.close();
             let total = total.sum();
-            *out = Beside::default();
+            *out = FluidBeside::default();
             if total > LEAST_SHARE {
                 let mean = 1.0 / total;
                 out.pressure = pressure.sum() * mean;

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::wall::PreviousVelocity;
-use super::wall_pressure::{Beside, WallPressure};
-use crate::formulations::fluid::cloud::{FlowCloud, Role, Surface};
-use crate::formulations::fluid::lanes::Record;
+use super::wall_pressure::{FluidBeside, WallPressure};
+use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Role};
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::Pressure;
@@ -14,15 +14,15 @@ use crate::world::Pressure;
 pub struct WallState {
     /// Acceleration of gravity, m/s2.
     pub gravity: DVec3,
-    pub beside: Vec<Beside>,
+    pub beside: Vec<FluidBeside>,
 }
 
-type Rows<'a> = (&'a mut [Record], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [Beside]);
+type Rows<'a> = (&'a mut [FlowParticle], &'a mut [Pressure], &'a mut [PreviousVelocity], &'a [FluidBeside]);
 
 impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        self.beside.resize(cloud.records.len() - cloud.fluid, Beside::default());
+        self.beside.resize(cloud.records.len() - cloud.fluid, FluidBeside::default());
         let mut near = std::mem::take(&mut cloud.near_boundary);
         WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
         cloud.near_boundary = near;
@@ -56,7 +56,12 @@ impl Run for WallState {
     }
 }
 
-fn apply(surface: &Surface, gravity: DVec3, dt: f64, (records, pressure, previous, beside): Rows<'_>) {
+fn apply(
+    surface: &BoundarySurface,
+    gravity: DVec3,
+    dt: f64,
+    (records, pressure, previous, beside): Rows<'_>,
+) {
     for (k, record) in records.iter_mut().enumerate() {
         let v = record.velocity();
         let acceleration = if dt > 0.0 { (v - previous[k].0) / dt } else { DVec3::ZERO };
@@ -75,7 +80,11 @@ fn apply(surface: &Surface, gravity: DVec3, dt: f64, (records, pressure, previou
 
 /// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a mass that is added
 /// explicitly, and a light body would not stand it. What that lacks falls with the spacing.
-fn apply_to_solid(surface: &Surface, gravity: DVec3, (records, beside): (&mut [Record], &[Beside])) {
+fn apply_to_solid(
+    surface: &BoundarySurface,
+    gravity: DVec3,
+    (records, beside): (&mut [FlowParticle], &[FluidBeside]),
+) {
     for (record, fluid) in records.iter_mut().zip(beside) {
         let v = record.velocity();
         let mut p = fluid.pressure - gravity.dot(fluid.moment);

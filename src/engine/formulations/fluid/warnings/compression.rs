@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::schedule::{Step, warn_anew};
@@ -23,7 +23,7 @@ const USUAL: f64 = 0.003;
 
 /// Watches the compression of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Compression {
+pub struct CompressionWatch {
     bodies: Vec<Told>,
 }
 
@@ -38,15 +38,15 @@ struct Told {
 
 /// Number of particles, and sums of the compression and of its square.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums([f64; 3]);
+struct CompressionSums([f64; 3]);
 
-impl BlockSum for Sums {
+impl BlockSum for CompressionSums {
     fn add(&mut self, next: &Self) {
         (0..3).for_each(|k| self.0[k] += next.0[k]);
     }
 }
 
-impl Compression {
+impl CompressionWatch {
     /// Looks at all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, step: &mut Step<'_>) {
         self.bodies.resize(cloud.groups.len(), Told::default());
@@ -65,12 +65,12 @@ impl Compression {
 }
 
 /// The standard deviation of p over that modulus.
-fn deviation(records: &[Record], modulus: f64) -> f64 {
-    let Sums([count, sum, squares]) = sum_over_blocks(records, &|_, records: &[Record]| {
-        let mut sums = Sums::default();
+fn deviation(records: &[FlowParticle], modulus: f64) -> f64 {
+    let CompressionSums([count, sum, squares]) = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
+        let mut sums = CompressionSums::default();
         for record in records.iter().filter(|record| record.volume() > 0.0) {
             let compression = record.pressure() / modulus;
-            sums.add(&Sums([1.0, compression, compression * compression]));
+            sums.add(&CompressionSums([1.0, compression, compression * compression]));
         }
         sums
     });

@@ -25,12 +25,12 @@ const PART: f64 = 0.25;
 
 /// Watches the filling of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Filling {
+pub struct FillingWatch {
     /// Largest difference of each group that the user has been told.
     told: Vec<f64>,
 }
 
-impl Filling {
+impl FillingWatch {
     /// Looks at all fluids.
     pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
         self.told.resize(cloud.groups.len(), 0.0);

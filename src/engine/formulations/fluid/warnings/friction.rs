@@ -14,7 +14,7 @@ const INSIDE: f64 = 0.75;
 
 /// What a particle inside of a fluid has to do with friction.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Friction {
+pub struct FrictionOfParticle {
     /// Power of friction with its neighbours over twice its factor, W.
     pub power: f64,
     /// h |m_i|, of the first moment m_i of its neighbours.
@@ -23,7 +23,7 @@ pub struct Friction {
     pub order: f64,
 }
 
-/// [`Friction`] of the particles of a group; none near a surface.
+/// [`FrictionOfParticle`] of the particles of a group; none near a surface.
 pub struct FrictionOf<'a> {
     pub cloud: &'a FlowCloud,
     /// Viscosity of the group, Pa s, and those between it and all groups.
@@ -39,7 +39,7 @@ impl<'a> FrictionOf<'a> {
 }
 
 impl RowPass<2, 5> for FrictionOf<'_> {
-    type Output = Option<Friction>;
+    type Output = Option<FrictionOfParticle>;
 
     fn among(&self) -> Range<usize> {
         self.cloud.everything()
@@ -67,14 +67,14 @@ impl RowPass<2, 5> for FrictionOf<'_> {
         power.x = sheared.length_squared().mul_add(weight * viscosity, power.x);
     }
 
-    fn output(&self, i: usize, &[xx, yy, zz, first, power]: &[DVec3; 5]) -> Option<Friction> {
+    fn output(&self, i: usize, &[xx, yy, zz, first, power]: &[DVec3; 5]) -> Option<FrictionOfParticle> {
         let cloud = self.cloud;
         let own = &cloud.records[i];
         let moment = moment_of([xx, yy, zz], cloud.plane);
         let is_inside = own.volume() > 0.0 && smallest_eigenvalue(moment.matrix(), cloud.plane) > INSIDE;
         let moment = cloud.kernel.smoothing_length() * first.length();
         let stress = (self.viscosity * power.x).sqrt();
-        is_inside.then(|| Friction {
+        is_inside.then(|| FrictionOfParticle {
             power: own.volume() * power.x,
             moment,
             order: if stress > 0.0 { own.pressure().abs() * moment / stress } else { 0.0 },

@@ -19,7 +19,7 @@ const STILL: f64 = 0.05;
 
 /// What the last frames have shown of a body.
 #[derive(Clone, Serialize, Deserialize)]
-pub struct Seen {
+pub struct SeenFrames {
     body: u32,
     place: DVec3,
     frames: u32,
@@ -31,7 +31,7 @@ pub struct HeldDown {
     gravity: DVec3,
     /// Spacing of the fluid, m.
     spacing: f64,
-    pub seen: Vec<Seen>,
+    pub seen: Vec<SeenFrames>,
 }
 
 impl HeldDown {
@@ -65,7 +65,7 @@ impl HeldDown {
             let held = is_still && down > 0.0;
             let frames = if held { before.map_or(0, |seen| seen.frames) + 1 } else { 0 };
             self.seen.retain(|seen| seen.body != number);
-            self.seen.push(Seen { body: number, place: body.state.center, frames });
+            self.seen.push(SeenFrames { body: number, place: body.state.center, frames });
             if frames == FRAMES {
                 step.warnings.push(format!(
                     "the rigid body `{}` is lighter than the fluid, which presses it down with {} at {}: no particle of the fluid fits between it and what it \

@@ -22,7 +22,7 @@ const NEAREST: f64 = 0.9;
 
 /// Looks for particles that have entered something.
 pub struct Intrusion {
-    bodies: Vec<Body>,
+    bodies: Vec<IntrudedShape>,
     /// Depth at which a particle is inside, m.
     least: f64,
     /// Pairs of a fluid and a body, by number, that the user has been warned of, with the most particles at once.
@@ -30,7 +30,7 @@ pub struct Intrusion {
 }
 
 /// The shape of a body that bounds the flow.
-struct Body {
+struct IntrudedShape {
     id: BodyId,
     region: Box<dyn Region>,
     spacing: f64,
@@ -51,7 +51,7 @@ impl Intrusion {
         let body = |body: &crate::plugin::BodyPlan| {
             let shape = &sim.scene().bodies[body.id.0].shape;
             let region = shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
-            Some(Body { id: body.id, region, spacing: body.spacing, is_worn: false })
+            Some(IntrudedShape { id: body.id, region, spacing: body.spacing, is_worn: false })
         };
         let bodies = sim.bodies().iter().filter_map(body).collect();
         Self { bodies, least: DEPTH * spacing, told: Vec::new() }
@@ -108,11 +108,11 @@ impl Intrusion {
 fn deepest(
     cloud: &FlowCloud,
     [fluid, other]: [&Group; 2],
-    body: &Body,
+    body: &IntrudedShape,
     reference: &[ReferencePosition],
     least: f64,
 ) -> Option<Deepest> {
-    let beside = Beside { cloud, group: other, spacing: body.spacing, reference };
+    let beside = BoundingBody { cloud, group: other, spacing: body.spacing, reference };
     let mut found: Option<Deepest> = None;
     for (row, i) in fluid.cloud.clone().enumerate().filter(|(_, i)| cloud.records[*i].volume() > 0.0) {
         let near = part(cloud.near_row(i), &other.cloud);
@@ -135,14 +135,14 @@ fn deepest(
 }
 
 /// A body that bounds the flow, and where its particles are in the scene.
-struct Beside<'a> {
+struct BoundingBody<'a> {
     cloud: &'a FlowCloud,
     group: &'a Group,
     spacing: f64,
     reference: &'a [ReferencePosition],
 }
 
-impl Beside<'_> {
+impl BoundingBody<'_> {
     /// Where fluid particle `i` would be in the body as the scene has it; none if it is not among the particles of it that are near.
     fn place_in_body(&self, i: usize, near: &[u32]) -> Option<DVec3> {
         let Self { cloud, group, spacing, reference } = *self;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, Group, Role};
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch};
 use crate::notation::place;
 use crate::rigid::RigidBodies;
@@ -69,7 +69,7 @@ pub fn look(
 }
 
 /// Width of a particle, m.
-fn width(cloud: &FlowCloud, record: &Record) -> f64 {
+fn width(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
     record.volume().powf(if cloud.plane { 0.5 } else { 1.0 / 3.0 })
 }
 
@@ -82,7 +82,7 @@ fn touching(
 ) -> Result<Vec<usize>, NeighborError> {
     let others = cloud.groups.iter().filter(|other| other.fluid().is_none() && other.body != group.body);
     let others = others.flat_map(|other| cloud.records[other.cloud.clone()].iter());
-    let others: Vec<&Record> = others.filter(|record| record.volume() > 0.0).collect();
+    let others: Vec<&FlowParticle> = others.filter(|record| record.volume() > 0.0).collect();
     let sources: Vec<DVec3> = others.iter().map(|record| record.position()).collect();
     let mut list = NeighborList::default();
     let (from, to) = (Cloud::uniform(targets, TOUCH * spacing), Cloud::uniform(&sources, TOUCH * spacing));

@@ -11,21 +11,21 @@ use crate::world::{BodyId, ParticleId, Position, ReferencePosition, Removed};
 const DEPTH: f64 = 0.25;
 
 /// Looks for particles of bodies inside of walls.
-pub struct Passing {
-    pairs: Vec<Pair>,
+pub struct PassingWalls {
+    pairs: Vec<BodyAndWall>,
     /// Pairs that the user has been warned of.
     pub told: Vec<bool>,
 }
 
 /// A body and a wall without a contact.
-struct Pair {
+struct BodyAndWall {
     body: BodyId,
     wall: BodyId,
     region: Box<dyn Region>,
     spacing: f64,
 }
 
-impl Passing {
+impl PassingWalls {
     /// All pairs of a scene that have no contact.
     pub fn new(sim: &SimBuilder<'_>) -> Self {
         let touching = sim.scene().touching_pairs();
@@ -36,7 +36,7 @@ impl Passing {
                 let shape = &sim.scene().bodies[wall.id.0].shape;
                 let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
                 if !touching.has(&body.name, &wall.name) {
-                    pairs.push(Pair { body: body.id, wall: wall.id, region, spacing: body.spacing });
+                    pairs.push(BodyAndWall { body: body.id, wall: wall.id, region, spacing: body.spacing });
                 }
             }
         }

@@ -8,7 +8,7 @@
 //! - The mean of h |p_i m_i| over the stress of friction `sqrt(mu P_i)`, with P_i the power per volume. Particles in a lattice under pressure bear shear as a solid does: what has left its place in the
 //!   lattice is pushed back. A disc that sinks between walls, five particles in radius, is too slow by about a third of this mean.
 
-use super::friction::{Friction, FrictionOf};
+use super::friction::{FrictionOf, FrictionOfParticle};
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::formulations::fluid::density::DensityShift;
 use crate::notation::quantity;
@@ -30,7 +30,12 @@ pub struct Unevenness {
 
 impl Unevenness {
     /// Looks at all fluids that friction slows down.
-    pub fn look(&mut self, cloud: &FlowCloud, scratch: &mut Vec<Option<Friction>>, step: &mut Step<'_>) {
+    pub fn look(
+        &mut self,
+        cloud: &FlowCloud,
+        scratch: &mut Vec<Option<FrictionOfParticle>>,
+        step: &mut Step<'_>,
+    ) {
         self.told.resize(cloud.groups.len(), [false; 2]);
         // Friction without spin is that of fluids whose viscosity hardly matters.
         if !cloud.viscosities.spin {
@@ -94,7 +99,7 @@ struct Means {
 }
 
 /// The means; none for a flow with a free surface.
-fn means(rows: &[Option<Friction>]) -> Option<Means> {
+fn means(rows: &[Option<FrictionOfParticle>]) -> Option<Means> {
     let inside = || rows.iter().flatten();
     let count = inside().count() as f64;
     if count <= CONFINED * rows.len() as f64 {

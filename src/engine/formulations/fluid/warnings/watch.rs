@@ -1,14 +1,14 @@
 //! What a flow must not do, looked at on the way: particles inside of what bounds it, compression, gaps and swelling, rows that break up.
 
-use super::compression::Compression;
-use super::filling::Filling;
+use super::compression::CompressionWatch;
+use super::filling::FillingWatch;
 use super::fit;
-use super::friction::Friction;
+use super::friction::FrictionOfParticle;
 use super::half_space;
 use super::held_down::HeldDown;
 use super::intrusion::Intrusion;
 use super::no_gap_pressure;
-use super::passing::Passing;
+use super::passing::PassingWalls;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
@@ -21,7 +21,7 @@ const INTERVAL: u64 = 50;
 
 struct FlowWatch {
     intrusion: Intrusion,
-    passing: Passing,
+    passing: PassingWalls,
     /// Whether the user has been told of a half-space that a fluid falls into.
     is_through: bool,
     /// The same of a body beside a gap without pressure.
@@ -29,8 +29,8 @@ struct FlowWatch {
     held_down: HeldDown,
     /// Spacing of the fluid, m.
     spacing: f64,
-    compression: Compression,
-    filling: Filling,
+    compression: CompressionWatch,
+    filling: FillingWatch,
     unevenness: Unevenness,
     /// Compression, filling and unevenness are looked at with the frames.
     frames: Trigger,
@@ -39,20 +39,20 @@ struct FlowWatch {
     is_started: bool,
     /// What the looks compute for each particle.
     scratch: Vec<Option<f64>>,
-    friction: Vec<Option<Friction>>,
+    friction: Vec<Option<FrictionOfParticle>>,
 }
 
 /// Adds the system that looks.
 pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
-        passing: Passing::new(sim),
+        passing: PassingWalls::new(sim),
         is_through: false,
         lies: false,
         held_down: HeldDown::new(sim.gravity(), spacing),
         spacing,
-        compression: Compression::default(),
-        filling: Filling::default(),
+        compression: CompressionWatch::default(),
+        filling: FillingWatch::default(),
         unevenness: Unevenness::default(),
         frames: Trigger::after_interval(sim.scene().record_interval()),
         end: sim.scene().time.end,

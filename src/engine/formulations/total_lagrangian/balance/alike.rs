@@ -28,7 +28,7 @@ pub(super) struct Kinds {
 
 impl Kinds {
     /// Those of a zone whose neighbours are listed.
-    pub fn of(zone: &Zone, lists: &Surroundings) -> Self {
+    pub fn of(zone: &Zone, lists: &ZoneParticles) -> Self {
         let mut labels = zone.labels.clone();
         for _ in 0..LEVELS {
             labels = lists.next(&labels);
@@ -56,7 +56,7 @@ impl Kinds {
 }
 
 /// The particles of which a zone asks something, with those neighbours of each that are among them.
-pub(super) struct Surroundings {
+pub(super) struct ZoneParticles {
     /// Of each row, ghosts included: the particle that it is or images.
     source: Vec<u32>,
     lists: NeighborList,
@@ -66,7 +66,7 @@ pub(super) struct Surroundings {
     count: usize,
 }
 
-impl Surroundings {
+impl ZoneParticles {
     /// None where neighbours cannot be found.
     pub fn of(body: &HeldBody<'_>, zone: &Zone) -> Option<Self> {
         let own: Vec<DVec3> = zone.asked.iter().map(|&k| body.plan.sites[k as usize].position).collect();

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::alike::Kinds;
 use super::body::HeldBody;
-use super::lattice::{Lattice, Share};
+use super::lattice::{BondLattice, Share};
 use super::lattices::Lattices;
 use super::least_squares::SparseRows;
 use super::zone::Zone;
@@ -125,7 +125,7 @@ impl Equations {
 }
 
 /// b of a particle in a lattice.
-fn target(lattice: &Lattice, start: &[f64], k: u32) -> DVec3 {
+fn target(lattice: &BondLattice, start: &[f64], k: u32) -> DVec3 {
     let part =
         |share: Share| start[k as usize] * share.own_part + start[share.other as usize] * share.other_part;
     lattice.shares(k).map(part).sum()

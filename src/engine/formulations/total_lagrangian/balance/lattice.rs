@@ -16,7 +16,7 @@ const BESIDE: f64 = 0.3;
 pub(super) type Placed = (u32, DVec3);
 
 /// Some particles of a body at given places, with their bonds.
-pub(super) struct Lattice {
+pub(super) struct BondLattice {
     position: Vec<DVec3>,
     volume: Vec<f64>,
     bonds: Bonds,
@@ -37,7 +37,7 @@ pub(super) struct Share {
     pub other_part: DVec3,
 }
 
-impl Lattice {
+impl BondLattice {
     /// That of some particles. None if the bonds cannot be made.
     pub fn new(body: &HeldBody<'_>, particles: &[Placed], repeats: &[Repeat]) -> Option<Self> {
         let (numbers, position): (Vec<u32>, Vec<DVec3>) = particles.iter().copied().unzip();

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::alike::Kinds;
 use super::body::HeldBody;
-use super::lattice::{Lattice, Placed};
-use super::prism::Beside;
+use super::lattice::{BondLattice, Placed};
+use super::prism::SideParticles;
 use super::zone::Zone;
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::symmetry::{Ghosts, Repeat};
@@ -18,9 +18,9 @@ const MANY: usize = 20;
 /// The bonds around those particles that have an equation and stand for their kind.
 pub(super) struct Lattices {
     /// The lattice as it is.
-    pub now: Lattice,
+    pub now: BondLattice,
     /// The lattice before particles were put onto sides, with its mirror image behind those sides beside which the body is no prism; none where there are no such sides.
-    pub mirrored: Option<Lattice>,
+    pub mirrored: Option<BondLattice>,
     /// Whether along each axis the body is a prism beside all sides.
     is_prism: [bool; 3],
 }
@@ -50,19 +50,22 @@ impl Lattices {
         for side in &plan.sides {
             let (axis, at) = side.plane;
             let mirror = Repeat::Mirror { axis, at };
-            let beside = Beside { side, places: &before, depth: zone.depth_beside(body, side) };
+            let beside = SideParticles { side, places: &before, depth: zone.depth_beside(body, side) };
             if !repeats.contains(&mirror) && !beside.is_prism(body) {
                 is_prism[axis] = false;
                 repeats.push(mirror);
             }
         }
-        let mirrored =
-            if is_prism == [true; 3] { None } else { Some(Lattice::new(body, &near(&before), &repeats)?) };
-        Some(Self { now: Lattice::new(body, &near(&now), body.repeats)?, mirrored, is_prism })
+        let mirrored = if is_prism == [true; 3] {
+            None
+        } else {
+            Some(BondLattice::new(body, &near(&before), &repeats)?)
+        };
+        Some(Self { now: BondLattice::new(body, &near(&now), body.repeats)?, mirrored, is_prism })
     }
 
     /// The lattice with the mirror images by which a stress along a direction is to be balanced; none where it is to be in balance by itself.
-    pub fn mirrored_along(&self, normal: DVec3) -> Option<&Lattice> {
+    pub fn mirrored_along(&self, normal: DVec3) -> Option<&BondLattice> {
         self.mirrored.as_ref().filter(|_| !self.is_prism[normal.abs().max_position()])
     }
 }

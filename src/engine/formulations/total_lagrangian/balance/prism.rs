@@ -10,7 +10,7 @@ use crate::plugin::HeldSide;
 const THERE: f64 = 1e-4;
 
 /// The particles of a body around a side, where they have been in the lattice.
-pub(super) struct Beside<'a> {
+pub(super) struct SideParticles<'a> {
     pub side: &'a HeldSide,
     /// Their places, m.
     pub places: &'a [DVec3],
@@ -18,7 +18,7 @@ pub(super) struct Beside<'a> {
     pub depth: f64,
 }
 
-impl Beside<'_> {
+impl SideParticles<'_> {
     /// Whether the layers repeat along the normal up to that depth, after any distance: a uniform stress along the normal is then in balance without loads on other surfaces.
     pub fn is_prism(&self, body: &HeldBody<'_>) -> bool {
         let near = THERE * body.plan.spacing;

@@ -1,6 +1,6 @@
 //! The shares that balance a uniform stress.
 
-use super::alike::{Kinds, Surroundings};
+use super::alike::{Kinds, ZoneParticles};
 use super::body::HeldBody;
 use super::equations::{Equations, Unknown};
 use super::lattices::Lattices;
@@ -34,7 +34,7 @@ fn find(body: &HeldBody<'_>) -> Option<Balanced> {
     let mut shares = vec![1.0; body.plan.sites.len()];
     before.iter().for_each(|(k, share)| shares[*k as usize] = *share);
     let zone = Zone::of(body, &shares);
-    let lists = Surroundings::of(body, &zone)?;
+    let lists = ZoneParticles::of(body, &zone)?;
     let kinds = Kinds::of(&zone, &lists);
     let lattices = Lattices::of(body, &zone, &kinds)?;
     let equations = Equations::of(body, &zone, &kinds, &lattices, &shares);

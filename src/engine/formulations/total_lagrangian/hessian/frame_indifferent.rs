@@ -15,7 +15,7 @@
 //!
 //! Both are given to the pass of the internal force. A particle with a failed neighbour resists nothing.
 //!
-//! As in that pass, sums run over the neighbours alone, with Q and u in the [`Frame`] of the body: with H = Q - I and b_j = u_j - H_j X_j / 2,
+//! As in that pass, sums run over the neighbours alone, with Q and u in the [`AffineFrame`] of the body: with H = Q - I and b_j = u_j - H_j X_j / 2,
 //!
 //! ```text
 //! d_i / h_i = sum_j V_j w_ij b_j + (sum_j V_j w_ij H_j / 2) X_i - sum_j V_j w_ij u_i - H_i sum_j V_j w_ij X_ij / 2
@@ -27,9 +27,9 @@ use glam::{DMat3, DVec3};
 
 use super::super::bond_sum::BondSum;
 use super::super::bonds::Bonds;
-use super::super::frame::{Frame, frame_of};
-use super::super::rows::Site;
-use super::super::spread::{Spread, fit};
+use super::super::frame::{AffineFrame, frame_of};
+use super::super::rows::PackedParticle;
+use super::super::spread::{DisplacementMoment, fit};
 use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::linalg::Sym3;
 use crate::parallel::{
@@ -46,9 +46,9 @@ use crate::world::{Damage, MissingColumn, PhaseView, SupportRadius};
 pub(in crate::formulations) struct FrameIndifferent<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
     /// Of every body.
-    pub frames: &'a [Frame],
+    pub frames: &'a [AffineFrame],
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
     pub hessian: &'a mut HessianRows,
@@ -57,8 +57,13 @@ pub(in crate::formulations) struct FrameIndifferent<'a> {
 }
 
 /// Rows of the first pass.
-type ResidualRows<'a> =
-    (&'a mut [HessianResidual], &'a mut [HessianStiffness], &'a mut [Site], &'a [f64], &'a [SupportRadius]);
+type ResidualRows<'a> = (
+    &'a mut [HessianResidual],
+    &'a mut [HessianStiffness],
+    &'a mut [PackedParticle],
+    &'a [f64],
+    &'a [SupportRadius],
+);
 
 impl FrameIndifferent<'_> {
     /// Computes the residuals, their energies and their forces, after the stress of all bodies, for those bodies whose number is taken. A pass that repeats
@@ -112,7 +117,7 @@ impl FrameIndifferent<'_> {
         }
         ghosts.fill(pulls, |ghost, own| {
             let pull = ghost.map.vector(own.displacement.xyz());
-            Site { reference: sites[ghost.row].reference, displacement: Lanes4::new(pull, 0.0) }
+            PackedParticle { reference: sites[ghost.row].reference, displacement: Lanes4::new(pull, 0.0) }
         });
         for HessianBody { rows, .. } in bodies.iter().filter(is_own) {
             add_forces(bonds, pulls, rows.clone(), plane, (&mut *stresses, &mut *self_force));
@@ -125,7 +130,7 @@ impl FrameIndifferent<'_> {
 fn fill_loose(
     bonds: &Bonds,
     ghosts: &Ghosts,
-    sites: &[Site],
+    sites: &[PackedParticle],
     damage: Option<&[Damage]>,
     loose: &mut Vec<bool>,
 ) {
@@ -147,7 +152,7 @@ fn fill_loose(
 
 /// What neighbours see of a gradient: -H/2, with 1 in the last lane of the first column, and b with the volume, in the frame.
 #[inline(always)]
-fn slope(h: &DMat3, site: &Site, frame: &Frame) -> CorrectedStress {
+fn slope(h: &DMat3, site: &PackedParticle, frame: &AffineFrame) -> CorrectedStress {
     let half = (*h - frame.gradient) * -0.5;
     let (x, y, z) = (half.x_axis, half.y_axis, half.z_axis);
     let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
@@ -162,7 +167,7 @@ fn fill_slopes<'b>(
     bodies: impl Iterator<Item = &'b HessianBody>,
     gradient: &[DMat3],
     bonded: BondedSites<'_>,
-    frames: &[Frame],
+    frames: &[AffineFrame],
     slopes: &mut [CorrectedStress],
 ) {
     let BondedSites { ghosts, sites, .. } = bonded;
@@ -183,9 +188,9 @@ fn fill_slopes<'b>(
 /// First pass: residual and pull.
 struct Residuals<'a> {
     bonds: &'a Bonds,
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     slopes: &'a [CorrectedStress],
-    frame: Frame,
+    frame: AffineFrame,
     /// Of every row, whether its motion says nothing; empty where that of all does.
     loose: &'a [bool],
     /// Whether the step is one, and no repetition.
@@ -234,7 +239,7 @@ impl PlaneOrSolid for ResidualBlock<'_, '_> {
             (residual[k].0, held[k].0) = (now, kappa);
             let volume = site.reference.0[3];
             let pull = if volume > 0.0 { now * (h * kappa / volume) } else { DVec3::ZERO };
-            pulls[k] = Site { reference: site.reference, displacement: Lanes4::new(pull, 0.0) };
+            pulls[k] = PackedParticle { reference: site.reference, displacement: Lanes4::new(pull, 0.0) };
         }
     }
 }
@@ -242,7 +247,7 @@ impl PlaneOrSolid for ResidualBlock<'_, '_> {
 /// Second pass: the stress that makes the force.
 fn add_forces(
     bonds: &Bonds,
-    pulls: &[Site],
+    pulls: &[PackedParticle],
     rows: Range<usize>,
     plane: bool,
     (stresses, self_force): (&mut [CorrectedStress], &mut [DVec3]),
@@ -258,7 +263,7 @@ fn add_forces(
 struct ForceBlock<'a> {
     bonds: &'a Bonds,
     /// The pull of every row, at its place.
-    pulls: &'a [Site],
+    pulls: &'a [PackedParticle],
     /// First row of the block in the phase.
     first: usize,
     stresses: &'a mut [CorrectedStress],
@@ -275,7 +280,7 @@ impl PlaneOrSolid for ForceBlock<'_> {
                 continue;
             }
             let (x, pull) = (pulls[i].reference.xyz(), pulls[i].displacement.xyz());
-            let Spread { spread, .. } = Spread::<D>::over(a, bonds, pulls, i);
+            let DisplacementMoment { spread, .. } = DisplacementMoment::<D>::over(a, bonds, pulls, i);
             let own = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
             let own = DMat3::from_cols(own[0].xyz(), own[1].xyz(), own[2].xyz()) * 0.5;
             stress.add(&own, x);

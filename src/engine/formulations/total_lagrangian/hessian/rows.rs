@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 
 use super::super::bonds::Bonds;
-use super::super::rows::Site;
-use super::vidal_2007::{Difference, VidalRows};
+use super::super::rows::PackedParticle;
+use super::vidal_2007::{VidalDifference, VidalRows};
 use crate::parallel::{run_hot, share_rows, split_by_rows};
 use crate::solids::{CorrectedStress, FoldedRows, HessianDifference, HessianForm};
 use crate::symmetry::Ghosts;
@@ -31,7 +31,7 @@ pub(in crate::formulations) struct HessianRows {
     /// What neighbours see of the gradients, of all rows.
     pub slopes: Vec<CorrectedStress>,
     /// Places of all rows, with the force per volume squared and weight that acts along their bonds.
-    pub pulls: Vec<Site>,
+    pub pulls: Vec<PackedParticle>,
     /// Of all rows, whether their motion says nothing; empty where that of all does.
     pub loose: Vec<bool>,
     /// What the form of the paper needs of the reference beside.
@@ -71,7 +71,7 @@ impl HessianRows {
         self.stiffness.resize(rows, 0.0);
         if self.has(HessianForm::FrameIndifferent) {
             self.slopes.resize(rows + ghosts, CorrectedStress::default());
-            self.pulls.resize(rows + ghosts, Site::default());
+            self.pulls.resize(rows + ghosts, PackedParticle::default());
             self.loose.reserve(rows + ghosts);
         }
         if self.has(HessianForm::Vidal2007) {
@@ -127,7 +127,7 @@ impl HessianRows {
 pub(in crate::formulations) struct BondedSites<'a> {
     pub bonds: &'a Bonds,
     pub ghosts: &'a Ghosts,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
 }
 
 /// What the first pass reads and writes of a block.
@@ -145,11 +145,25 @@ split_by_rows!(HessianBlock { gradient, stiffness, stress } and { eta, fitted, v
 
 impl HessianBlock<'_> {
     /// Takes the gradients of the displacements since the reference, Q - I, of the block that begins at row `first`; the form of the paper adds its difference to them.
-    pub fn after_fit(&mut self, bonds: &Bonds, sites: &[Site], first: usize, gradient: &mut [DMat3]) {
+    pub fn after_fit(
+        &mut self,
+        bonds: &Bonds,
+        sites: &[PackedParticle],
+        first: usize,
+        gradient: &mut [DMat3],
+    ) {
         self.take_gradient(gradient);
         if let Some(vidal) = self.vidal {
             let (rows, eta) = (vidal, self.eta);
-            run_hot(Difference { rows, bonds, sites, gradient: self.fitted, eta, first, block: gradient });
+            run_hot(VidalDifference {
+                rows,
+                bonds,
+                sites,
+                gradient: self.fitted,
+                eta,
+                first,
+                block: gradient,
+            });
         }
     }
 

@@ -21,7 +21,7 @@ use glam::{DMat3, DVec3};
 use super::super::bonds::Bonds;
 use super::super::gather::fit_gradients;
 use super::super::pairs::BodyKernel;
-use super::super::rows::Site;
+use super::super::rows::PackedParticle;
 use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::correction::MomentMatrix;
 use crate::kernels::Kernel;
@@ -48,7 +48,7 @@ pub(in crate::formulations) struct VidalRows {
 struct VidalBody<'a> {
     bonds: &'a Bonds,
     ghosts: &'a Ghosts,
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     kernel: Kernel,
     /// Support radii of the phase, m.
     support: &'a [f64],
@@ -106,10 +106,10 @@ fn along(curvature: f64, weight: f64, arm: DVec3, step: DVec3) -> DVec3 {
 }
 
 /// D_i times eta for the rows of a block, added to their displacement gradients.
-pub(super) struct Difference<'a> {
+pub(super) struct VidalDifference<'a> {
     pub rows: &'a VidalRows,
     pub bonds: &'a Bonds,
-    pub sites: &'a [Site],
+    pub sites: &'a [PackedParticle],
     /// Displacement gradients of all rows.
     pub gradient: &'a [DMat3],
     pub eta: f64,
@@ -118,7 +118,7 @@ pub(super) struct Difference<'a> {
     pub block: &'a mut [DMat3],
 }
 
-impl HotLoop for Difference<'_> {
+impl HotLoop for VidalDifference<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -195,7 +195,7 @@ impl HessianRows {
     }
 
     /// Adds the forces that act along the second derivatives.
-    pub fn add_vidal_force(&self, bonds: &Bonds, sites: &[Site], force: &mut [Force]) {
+    pub fn add_vidal_force(&self, bonds: &Bonds, sites: &[PackedParticle], force: &mut [Force]) {
         for HessianBody { rows, term, .. } in self.with_form(HessianForm::Vidal2007) {
             let force = &mut force[rows.clone()];
             for_each_own_block(force, &mut Vec::new(), &|first, force: &mut [Force]| {
@@ -210,7 +210,7 @@ struct AdjointStress<'a> {
     vidal: &'a VidalRows,
     theta: &'a [DMat3],
     bonds: &'a Bonds,
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     eta: f64,
     first: usize,
     stresses: &'a mut [CorrectedStress],
@@ -246,7 +246,7 @@ struct AdjointForce<'a> {
     vidal: &'a VidalRows,
     theta: &'a [DMat3],
     bonds: &'a Bonds,
-    sites: &'a [Site],
+    sites: &'a [PackedParticle],
     eta: f64,
     first: usize,
     force: &'a mut [Force],

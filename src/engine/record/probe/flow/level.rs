@@ -22,7 +22,7 @@ pub struct LevelGauge {
 }
 
 /// A particle near the line.
-struct Near {
+struct NearLine {
     height: f64,
     /// Squared distance from the line, m2.
     aside: f64,
@@ -69,21 +69,21 @@ impl LevelGauge {
         [level, wet]
     }
 
-    fn near(&self, cloud: &FlowCloud) -> Vec<Near> {
+    fn near(&self, cloud: &FlowCloud) -> Vec<NearLine> {
         let support = cloud.kernel.support;
-        let of = |(row, record): (usize, &crate::formulations::fluid::Record)| {
+        let of = |(row, record): (usize, &crate::formulations::fluid::FlowParticle)| {
             let offset = cloud.offset(self.at, record.position());
             let height = offset.dot(self.up);
             let aside = (offset - self.up * height).length_squared();
             let within = aside < support * support && height > -support && record.volume() > 0.0;
-            within.then_some(Near { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
+            within.then_some(NearLine { height, aside, volume: record.volume(), fluid: row < cloud.fluid })
         };
         cloud.records().iter().enumerate().filter_map(of).collect()
     }
 }
 
 /// Above zero where the line is wet at that height.
-fn excess(cloud: &FlowCloud, near: &[Near], height: f64) -> f64 {
+fn excess(cloud: &FlowCloud, near: &[NearLine], height: f64) -> f64 {
     let (mut fluid, mut wall) = (0.0, 0.0);
     for other in near {
         let distance = (other.aside + (other.height - height).powi(2)).sqrt();

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::{FlowCloud, Record, Role, Surface};
+use crate::formulations::fluid::{BoundarySurface, FlowCloud, FlowParticle, Role};
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
 use crate::world::{Column, MissingColumn, Position, World};
@@ -90,14 +90,14 @@ impl SensorGauge {
         if suction { pressure } else { pressure.max(0.0) }
     }
 
-    fn density(&self, cloud: &FlowCloud, record: &Record) -> f64 {
+    fn density(&self, cloud: &FlowCloud, record: &FlowParticle) -> f64 {
         let state = cloud.groups.iter().find_map(|group| group.fluid());
         state.map_or(0.0, |state| state.density + record.pressure() / state.sound_speed.powi(2))
     }
 }
 
 /// The surface of the boundary particle that is nearest to a point.
-fn nearest_surface(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<Surface> {
+fn nearest_surface(cloud: &FlowCloud, walls: &[usize], point: DVec3) -> Option<BoundarySurface> {
     let distance = |i: &usize| cloud.offset(point, cloud.records()[*i].position()).length_squared();
     let nearest = *walls.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let group = cloud.groups.iter().find(|group| group.cloud.contains(&nearest))?;

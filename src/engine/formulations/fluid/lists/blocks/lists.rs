@@ -4,9 +4,9 @@
 
 use glam::DVec3;
 
-use super::record::{Own, Packed, Units, dot, pack_places};
+use super::record::{OwnBlock, Packed, Units, dot, pack_places};
 use super::seen::write_seen;
-use super::table::{Rows, Table};
+use super::table::{BlockTable, Rows};
 use crate::formulations::fluid::lists::sides::Sides;
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
 use crate::neighbors::{NeighborError, NeighborList, NeighborSearch, Periodic};
@@ -17,8 +17,8 @@ const CERTAIN: f64 = 1.0 + 1e-5;
 
 /// Lists of the blocks: rows of the cloud that are near any particle of each, its own particles included.
 #[derive(Debug)]
-pub struct Lists {
-    pub table: Table,
+pub struct BlockLists {
+    pub table: BlockTable,
     /// Fluids.
     pub fluid: NearRows,
     /// What bounds them.
@@ -34,7 +34,7 @@ pub struct Lists {
 }
 
 /// What lists are built from.
-pub struct Sources<'a> {
+pub struct ListSources<'a> {
     /// Positions of the fluids, m, those that the search has sorted.
     pub positions: &'a [DVec3],
     /// Where each fluid ends.
@@ -48,11 +48,11 @@ pub struct Sources<'a> {
     pub sides: Option<(Sides<'a>, NeighborList)>,
 }
 
-impl Lists {
+impl BlockLists {
     /// Lists of blocks that measure places in these units.
     pub fn new(units: Units) -> Self {
         Self {
-            table: Table::default(),
+            table: BlockTable::default(),
             fluid: NearRows::default(),
             walls: NeighborList::default(),
             seen_walls: Vec::new(),
@@ -72,11 +72,11 @@ impl Lists {
     /// Makes blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each particle among what bounds the flow.
     pub fn build(
         &mut self,
-        sources: &Sources<'_>,
+        sources: &ListSources<'_>,
         (search, groups): (&mut NeighborSearch, &[u32]),
         walls: &NeighborList,
     ) -> Result<(), NeighborError> {
-        let Sources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
+        let ListSources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
         let Self { table, fluid, walls: of_blocks, seen_walls, units, counts, candidates, places } = self;
         table.build(positions, fluids, support, periodic);
         search.of_boxes((&table.centers, &table.halves, groups), skin, periodic, candidates)?;
@@ -107,7 +107,7 @@ fn who_sees(sides: &Sides<'_>, walls: &NeighborList, rows: &Rows, j: u32, near: 
 
 /// Takes out of the candidates those that are near.
 struct Sift<'a> {
-    table: &'a Table,
+    table: &'a BlockTable,
     candidates: &'a NeighborList,
     places: &'a [Packed],
     sides: &'a Option<(Sides<'a>, NeighborList)>,
@@ -129,7 +129,7 @@ impl BlockLoop for Sift<'_> {
         for (k, counts) in counts.iter_mut().enumerate() {
             let mut count = Lanes8::ZERO;
             let rows = &table.rows[first + k];
-            let own = Own::new(places, rows);
+            let own = OwnBlock::new(places, rows);
             let mut row = near.row(k);
             for &j in candidates.row(first + k) {
                 let x = own.to(a, &places[j as usize], &unit).x;

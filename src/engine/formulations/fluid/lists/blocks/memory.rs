@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::lists::Lists;
+use super::lists::BlockLists;
 use super::record::{Packed, Units};
 use crate::formulations::fluid::lists::NearRows;
 use crate::pair::Fastest;
@@ -11,7 +11,7 @@ use crate::ranks::Halo;
 
 /// The blocks of a flow, and what their passes read and write.
 pub struct Blocks {
-    pub lists: Lists,
+    pub lists: BlockLists,
     pub units: Units,
     pub packed: Vec<Packed>,
     /// Neighbours within the support of any particle of a block.
@@ -34,7 +34,7 @@ impl Blocks {
     /// Those of a flow; `hides` says that thin bodies hide some of what is near from particles.
     pub fn new(units: Units, hides: bool) -> Self {
         Self {
-            lists: Lists::new(units),
+            lists: BlockLists::new(units),
             units,
             packed: Vec::new(),
             near: NearRows::default(),
@@ -49,7 +49,7 @@ impl Blocks {
 
     /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the particles.
     pub fn make_room(&mut self, of_particles: &mut NearRows) {
-        let Lists { table, fluid, walls, counts, .. } = &self.lists;
+        let BlockLists { table, fluid, walls, counts, .. } = &self.lists;
         let most = |block: usize| fluid.row(block).len() + walls.row(block).len();
         self.near.make_room_for(table.rows.len(), most);
         self.halos.clear();

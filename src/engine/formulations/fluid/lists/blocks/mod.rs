@@ -12,9 +12,9 @@ mod lists;
 
 mod memory;
 
-pub use lists::{Lists, Sources};
+pub use lists::{BlockLists, ListSources};
 pub use memory::Blocks;
-pub use record::{Other, Own, Packed, Units, dot, pack, pack_states};
+pub use record::{Other, OwnBlock, Packed, Units, dot, pack, pack_states};
 pub use seen::SEEN;
 pub use sums::BlockSums;
-pub use table::{Rows, Table};
+pub use table::{BlockTable, Rows};

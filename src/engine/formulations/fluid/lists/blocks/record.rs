@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::table::Rows;
-use crate::formulations::fluid::lanes::Record;
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::Periodic;
 use crate::parallel::{EIGHT, EightLanes, Lanes8, for_each_block};
 
@@ -56,10 +56,10 @@ impl Units {
     }
 }
 
-type Slices<'a> = (&'a mut [Packed], &'a [Record]);
+type Slices<'a> = (&'a mut [Packed], &'a [FlowParticle]);
 
 /// Packs all particles.
-pub fn pack(packed: &mut Vec<Packed>, records: &[Record], units: &Units) {
+pub fn pack(packed: &mut Vec<Packed>, records: &[FlowParticle], units: &Units) {
     packed.resize(records.len(), Packed::default());
     for_each_block((&mut packed[..], records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
         for (packed, record) in packed.iter_mut().zip(records) {
@@ -79,7 +79,7 @@ pub fn pack_places(packed: &mut Vec<Packed>, positions: &[DVec3], units: &Units)
 }
 
 /// Packs volumes, velocities and pressures anew.
-pub fn pack_states(packed: &mut [Packed], records: &[Record]) {
+pub fn pack_states(packed: &mut [Packed], records: &[FlowParticle]) {
     for_each_block((packed, records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
         for (packed, record) in packed.iter_mut().zip(records) {
             packed.take_state(record);
@@ -89,7 +89,7 @@ pub fn pack_states(packed: &mut [Packed], records: &[Record]) {
 
 impl Packed {
     #[inline(always)]
-    fn take_state(&mut self, record: &Record) {
+    fn take_state(&mut self, record: &FlowParticle) {
         self.volume = record.volume() as f32;
         let [x, y, z, pressure] = record.motion.0;
         self.velocity = [x as f32, y as f32, z as f32];
@@ -99,7 +99,7 @@ impl Packed {
 
 /// The particles of a block, one a lane.
 #[derive(Clone, Copy)]
-pub struct Own {
+pub struct OwnBlock {
     place: [[i32; EIGHT]; 3],
     velocity: [Lanes8; 3],
     pub volume: Lanes8,
@@ -115,7 +115,7 @@ pub struct Other {
     pub v: [Lanes8; 3],
 }
 
-impl Own {
+impl OwnBlock {
     #[inline(always)]
     pub fn new(packed: &[Packed], rows: &Rows) -> Self {
         let mut own = Self {
@@ -168,7 +168,7 @@ mod tests {
         #[inline(always)]
         fn run<A: EightLanes>(self, a: A) -> Self::Output {
             let Self(packed, units) = self;
-            let own = Own::new(packed, &std::array::from_fn(|lane| lane as u32));
+            let own = OwnBlock::new(packed, &std::array::from_fn(|lane| lane as u32));
             let unit = units.length.to_array().map(|length| a.splat(length));
             packed.iter().map(|other| own.to(a, other, &unit).x).collect()
         }
@@ -189,8 +189,9 @@ mod tests {
                 let turns = length * (t % 3.0 - 1.0);
                 DVec3::new(turns - 0.3 + 0.01 * t.sin(), 5.0 + 0.2 * (1.7 * t).sin(), 0.1 * (2.3 * t).cos())
             };
-            let record = |k: u32| Record { place: Lanes4::new(place(k), 1e-3), ..Record::default() };
-            let records: Vec<Record> = (0..8).map(record).collect();
+            let record =
+                |k: u32| FlowParticle { place: Lanes4::new(place(k), 1e-3), ..FlowParticle::default() };
+            let records: Vec<FlowParticle> = (0..8).map(record).collect();
             let mut packed = Vec::new();
             pack(&mut packed, &records, &units);
             let x = run_blocks_on(false, Differences(&packed, &units));

@@ -19,7 +19,7 @@ pub type Rows = [u32; EIGHT];
 
 /// The blocks of all fluids.
 #[derive(Debug, Default)]
-pub struct Table {
+pub struct BlockTable {
     /// Particles of each block, ascending.
     pub rows: Vec<Rows>,
     /// Where the blocks of each fluid end.
@@ -30,24 +30,24 @@ pub struct Table {
     pub centers: Vec<DVec3>,
     pub halves: Vec<DVec3>,
     cells: Buckets,
-    runs: Vec<Run>,
+    runs: Vec<RunMemory>,
 }
 
 /// Memory for a run.
 #[derive(Debug, Default)]
-struct Run {
-    points: Vec<Point>,
+struct RunMemory {
+    points: Vec<RunPoint>,
     blocks: Vec<Rows>,
 }
 
 /// A particle of a run; its place is measured from the first one.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+struct RunPoint {
     x: Vec3,
     row: u32,
 }
 
-impl Table {
+impl BlockTable {
     /// Makes the blocks of fluids whose rows end here from the positions of their particles, m, which are finite.
     pub fn build(&mut self, positions: &[DVec3], fluids: &[u32], support: f64, periodic: &Periodic) {
         self.rows.clear();
@@ -84,13 +84,13 @@ impl Table {
         sort_into_cells(cells, positions, CELL * support, periodic);
         let sorted = &cells.rows;
         let count = positions.len().div_ceil(RUN);
-        runs.resize_with(runs.len().max(count), Run::default);
+        runs.resize_with(runs.len().max(count), RunMemory::default);
         runs[..count].par_iter_mut().zip(sorted.par_chunks(RUN)).for_each(|(run, sorted)| {
-            let Run { points, blocks } = run;
+            let RunMemory { points, blocks } = run;
             let origin = positions[sorted[0] as usize];
             let point = |&row: &u32| {
                 let x = periodic.minimal_image(positions[row as usize] - origin);
-                Point { x: x.as_vec3(), row: first + row }
+                RunPoint { x: x.as_vec3(), row: first + row }
             };
             points.clear();
             points.extend(sorted.iter().map(point));
@@ -124,7 +124,7 @@ impl Table {
 }
 
 /// Halves points until eight are left, in a box of edges up to `limit`, m.
-fn halve(points: &mut [Point], limit: f32, blocks: &mut Vec<Rows>) {
+fn halve(points: &mut [RunPoint], limit: f32, blocks: &mut Vec<Rows>) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in &*points {
         (low, high) = (low.min(point.x), high.max(point.x));
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn every_particle_has_one_place_in_a_compact_block_of_its_body() {
-        let (positions, mut table) = (places(), Table::default());
+        let (positions, mut table) = (places(), BlockTable::default());
         table.build(&positions, &[700, 1730], 2.6, &Periodic::NONE);
         for row in 0..positions.len() {
             let (block, lane) = table.place(row);

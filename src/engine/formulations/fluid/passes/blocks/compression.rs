@@ -2,7 +2,7 @@
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{Blocks, Lists, Own, Packed, SEEN, dot, pack};
+use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OwnBlock, Packed, SEEN, dot, pack};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
     BlockLoop, EightLanes, Lanes8, Split, for_each_block, for_each_own_block, run_blocks_on, share_rows_of,
@@ -27,9 +27,9 @@ impl FlowCloud {
         };
         let rows = (&mut rates[..], &mut close[..], near.writer());
         if *hides {
-            self.kernel.run(AllBlocks::<true> { pass, rows });
+            self.kernel.run(AllCompressionBlocks::<true> { pass, rows });
         } else {
-            self.kernel.run(AllBlocks::<false> { pass, rows });
+            self.kernel.run(AllCompressionBlocks::<false> { pass, rows });
         }
         share_rows_of(rates, lists.table.fluids());
         share_rows_of(close, lists.table.fluids());
@@ -62,7 +62,7 @@ const ALL: u8 = u8::MAX;
 #[derive(Clone, Copy)]
 struct Compress<'a> {
     packed: &'a [Packed],
-    lists: &'a Lists,
+    lists: &'a BlockLists,
     /// Units of place, m.
     unit: [f64; 3],
     /// Time from the end of the step to its middle, s.
@@ -75,7 +75,7 @@ struct Compress<'a> {
 }
 
 /// `HIDDEN`: where some particles do not see what is near them; those who do get a bit each.
-struct AllBlocks<'a, const HIDDEN: bool> {
+struct AllCompressionBlocks<'a, const HIDDEN: bool> {
     pass: Compress<'a>,
     rows: BlockRows<'a>,
 }
@@ -83,7 +83,7 @@ struct AllBlocks<'a, const HIDDEN: bool> {
 /// Rates of compression, bits of the particles close to a boundary, and neighbours, of some blocks.
 type BlockRows<'a> = (&'a mut [Lanes8], &'a mut [u8], NearWriter<'a>);
 
-impl<const HIDDEN: bool> KernelLoop for AllBlocks<'_, HIDDEN> {
+impl<const HIDDEN: bool> KernelLoop for AllCompressionBlocks<'_, HIDDEN> {
     type Output = ();
 
     fn run<K: PairShape>(self, kernel: K) {
@@ -94,20 +94,20 @@ impl<const HIDDEN: bool> KernelLoop for AllBlocks<'_, HIDDEN> {
             rest = behind;
             for_each_own_block(rows, &mut Vec::new(), &|first, rows: BlockRows<'_>| {
                 let first = fluid.start + first;
-                run_blocks_on(pass.plane, SomeBlocks::<K, HIDDEN> { pass, kernel, first, rows });
+                run_blocks_on(pass.plane, CompressionBlocks::<K, HIDDEN> { pass, kernel, first, rows });
             });
         }
     }
 }
 
-struct SomeBlocks<'a, K, const HIDDEN: bool> {
+struct CompressionBlocks<'a, K, const HIDDEN: bool> {
     pass: Compress<'a>,
     kernel: K,
     first: usize,
     rows: BlockRows<'a>,
 }
 
-impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
+impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HIDDEN> {
     type Output = ();
 
     #[inline(always)]
@@ -120,8 +120,8 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
             let block = first + k;
             let mut near = writer.row(k);
             let mut least = a.splat(f64::INFINITY);
-            let own = Own::new(packed, &lists.table.rows[block]);
-            let mut sums = Sums { packed, kernel, own, unit, back, limit, smallest, sum: Lanes8::ZERO };
+            let own = OwnBlock::new(packed, &lists.table.rows[block]);
+            let mut sums = RateSums { packed, kernel, own, unit, back, limit, smallest, sum: Lanes8::ZERO };
             let (fluid, walls) = (lists.fluid.row(block), lists.walls.row(block));
             if HIDDEN {
                 let (seen, seen_walls) = lists.seen(block);
@@ -145,10 +145,10 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for SomeBlocks<'_, K, HIDDEN> {
     }
 }
 
-struct Sums<'a, K> {
+struct RateSums<'a, K> {
     packed: &'a [Packed],
     kernel: K,
-    own: Own,
+    own: OwnBlock,
     unit: [Lanes8; 3],
     back: Lanes8,
     limit: Lanes8,
@@ -156,7 +156,7 @@ struct Sums<'a, K> {
     sum: Lanes8,
 }
 
-impl<K: PairShape> Sums<'_, K> {
+impl<K: PairShape> RateSums<'_, K> {
     /// Adds a neighbour with the bits of those who see it; gives the squares of the distances at the end of the step, and writes it down where one is within the support.
     #[inline(always)]
     fn add<A: EightLanes, const HIDDEN: bool>(

@@ -3,10 +3,10 @@
 use std::cell::RefCell;
 
 use super::land::{FIXED, Landing, stride};
-use super::pairs::{Pairs, Sums, hide};
+use super::pairs::{BlockForces, PairsOfBlock, hide};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, Own, Packed};
+use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, OwnBlock, Packed};
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, Fastest, PhaseTerms, TermRows, TermSums};
 use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
@@ -62,7 +62,8 @@ impl BlockForce<'_> {
         forces.resize(range.len() * stride, Lanes8::ZERO);
         let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
         let rows = BlockSums { lanes: &mut forces, stride };
-        let fastest = self.cloud.kernel.run(AllBlocks { pass, first: range.start, rows, sums: &mut sums });
+        let fastest =
+            self.cloud.kernel.run(AllForceBlocks { pass, first: range.start, rows, sums: &mut sums });
         self.blocks.make_halo(self.number, &self.group.cloud);
         let halo = &self.blocks.halos[self.number];
         halo.fill_bytes(bytemuck::cast_slice_mut(&mut forces), stride * size_of::<Lanes8>());
@@ -88,14 +89,14 @@ struct Pass<'a> {
     count: usize,
 }
 
-struct AllBlocks<'a> {
+struct AllForceBlocks<'a> {
     pass: Pass<'a>,
     first: usize,
     rows: BlockSums<'a>,
     sums: &'a mut Vec<Fastest>,
 }
 
-impl KernelLoop for AllBlocks<'_> {
+impl KernelLoop for AllForceBlocks<'_> {
     type Output = Fastest;
 
     fn run<K: PairShape>(self, kernel: K) -> Fastest {
@@ -103,13 +104,13 @@ impl KernelLoop for AllBlocks<'_> {
         for_each_own_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
             PAIRS.with_borrow_mut(|pairs| {
                 let first = first + row;
-                run_blocks_on(pass.cloud.plane, SomeBlocks { pass: &pass, kernel, first, rows, pairs })
+                run_blocks_on(pass.cloud.plane, ForceBlocks { pass: &pass, kernel, first, rows, pairs })
             })
         })
     }
 }
 
-struct SomeBlocks<'a, K> {
+struct ForceBlocks<'a, K> {
     pass: &'a Pass<'a>,
     kernel: K,
     first: usize,
@@ -117,7 +118,7 @@ struct SomeBlocks<'a, K> {
     pairs: &'a mut BlockPairs,
 }
 
-impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
+impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
     type Output = Fastest;
 
     #[inline(always)]
@@ -132,11 +133,11 @@ impl<K: PairShape> BlockLoop for SomeBlocks<'_, K> {
         let mut of_terms: AllSums = Default::default();
         for k in 0..lanes.len() / stride {
             let rows = &lists.table.rows[first + k];
-            let own = Own::new(packed, rows);
-            let mut of_block = Pairs::new(a, (packed, kernel, units), own, cloud, rows);
+            let own = OwnBlock::new(packed, rows);
+            let mut of_block = PairsOfBlock::new(a, (packed, kernel, units), own, cloud, rows);
             pairs.begin(*rows, own.volume, cloud.kernel.support);
             of_terms[..count].fill(TermSums::default());
-            let mut sums = Sums::ZERO;
+            let mut sums = BlockForces::ZERO;
             let mut rest = near.row(first + k);
             let mut seen = if *hides { near.lanes(first + k) } else { &[] };
             // By number: zipped iterators would be called.

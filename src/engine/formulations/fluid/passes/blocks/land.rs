@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::super::pair_force::ForceRows;
 use crate::formulations::fluid::cloud::PARTS;
-use crate::formulations::fluid::lists::blocks::Table;
+use crate::formulations::fluid::lists::blocks::BlockTable;
 use crate::pair::TermRows;
 use crate::parallel::{Lanes8, Split, for_each_own_block};
 use crate::world::Force;
@@ -19,7 +19,7 @@ pub fn stride(terms: usize) -> usize {
 
 /// The way back.
 pub struct Landing<'a> {
-    pub table: &'a Table,
+    pub table: &'a BlockTable,
     /// First block of the fluid, and its first row in the cloud.
     pub first_block: usize,
     pub first_row: usize,

@@ -7,16 +7,16 @@ use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
 use crate::formulations::fluid::lanes::PairShape;
-use crate::formulations::fluid::lists::blocks::{Other, Own, Packed, Rows, SEEN, Units, dot};
+use crate::formulations::fluid::lists::blocks::{Other, OwnBlock, Packed, Rows, SEEN, Units, dot};
 use crate::pair::{BlockPairs, EightPairs};
 use crate::parallel::{EIGHT, EightLanes, Lanes8};
 
 /// The pairs of a block.
-pub struct Pairs<'a, K> {
+pub struct PairsOfBlock<'a, K> {
     packed: &'a [Packed],
     kernel: K,
     unit: [Lanes8; 3],
-    own: Own,
+    own: OwnBlock,
     cloud: &'a FlowCloud,
     /// Spins of the particles, 1/s; zero where friction goes without.
     spin: [Lanes8; 3],
@@ -26,7 +26,7 @@ pub struct Pairs<'a, K> {
 
 /// What neighbours do to the particles of a block, N.
 #[derive(Clone, Copy)]
-pub struct Sums {
+pub struct BlockForces {
     /// Of the pressures of fluids.
     pub pressure: [Lanes8; 3],
     /// Of friction.
@@ -35,7 +35,7 @@ pub struct Sums {
     pub wall: [Lanes8; 3],
 }
 
-impl Sums {
+impl BlockForces {
     pub const ZERO: Self =
         Self { pressure: [Lanes8::ZERO; 3], viscous: [Lanes8::ZERO; 3], wall: [Lanes8::ZERO; 3] };
 }
@@ -49,12 +49,12 @@ pub fn hide<A: EightLanes>(a: A, seen: &[u8], pairs: &mut BlockPairs) {
     }
 }
 
-impl<'a, K: PairShape> Pairs<'a, K> {
+impl<'a, K: PairShape> PairsOfBlock<'a, K> {
     #[inline(always)]
     pub fn new<A: EightLanes>(
         a: A,
         (packed, kernel, units): (&'a [Packed], K, &'a Units),
-        own: Own,
+        own: OwnBlock,
         cloud: &'a FlowCloud,
         rows: &Rows,
     ) -> Self {
@@ -145,7 +145,7 @@ impl<'a, K: PairShape> Pairs<'a, K> {
 
     /// Adds neighbours of a fluid: `V_i V_j (p_i + p_j) w x_ij`, and the friction.
     #[inline(always)]
-    pub fn add_fluid<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut Sums) {
+    pub fn add_fluid<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
         match self.friction() {
             NONE => self.fluid::<A, NONE>(a, pairs, sums),
             PLAIN => self.fluid::<A, PLAIN>(a, pairs, sums),
@@ -154,8 +154,8 @@ impl<'a, K: PairShape> Pairs<'a, K> {
     }
 
     #[inline(always)]
-    fn fluid<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut Sums) {
-        let Sums { mut pressure, mut viscous, .. } = *sums;
+    fn fluid<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
+        let BlockForces { mut pressure, mut viscous, .. } = *sums;
         for pair in pairs.pairs() {
             let other = &self.packed[pair.row as usize];
             let weight = a.times(pair.weight, a.times(self.own.volume, a.same(other.volume)));
@@ -170,7 +170,7 @@ impl<'a, K: PairShape> Pairs<'a, K> {
 
     /// Adds neighbours that bound the fluid: their pressures are kept apart.
     #[inline(always)]
-    pub fn add_walls<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut Sums) {
+    pub fn add_walls<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
         match self.friction() {
             NONE => self.walls::<A, NONE>(a, pairs, sums),
             PLAIN => self.walls::<A, PLAIN>(a, pairs, sums),
@@ -179,8 +179,8 @@ impl<'a, K: PairShape> Pairs<'a, K> {
     }
 
     #[inline(always)]
-    fn walls<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut Sums) {
-        let Sums { mut pressure, mut viscous, mut wall } = *sums;
+    fn walls<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
+        let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
         for pair in pairs.pairs() {
             let other = &self.packed[pair.row as usize];
             let weight = a.times(pair.weight, a.times(self.own.volume, a.same(other.volume)));
@@ -191,6 +191,6 @@ impl<'a, K: PairShape> Pairs<'a, K> {
             }
             self.rub::<A, FRICTION>(a, (pair.row, 1.0), pair, weight, &mut viscous);
         }
-        *sums = Sums { pressure, viscous, wall };
+        *sums = BlockForces { pressure, viscous, wall };
     }
 }

@@ -10,19 +10,19 @@ impl FlowCloud {
     pub(in crate::formulations::fluid) fn pack_rows(&mut self, blocks: &Blocks) {
         let mut near = std::mem::take(&mut self.near);
         for_each_block(near.writer(), &mut Vec::new(), &|first, near: NearWriter<'_>| {
-            run_hot(Rows { blocks, first, near });
+            run_hot(NearRowsOfBlocks { blocks, first, near });
         });
         self.near = near;
     }
 }
 
-struct Rows<'a> {
+struct NearRowsOfBlocks<'a> {
     blocks: &'a Blocks,
     first: usize,
     near: NearWriter<'a>,
 }
 
-impl HotLoop for Rows<'_> {
+impl HotLoop for NearRowsOfBlocks<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -16,12 +16,12 @@ const OPEN: f64 = 0.5;
 
 /// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Rest {
+pub struct RestOfGap {
     pub pressure: f64,
     pub slope: DVec3,
 }
 
-impl Rest {
+impl RestOfGap {
     /// The pressure at that offset, m, Pa.
     fn at(&self, x: DVec3) -> f64 {
         self.pressure + self.slope.dot(x)
@@ -51,7 +51,7 @@ pub struct Gap {
     /// Share of the empty space around it that is a gap.
     pub closed: f64,
     /// The fluid there; none before it is known.
-    pub fluid: Option<Rest>,
+    pub fluid: Option<RestOfGap>,
 }
 
 /// Finds the fluid at the particles beside gaps that are joined to the fluid or to the air.
@@ -59,7 +59,7 @@ pub struct Gap {
 pub struct Fill {
     /// Number of every boundary particle among those beside gaps.
     numbers: Vec<u32>,
-    found: Vec<(usize, Rest)>,
+    found: Vec<(usize, RestOfGap)>,
     /// Sums of weights and of pressures with them at particles on the other side of gaps.
     beyond: Vec<[f64; 2]>,
 }
@@ -72,7 +72,7 @@ impl Fill {
         for (k, gap) in (0..).zip(gaps.iter_mut()) {
             self.numbers[gap.particle[0] as usize - cloud.fluid] = k;
             if gap.fluid.is_none() && gap.closed < OPEN {
-                gap.fluid = Some(Rest::default());
+                gap.fluid = Some(RestOfGap::default());
             }
         }
         let mut found = std::mem::take(&mut self.found);
@@ -90,9 +90,9 @@ impl Fill {
     }
 
     /// The fluid at particle `k` by those near it.
-    fn continued(&self, cloud: &FlowCloud, gaps: &[Gap], k: usize) -> Option<Rest> {
+    fn continued(&self, cloud: &FlowCloud, gaps: &[Gap], k: usize) -> Option<RestOfGap> {
         let [row, list] = gaps[k].particle;
-        let (mut total, mut sum) = (0.0, Rest::default());
+        let (mut total, mut sum) = (0.0, RestOfGap::default());
         for &j in cloud.pairs.gaps.list.row(list as usize) {
             let number = self.numbers[j as usize - cloud.fluid] as usize;
             let Some(there) = gaps.get(number).and_then(|gap| gap.fluid) else { continue };
@@ -102,7 +102,7 @@ impl Fill {
             sum.slope += pair.value * there.slope;
         }
         // A floor of zero keeps a gap above the surface dry.
-        let mean = || Rest { pressure: (sum.pressure / total).max(0.0), slope: sum.slope / total };
+        let mean = || RestOfGap { pressure: (sum.pressure / total).max(0.0), slope: sum.slope / total };
         (total > LEAST_SHARE).then(mean)
     }
 

@@ -12,7 +12,7 @@ const ACROSS: [f64; 2] = [0.3, 0.5];
 
 /// A particle near one beside a gap.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair {
+pub struct GapPair {
     /// Its row in the cloud.
     pub row: usize,
     /// x_ij, m.
@@ -38,7 +38,7 @@ pub struct Surrounding {
 impl FlowCloud {
     /// The pair of a particle and particle `j` of the cloud; none beyond the support.
     #[inline]
-    pub(super) fn gap_pair(&self, i: usize, j: u32) -> Option<Pair> {
+    pub(super) fn gap_pair(&self, i: usize, j: u32) -> Option<GapPair> {
         let record = &self.records[j as usize];
         let x = self.offset(self.records[i].position(), record.position());
         let (square, volume) = (x.length_squared(), record.volume());
@@ -47,11 +47,11 @@ impl FlowCloud {
         }
         let r = square.sqrt();
         let (value, weight) = (volume * self.kernel.value(r), volume * self.kernel.weight(r));
-        Some(Pair { row: j as usize, x, value, weight })
+        Some(GapPair { row: j as usize, x, value, weight })
     }
 
     /// The particles of other bodies within the support of a particle in the lists of gaps.
-    pub(super) fn across_gap(&self, [row, k]: [u32; 2]) -> impl Iterator<Item = Pair> {
+    pub(super) fn across_gap(&self, [row, k]: [u32; 2]) -> impl Iterator<Item = GapPair> {
         let gaps = &self.pairs.gaps;
         let (row, list) = (row as usize, gaps.list.row(k as usize));
         let own = &gaps.side_of(row).rows;
@@ -69,11 +69,11 @@ impl Surrounding {
         let list = cloud.pairs.gaps.list.row(k as usize);
         let own = part(list, &cloud.pairs.gaps.side_of(row as usize).rows);
         for &j in own.iter().chain(cloud.near_row(row as usize)) {
-            let Some(Pair { x, weight, .. }) = cloud.gap_pair(row as usize, j) else { continue };
+            let Some(GapPair { x, weight, .. }) = cloud.gap_pair(row as usize, j) else { continue };
             sum.own += weight * x;
             sum.second += weight * Sym3::dyad(x);
         }
-        for Pair { x, weight, .. } in cloud.across_gap([row, k]) {
+        for GapPair { x, weight, .. } in cloud.across_gap([row, k]) {
             sum.other += weight * x;
             sum.other_second += weight * Sym3::dyad(x);
         }

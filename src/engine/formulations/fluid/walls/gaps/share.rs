@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::moments::Pair;
+use super::moments::GapPair;
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::linalg::dyad;
 
@@ -15,8 +15,8 @@ const OUTSIDE: f64 = 16.0;
 const FLAT: f64 = 1e-9;
 
 /// Gives a force on a particle, N, to itself and its opposite to those across the gap, as far as the gap is looked at from this side.
-pub fn give(cloud: &FlowCloud, row: usize, force: DVec3, across: &[Pair], out: &mut [DVec3]) {
-    let weight = |pair: &Pair| cloud.pairs.gaps.share_of(row, pair.row) * pair.value;
+pub fn give(cloud: &FlowCloud, row: usize, force: DVec3, across: &[GapPair], out: &mut [DVec3]) {
+    let weight = |pair: &GapPair| cloud.pairs.gaps.share_of(row, pair.row) * pair.value;
     let total: f64 = across.iter().map(weight).sum();
     let whole: f64 = across.iter().map(|pair| pair.value).sum();
     let Some(direction) = force.try_normalize().filter(|_| total > 0.0) else { return };

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::fill::{Fill, Gap, Rest};
-use super::moments::{Pair, Surrounding, of_surface};
+use super::fill::{Fill, Gap, RestOfGap};
+use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
 use crate::parallel::{for_each_block, for_each_heavy_block};
@@ -19,7 +19,7 @@ pub struct GapPressure {
     spacing: f64,
     gaps: Vec<Gap>,
     fill: Fill,
-    across: Vec<Pair>,
+    across: Vec<GapPair>,
 }
 
 type Rows<'a> = (&'a mut [Gap], &'a [[u32; 2]]);
@@ -39,7 +39,7 @@ impl GapPressure {
         for_each_block(rows, &mut Vec::new(), &|_, (gaps, particles): Rows<'_>| {
             for (gap, &particle) in gaps.iter_mut().zip(particles) {
                 *gap = Gap { particle, ..Gap::default() };
-                gap.fluid = Rest::of_wet(cloud, *gravity, particle[0]);
+                gap.fluid = RestOfGap::of_wet(cloud, *gravity, particle[0]);
             }
         });
         if gaps.iter().all(|gap| gap.fluid.is_none_or(|fluid| fluid.pressure == 0.0)) {
@@ -60,11 +60,11 @@ impl GapPressure {
     fn press(&mut self, cloud: &FlowCloud, forces: &mut [DVec3]) {
         let Self { gaps, fill, across, .. } = self;
         for gap in gaps {
-            let Some(Rest { pressure, slope }) = gap.fluid else { continue };
+            let Some(RestOfGap { pressure, slope }) = gap.fluid else { continue };
             let row = gap.particle[0] as usize;
             across.clear();
             across.extend(cloud.across_gap(gap.particle));
-            let of_pair = |pair: &Pair| {
+            let of_pair = |pair: &GapPair| {
                 let there = fill.beyond(cloud, pair.row).unwrap_or(pressure);
                 (pressure + there) * pair.weight * pair.x
             };
