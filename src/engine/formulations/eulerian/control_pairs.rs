@@ -57,6 +57,16 @@ struct ControlSums<A: FourLanes> {
     energy_before: Number<A>,
 }
 
+/// Four neighbours: x_ij, X_ij, F_j, Young's moduli now and before, and volume.
+struct FourOthers<A: FourLanes> {
+    arm: Vector<A>,
+    original: Vector<A>,
+    deformation: Matrix<A>,
+    modulus: Number<A>,
+    before: Number<A>,
+    volume: Number<A>,
+}
+
 impl ControlPairs<'_> {
     /// The sums of row `i`.
     #[inline(always)]
@@ -110,16 +120,9 @@ impl ControlPairs<'_> {
         }
     }
 
-    /// Adds four neighbours.
+    /// Reads four neighbours.
     #[inline(always)]
-    fn add<A: FourLanes>(
-        &self,
-        a: A,
-        own: &OwnControl<A>,
-        four: [u32; 4],
-        kernel: FourKernel,
-        sums: &mut ControlSums<A>,
-    ) {
+    fn four<A: FourLanes>(&self, a: A, own: &OwnControl<A>, four: [u32; 4]) -> FourOthers<A> {
         let [j, k, l, m] = [four[0] as usize, four[1] as usize, four[2] as usize, four[3] as usize];
         let points = [&self.points[j], &self.points[k], &self.points[l], &self.points[m]];
         let of = [&self.carried[j], &self.carried[k], &self.carried[l], &self.carried[m]];
@@ -136,8 +139,22 @@ impl ControlPairs<'_> {
             Vector::new(a, [bx, by, bz]),
             Vector::new(a, [cx, cy, cz]),
         ]);
-        let (modulus, before) = (Number::new(a, modulus), Number::new(a, before));
-        let volume = Number::new(a, volume);
+        let number = |lanes| Number::new(a, lanes);
+        let (modulus, before, volume) = (number(modulus), number(before), number(volume));
+        FourOthers { arm, original, deformation, modulus, before, volume }
+    }
+
+    /// Adds four neighbours.
+    #[inline(always)]
+    fn add<A: FourLanes>(
+        &self,
+        a: A,
+        own: &OwnControl<A>,
+        four: [u32; 4],
+        kernel: FourKernel,
+        sums: &mut ControlSums<A>,
+    ) {
+        let FourOthers { arm, original, deformation, modulus, before, volume } = self.four(a, own, four);
         let (weight, curvature) = (Number::new(a, kernel.weight), Number::new(a, kernel.curvature));
         let (own_guess, other_guess) = (own.deformation * original, deformation * original);
         let square = arm.length_squared().max(f64::MIN_POSITIVE);
