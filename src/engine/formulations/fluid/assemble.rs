@@ -11,7 +11,7 @@ use crate::formulations::fluid::cloud::{
 };
 use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::{
-    FlowPairs, GapPairs, GapSide, Moves, NearRows, Skins, Thickness, ThinBody,
+    FlowPairs, GapPairs, GapSide, NearRows, SideMotion, Skins, Thickness, ThinBody,
 };
 use crate::formulations::fluid::passes::blocks;
 use crate::formulations::fluid::setup::{advice, checks, rest, start};
@@ -225,7 +225,7 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
         Some(GapSide {
             body: group.body,
             rows: group.cloud.clone(),
-            moves: if surface.moved { Moves::Free } else { Moves::Wall },
+            moves: if surface.moved { SideMotion::Free } else { SideMotion::Wall },
             is_closed: copies(group.body) > 1 || sim.body(group.body).kind == BodyKind::Solid,
         })
     };

@@ -13,7 +13,7 @@ use crate::world::BodyId;
 
 /// What moves a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Moves {
+pub enum SideMotion {
     /// It is a wall.
     Wall,
     /// It is a rigid body whose motion is prescribed.
@@ -28,7 +28,7 @@ pub struct GapSide {
     pub body: BodyId,
     /// Its rows in the cloud.
     pub rows: Range<usize>,
-    pub moves: Moves,
+    pub moves: SideMotion,
     /// Whether the fluid has no pressure in gaps beside it: those of deformable and of thin bodies.
     pub is_closed: bool,
 }
@@ -60,7 +60,7 @@ impl GapPairs {
     /// Whether there may ever be a gap.
     pub fn are_possible(&self) -> bool {
         let open = || self.sides.iter().filter(|side| !side.is_closed);
-        open().any(|side| side.moves > Moves::Wall && open().any(|other| other.body != side.body))
+        open().any(|side| side.moves > SideMotion::Wall && open().any(|other| other.body != side.body))
     }
 
     /// Takes the motion of a body for prescribed.
@@ -68,7 +68,7 @@ impl GapPairs {
         self.sides
             .iter_mut()
             .filter(|side| side.body == body)
-            .for_each(|side| side.moves = Moves::Prescribed);
+            .for_each(|side| side.moves = SideMotion::Prescribed);
     }
 
     /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: the freer of the two bodies looks at it, or both.
@@ -100,7 +100,7 @@ impl GapPairs {
         let is_open = |row: usize| Some(side_of(sides, row)).filter(|side| !side.is_closed);
         let label = |row| is_open(row).map_or(u32::MAX, |side| side.body.0 as u32);
         drift.rows_beside_others(fluid, label, rows);
-        rows.retain(|&row| side_of(sides, row).moves > Moves::Wall);
+        rows.retain(|&row| side_of(sides, row).moves > SideMotion::Wall);
         if rows.is_empty() {
             return Ok(());
         }

@@ -17,7 +17,7 @@ mod gaps;
 mod pairs;
 
 pub use drift::Skins;
-pub use gaps::{GapPairs, GapSide, Moves};
+pub use gaps::{GapPairs, GapSide, SideMotion};
 pub use near_rows::{NearRow, NearRows, NearWriter};
 pub use pairs::FlowPairs;
 pub use sides::ThinBody;
