@@ -19,7 +19,7 @@ use super::interrupt::Interrupt;
 use super::lock::Lock;
 use super::profile;
 use super::progress::Progress;
-use super::ranks::{end_if_alone_with, require_equal, usual_threads};
+use super::ranks::{all_or_none, end_if_alone_with, require_equal, together, usual_threads};
 use super::summary;
 use super::text::{complain, program, quoted, say, speaks};
 
@@ -61,6 +61,15 @@ pub fn take_instructions(name: Option<&str>) -> Result<(), Failure> {
     name.map_or(Ok(()), take_instruction_path).map_err(|error| Failure::Usage(error.to_string()))
 }
 
+/// Prepares a run and carries it out, on all ranks that have been started together.
+pub fn carry_out_together(
+    how: &How,
+    prepare: impl FnOnce() -> Result<Execution, Failure> + Send,
+) -> Result<(), Failure> {
+    how.prepare()?;
+    together(|| all_or_none(prepare())?.carry_out(how))
+}
+
 /// A simulation with the folder that it writes to.
 pub struct Execution {
     /// The simulation.
@@ -79,7 +88,6 @@ impl Execution {
         registry: &Registry,
         output: OutputOptions,
     ) -> Result<Self, Failure> {
-        require_equal("scene", &source.text)?;
         let begun = SystemTime::now() - CLOCK;
         let folder = output.folder.clone();
         let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
@@ -88,6 +96,7 @@ impl Execution {
 
     /// Does the steps, shows how far they are, and reports at the end.
     pub fn carry_out(&mut self, how: &How) -> Result<(), Failure> {
+        require_equal("scene", &self.source.text)?;
         let interrupt = Interrupt::listen()?;
         let mut progress = Progress::new(&self.sim, how.quiet);
         // On a thread of the pool: a parallel loop that begins outside has to wake one each time.

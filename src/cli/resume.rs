@@ -10,10 +10,9 @@ use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{self, Scene, SceneError, Source};
 use meshless_engine::simulation::Checkpoint;
 
-use super::execution::{Execution, How};
+use super::execution::{Execution, How, carry_out_together};
 use super::failure::Failure;
 use super::folder;
-use super::ranks::{all_or_none, together};
 use super::scene_file::replacement;
 use super::text::complain;
 
@@ -38,14 +37,8 @@ pub struct Arguments {
 
 /// Goes on from the checkpoint, in the folder it is in.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
-    // Before the checkpoint is read, which takes threads of its own.
-    arguments.how.prepare()?;
-    together(|| carry_out(arguments, registry))
-}
-
-fn carry_out(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let how = arguments.how.clone();
-    all_or_none(prepared(arguments, registry))?.carry_out(&how)
+    carry_out_together(&how, || prepared(arguments, registry))
 }
 
 /// The run as it was at the checkpoint.

@@ -8,10 +8,9 @@ use meshless_engine::ranks;
 use meshless_engine::record::Existing;
 use meshless_engine::record::OutputOptions;
 
-use super::execution::{Execution, How};
+use super::execution::{Execution, How, carry_out_together};
 use super::failure::Failure;
 use super::folder::{FAILED, default_folder};
-use super::ranks::{all_or_none, together};
 use super::scene_file::SceneFile;
 
 /// Run a scene
@@ -31,13 +30,8 @@ pub struct Arguments {
 
 /// Runs the scene.
 pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
-    arguments.how.prepare()?;
-    together(|| carry_out(arguments, registry))
-}
-
-fn carry_out(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
     let how = arguments.how.clone();
-    all_or_none(prepared(arguments, registry))?.carry_out(&how)
+    carry_out_together(&how, || prepared(arguments, registry))
 }
 
 fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Failure> {
