@@ -309,7 +309,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Divides loops among ranks anew ([`ranks`](crate::ranks)), with the same cut on all of them. Results do not depend on it.
+    /// Divides loops among ranks anew ([`ranks`]), with the same cut on all of them. Results do not depend on it.
     pub fn set_cut(&mut self, cut: Cut) {
         self.world.phases().for_each(|phase| self.world.phase(phase).complete_all());
         ranks::set_cut(cut);
