@@ -20,6 +20,19 @@ pub fn own_rows(body: &Range<usize>) -> Range<usize> {
     row(blocks.start)..row(blocks.end)
 }
 
+/// Those of some rows of a body that this rank computes; an empty range within them where there are none.
+pub fn own_part(body: &Range<usize>, part: &Range<usize>) -> Range<usize> {
+    let own = own_rows(body);
+    let within = |row: usize| row.clamp(part.start, part.end.max(part.start));
+    within(own.start)..within(own.end)
+}
+
+/// Exchanges a part of the rows of a body, of `width` values each, of which every rank has computed its own.
+pub fn share_part<T: Pod>(values: &mut [T], width: usize, part: &Range<usize>, body: &Range<usize>) {
+    let before = |row: usize| ((body.start + row).clamp(part.start, part.end) - part.start) * width;
+    ranks::share_some(values, body.len(), BLOCK, before);
+}
+
 /// Exchanges the rows of a body, of which every rank has computed its own.
 pub fn share_rows<T: Pod>(rows: &mut [T]) {
     ranks::share(rows, BLOCK);

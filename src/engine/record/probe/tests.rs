@@ -150,7 +150,10 @@ fn options_that_do_not_fit_are_errors() {
             r#"at: (0, 0), line: (from: (0, 0), to: (1, 0), points: 3), quantity: Displacement"#,
             "one of `on`, `at` and `line`",
         ),
-        (r#"line: (from: (0, 0), to: (1, 0), points: 1), quantity: Displacement"#, "2 to 1000 places"),
+        (
+            r#"line: (from: (0, 0), to: (1, 0), points: 1), quantity: Displacement"#,
+            "`points` must be from 2 to 1000",
+        ),
         (r#"on: Select(body: "b"), follows: "b", quantity: Displacement"#, "`follows` needs a point"),
         (r#"at: (0, 0), take: Maximum, quantity: Displacement"#, "`take` needs a selection"),
         (r#"at: (0, 0), follows: "b", quantity: Distance"#, "`Distance` needs `relative_to`"),

@@ -1,16 +1,12 @@
 //! Runs passes over rows: in blocks of particles, or four neighbours of one particle at a time.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use super::near::{FourNear, part, take_until};
 use super::row_blocks::RowSums;
 use super::row_pass::RowPass;
-use crate::parallel::{
-    FourLanes, HotLoop, Vector, for_each_block, for_each_own_block, run_hot_on, share_wide_rows,
-};
+use crate::parallel::{FourLanes, HotLoop, Vector, for_each_block, own_part, run_hot_on, share_part};
 
 impl FlowCloud {
     /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums` is memory that is kept from step to step.
@@ -36,12 +32,19 @@ impl FlowCloud {
     ) {
         of_rows.resize(out.len() * S, DVec3::ZERO);
         let (sums, _) = of_rows.as_chunks_mut::<S>();
-        for body in self.bodies_in(first..first + out.len()) {
-            let rows = &mut sums[body.start - first..body.end - first];
-            for_each_own_block(&mut *rows, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
-                run_hot_on(self.plane, RowPassRows { cloud: self, pass, first: body.start + start, sums });
+        let rows = first..first + out.len();
+        for body in self.groups.iter().map(|group| &group.cloud) {
+            let part = body.start.max(rows.start)..body.end.min(rows.end);
+            let own = own_part(body, &part);
+            if part.is_empty() {
+                continue;
+            }
+            let of_own = &mut sums[own.start - first..own.end - first];
+            for_each_block(of_own, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
+                run_hot_on(self.plane, RowPassRows { cloud: self, pass, first: own.start + start, sums });
             });
-            share_wide_rows(rows.as_flattened_mut(), S);
+            let of_part = &mut sums[part.start - first..part.end - first];
+            share_part(of_part.as_flattened_mut(), S, &part, body);
         }
         let sums = &*sums;
         for_each_block(out, &mut Vec::new(), &|start, out: &mut [P::Output]| {
@@ -49,12 +52,6 @@ impl FlowCloud {
                 *out = pass.output(first + k, &sums[k]);
             }
         });
-    }
-
-    /// The rows of each body among these rows of whole bodies.
-    pub(super) fn bodies_in(&self, rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-        let bodies = self.groups.iter().map(|group| group.cloud.clone());
-        bodies.filter(move |body| rows.start <= body.start && body.end <= rows.end)
     }
 }
 
