@@ -1,5 +1,7 @@
 //! The rigid and affine motion of a body as a whole, which the second pass leaves out of its sums.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use super::rows::PackedParticle;
@@ -58,6 +60,14 @@ impl AffineFrame {
         stress.traction =
             Lanes4::new(stress.times(site.reference.xyz(), self.rest(site)), site.reference.0[3]);
     }
+}
+
+/// Rows of the bodies that have these frames.
+pub(in crate::formulations) fn bodies_of(
+    frames: &[AffineFrame],
+) -> impl Iterator<Item = Range<usize>> + Clone {
+    let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
+    starts.zip(frames).map(|(start, frame)| start..frame.end)
 }
 
 /// Index of the frame of a row.

@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::bond_sum::BondSum;
 use super::bonds::Bonds;
 use super::cracks::Cracks;
-use super::frame::{AffineFrame, frame_of};
+use super::frame::{AffineFrame, bodies_of, frame_of};
 use super::phase::PackedRows;
 use super::rows::PackedParticle;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
@@ -52,12 +52,6 @@ impl<'a> InternalForce<'a> {
         Self { bonds, ghosts, cracks, sites, stresses, self_force, frames, mass, gravity, plane }
     }
 
-    /// Rows of the bodies.
-    fn bodies(&self) -> impl Iterator<Item = Range<usize>> + Clone {
-        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
-        starts.zip(self.frames).map(|(start, frame)| start..frame.end)
-    }
-
     /// Adds the force on the rows of a body that this rank computes, N.
     pub fn add_to_own(&self, rows: Range<usize>, force: &mut [Force]) {
         let start = rows.start;
@@ -68,7 +62,7 @@ impl<'a> InternalForce<'a> {
 
     /// Writes the force on the particles that this rank computes: gravity plus internal force, N.
     pub fn write_own(&self, force: &mut [Force]) {
-        for body in self.bodies() {
+        for body in bodies_of(self.frames) {
             let start = body.start;
             for_each_own_block(&mut force[body], &mut Vec::new(), &|first, force: &mut [Force]| {
                 let first = start + first;
@@ -87,7 +81,7 @@ impl<'a> InternalForce<'a> {
 
     /// Gives all ranks the force on every particle.
     pub fn share(&self, force: &mut [Force]) {
-        share_rows_of(force, self.bodies());
+        share_rows_of(force, bodies_of(self.frames));
     }
 }
 

@@ -33,7 +33,7 @@ pub(super) use balance::{HeldBody, balanced_shares};
 pub use bonds::{BondError, Bonds};
 pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;
-pub(super) use frame::{AffineFrame, fill_ghosts, frame_of};
+pub(super) use frame::{AffineFrame, bodies_of, fill_ghosts, frame_of};
 pub(super) use gather::{CorrectStress, Gather, fit_gradients};
 pub(super) use held::{HeldParticles, all_shares};
 pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::control::Control;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::InternalForce as StressForce;
+use crate::formulations::total_lagrangian::{InternalForce as StressForce, bodies_of};
 use crate::parallel::{for_each_block, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
@@ -47,7 +47,7 @@ fn add_gravity(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, force: &mut [F
 /// Writes the force of the last first pass on the particles of all ranks, N, without gravity.
 pub(super) fn write(rows: &UpdatedRows, mass: &[Mass], plane: bool, force: &mut [Force]) {
     write_own(rows, mass, DVec3::ZERO, plane, force);
-    share_rows_of(force, rows.bodies());
+    share_rows_of(force, bodies_of(&rows.frames));
 }
 
 /// Writes the force of the last first pass on the particles that this rank computes, N.
@@ -65,10 +65,9 @@ fn write_own(rows: &UpdatedRows, mass: &[Mass], gravity: DVec3, plane: bool, for
     let Control { is_apart, bonds, sites, stresses, self_force, frames, .. } = control;
     let of_control =
         StressForce { bonds, sites, stresses, self_force, frames, gravity: DVec3::ZERO, ..of_stress };
-    let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
-    for ((start, frame), is_apart) in starts.zip(frames).zip(is_apart) {
+    for (rows, is_apart) in bodies_of(frames).zip(is_apart) {
         if *is_apart {
-            of_control.add_to_own(start..frame.end, force);
+            of_control.add_to_own(rows, force);
         }
     }
 }

@@ -1,14 +1,12 @@
 //! The packed rows of the phase, and its interface to the rest of the engine.
 
-use std::ops::Range;
-
 use glam::{DMat3, DVec3};
 
 use super::control::Control;
 use super::lists::ReferenceLists;
 use crate::formulations::total_lagrangian::{
     AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
-    PackedParticle, fill_ghosts, frame_of,
+    PackedParticle, bodies_of, fill_ghosts, frame_of,
 };
 use crate::linalg::dyad;
 use crate::parallel::share_rows_of;
@@ -68,20 +66,12 @@ impl UpdatedRows {
         self.follows.contains(&true) || self.control.has_sums()
     }
 
-    /// Rows of the bodies.
-    pub fn bodies(&self) -> impl Iterator<Item = Range<usize>> + Clone {
-        let starts = std::iter::once(0).chain(self.frames.iter().map(|frame| frame.end));
-        starts.zip(&self.frames).map(|(start, frame)| start..frame.end)
-    }
-
     /// Gives all ranks the stresses that each has computed for its own rows.
     pub fn share_stresses(&mut self) {
         let Self { frames, stresses, control, .. } = self;
-        let starts = std::iter::once(0).chain(frames.iter().map(|frame| frame.end));
-        let bodies = starts.zip(&*frames).map(|(start, frame)| start..frame.end);
-        share_rows_of(stresses, bodies.clone());
+        share_rows_of(stresses, bodies_of(frames));
         if control.has_sums() {
-            share_rows_of(&mut control.stresses, bodies);
+            share_rows_of(&mut control.stresses, bodies_of(frames));
         }
     }
 
