@@ -1,4 +1,4 @@
-//! The ranks of a run as processes of MPI. The engine knows the trait [`Ranks`] alone.
+//! The ranks of a run as processes of MPI. The engine knows their trait `Ranks` alone.
 #![cfg(feature = "mpi")]
 
 use std::cell::RefCell;
