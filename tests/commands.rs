@@ -48,11 +48,17 @@ fn wait_for(file: &Path) {
 }
 
 #[test]
-fn more_threads_than_any_machine_has_are_refused() {
+fn numbers_of_options_say_what_is_expected() {
     let folder = folder();
-    let output = meshless(folder.path(), &["run", "beam.ron", "--threads", "9999", "--steps", "1"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(err(&output).contains("9999 is not in 1..=1024"), "{}", err(&output));
+    for (option, value, expected) in [
+        ("--threads", "9999", "expected a whole number from 1 to 1024"),
+        ("--threads", "x", "expected a whole number from 1 to 1024"),
+        ("--steps", "1.5", "expected a whole number from 0 to"),
+    ] {
+        let output = meshless(folder.path(), &["run", "beam.ron", option, value]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(err(&output).contains(expected), "{}", err(&output));
+    }
 }
 
 #[test]

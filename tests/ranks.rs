@@ -12,9 +12,12 @@ use common::{
     all_plugins, crash, double, eulerian, failing, failing_metals, flow, metals, of_many_tasks, removal,
     simulation, with_formulation,
 };
+use meshless::parallel::own_rows;
 use meshless::ranks::{self, Cut};
 use meshless::record::StateHash;
 use meshless::scene::Source;
+use meshless::solids::HessianResidual;
+use meshless::world::BodyId;
 use threads::on_ranks;
 
 /// Hash of the state, and the balance error, whose bits follow from every energy.
@@ -135,4 +138,19 @@ fn failure_and_removal() {
     assert_equal_bits("failing", &failing(), 300);
     assert_equal_bits("failing metals", &failing_metals(), 150);
     assert_equal_bits("crash", &crash(), 150);
+}
+
+#[test]
+fn rows_of_other_ranks_are_unusable_once_they_are_old() {
+    on_ranks(2, 1, |_| {
+        let mut sim = simulation(&with_stabilization(""));
+        sim.run(|sim| sim.clock().step < 3).expect("a run");
+        let (view, body) = sim.world().body_view(BodyId(0));
+        let residual = view.read_own::<HessianResidual>().expect("the column");
+        let own = own_rows(&body);
+        assert!(!own.is_empty() && own.len() < body.len());
+        for row in body {
+            assert_eq!(residual[row].0.is_finite(), own.contains(&row), "row {row}");
+        }
+    });
 }

@@ -18,6 +18,7 @@ use meshless_engine::plugin::Registry;
 use super::execution::take_instructions;
 use super::failure::Failure;
 use super::text::say;
+use super::values::{duration, particles, whole};
 use measure::{Measurement, SetUp};
 use work::{WORKS, Work};
 
@@ -28,19 +29,19 @@ pub struct Arguments {
     #[arg(value_name = "CASE")]
     works: Vec<String>,
     /// Approximate numbers of particles; k and M stand for thousands and millions
-    #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = count, value_name = "N")]
+    #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = particles, value_name = "N")]
     particles: Vec<usize>,
     /// Numbers of threads
-    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = whole(1..=1024_u16))]
     threads: Vec<u16>,
     /// Numbers of ranks, processes started by `mpirun`
-    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_delimiter = ',', default_value = "1", value_name = "N", value_parser = whole(1..=1024_u16))]
     ranks: Vec<u16>,
     /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
     #[arg(long, value_name = "PATH")]
     instructions: Option<String>,
     /// Minimum wall time of a measurement [s]
-    #[arg(long, default_value_t = 3.0, value_parser = seconds, value_name = "S")]
+    #[arg(long, default_value_t = 3.0, value_parser = duration, value_name = "S")]
     seconds: f64,
     /// List the benchmarks without running them
     #[arg(long)]
@@ -59,25 +60,6 @@ pub struct Arguments {
 /// All pairs of the two.
 fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
     ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)))
-}
-
-fn count(text: &str) -> Result<usize, String> {
-    let (digits, factor) = match text.trim_end_matches(['k', 'M']) {
-        digits if text.ends_with('k') => (digits, 1e3),
-        digits if text.ends_with('M') => (digits, 1e6),
-        digits => (digits, 1.0),
-    };
-    match digits.parse::<f64>() {
-        Ok(value) if (1.0..=4e9).contains(&(value * factor)) => Ok((value * factor) as usize),
-        _ => Err("expected a number of particles, as in `32k` or `1M`".into()),
-    }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("expected a number of seconds, as in `3` or `0.5`".into()),
-    }
 }
 
 /// Measures the works that were asked for.

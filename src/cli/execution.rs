@@ -22,6 +22,7 @@ use super::progress::Progress;
 use super::ranks::{all_or_none, end_if_alone_with, require_equal, together, usual_threads};
 use super::summary;
 use super::text::{complain, program, quoted, say, speaks};
+use super::values::whole;
 
 /// By how much clocks of files may be behind.
 const CLOCK: Duration = Duration::from_millis(20);
@@ -30,13 +31,13 @@ const CLOCK: Duration = Duration::from_millis(20);
 #[derive(Args, Clone)]
 pub struct How {
     /// Number of threads; without it, all cores
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = whole(1..=1024_u16))]
     pub threads: Option<u16>,
     /// Instruction path of the hot loops, such as `x86-64-v3`; without it, the best that the processor has
     #[arg(long, value_name = "PATH")]
     pub instructions: Option<String>,
     /// Stop after this many steps and leave a checkpoint
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole(0..=u64::MAX))]
     pub steps: Option<u64>,
     /// Print the time that each system has taken
     #[arg(long)]

@@ -26,6 +26,7 @@ mod surface;
 mod sweep;
 mod text;
 mod validate;
+mod values;
 mod version;
 mod view;
 #[cfg(feature = "rerun")]

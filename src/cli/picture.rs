@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
+use super::values::time;
 
 /// Draw a frame of a recording as a PNG file, without a viewer and without a screen
 #[derive(Args)]
@@ -13,7 +14,7 @@ pub struct Arguments {
     #[arg(value_name = "RECORDING")]
     path: PathBuf,
     /// Draw the last frame up to this time [s] [default: the last frame]
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
     at: Option<f64>,
     /// File to write [default: beside the recording, <recording>-<time>.png]
     #[arg(long, value_name = "FILE")]

@@ -15,6 +15,7 @@ use super::failure::Failure;
 use super::folder;
 use super::scene_file::replacement;
 use super::text::complain;
+use super::values::time;
 
 /// Resume a run from a checkpoint
 #[derive(Args)]
@@ -78,13 +79,6 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
     let mut execution = Execution::new(&scene, &source, registry, output)?;
     execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
     Ok(execution)
-}
-
-fn time(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("expected a time in seconds, as in `0.5`".into()),
-    }
 }
 
 /// The name of a scene file that the user gives, which must be there.

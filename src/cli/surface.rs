@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
+use super::values::time;
 
 /// Write the surface of a body in a recording as a mesh, .obj or .vtp (three dimensions; needs a build with `--features surfaces`)
 #[derive(Args)]
@@ -19,7 +20,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// Take the last frame up to this time [s] [default: the last frame]
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
     at: Option<f64>,
     /// Replace the file if it exists
     #[arg(long)]

@@ -7,6 +7,7 @@ use meshless_validation::{CASES, Case, sweep};
 
 use super::failure::Failure;
 use super::text::say;
+use super::values::whole;
 use report::Report;
 
 /// Run cases with known answers and print measured value, reference, error and tolerance.
@@ -16,7 +17,7 @@ pub struct Arguments {
     #[arg(value_name = "ID")]
     pub cases: Vec<String>,
     /// Particles across the smallest dimension, in place of the cheapest meaningful resolution of each case.
-    #[arg(long, conflicts_with = "all_resolutions", value_name = "N")]
+    #[arg(long, conflicts_with = "all_resolutions", value_name = "N", value_parser = whole(1..=100_000_usize))]
     pub resolution: Option<usize>,
     /// Run all resolutions of each case and check that the errors fall.
     #[arg(long)]

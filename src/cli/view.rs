@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::folder;
+use super::values::whole;
 #[cfg(feature = "rerun")]
 use super::web_viewer::serve;
 
@@ -21,7 +22,7 @@ pub struct Arguments {
     #[arg(long)]
     web: bool,
     /// Port for the browser; 0 takes any that is free
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = whole(0..=u16::MAX))]
     port: u16,
     /// Only print the address for the browser
     #[arg(long)]

@@ -118,7 +118,12 @@ pub fn on_ranks<T: Send>(size: usize, threads: usize, f: impl Fn(usize) -> T + S
     let as_rank = |rank: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
         let table = Arc::clone(table);
-        pool.install(move || ranks::enter(Rc::new(Thread { rank, size, table }), || f(rank)))
+        pool.install(move || {
+            ranks::enter(Rc::new(Thread { rank, size, table }), || {
+                ranks::spoil_old_rows();
+                f(rank)
+            })
+        })
     };
     std::thread::scope(|scope| {
         let ranks: Vec<_> = (0..size).map(|rank| scope.spawn(move || as_rank(rank))).collect();

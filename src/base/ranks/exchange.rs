@@ -6,6 +6,9 @@ use bytemuck::Pod;
 
 use super::group::{self, RankGroup};
 
+/// Bytes of a row that is old.
+pub(super) const SPOILED: u8 = 0xff;
+
 /// Exchanges the rows of one body, of which every rank has computed its blocks of `block` rows.
 pub fn share<T: Pod>(rows: &mut [T], block: usize) {
     let len = rows.len();
@@ -42,6 +45,18 @@ pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl 
         );
         group.share(bytemuck::cast_slice_mut(values), &cuts);
         group.cuts = cuts;
+    });
+}
+
+/// Makes the rows of other ranks unusable, where that is wanted ([`super::spoil_old_rows`]): all bits are set, which is NaN.
+pub fn spoil_others(bytes: &mut [u8], size: usize, block: usize, bodies: impl Iterator<Item = Range<usize>>) {
+    group::with(|group| {
+        let own = group.ranks.rank();
+        for body in bodies.filter(|_| group.spoils) {
+            let part = group.part(own, body.len(), block);
+            bytes[body.start * size..(body.start + part.start) * size].fill(SPOILED);
+            bytes[(body.start + part.end) * size..body.end * size].fill(SPOILED);
+        }
     });
 }
 

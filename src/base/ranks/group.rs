@@ -27,6 +27,8 @@ pub(super) struct RankGroup {
     pub received: Vec<u8>,
     /// Memory of bounds.
     pub cuts: Vec<usize>,
+    /// Whether rows that have become old are made unusable.
+    pub spoils: bool,
 }
 
 impl RankGroup {
@@ -77,6 +79,7 @@ pub fn enter<T>(ranks: Rc<dyn Ranks>, f: impl FnOnce() -> T) -> T {
         parts: Vec::new(),
         received: Vec::new(),
         cuts: Vec::new(),
+        spoils: cfg!(debug_assertions),
     }));
     let _leave = Leave;
     f()
@@ -90,6 +93,11 @@ pub(super) fn with<T>(f: impl FnOnce(&mut RankGroup) -> T) -> Option<T> {
 /// Whether this thread has entered several ranks.
 pub fn has_several() -> bool {
     GROUP.with_borrow(Option::is_some)
+}
+
+/// Makes rows of other ranks unusable from now on once they are old, as debug builds do: a pass that reads one computes with NaN.
+pub fn spoil_old_rows() {
+    with(|group| group.spoils = true);
 }
 
 /// Whether this rank is the first, which writes the files of the run.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use bytemuck::Pod;
 
 use super::Cut;
+use super::exchange::SPOILED;
 use super::group::{self, RankGroup};
 
 /// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs alone.
@@ -18,6 +19,8 @@ pub struct Halo {
     /// Rows that this rank reads of the others.
     receive: Vec<u32>,
     receive_cuts: Vec<usize>,
+    /// Rows of other ranks that this rank does not read, if they are made unusable.
+    unread: Vec<u32>,
 }
 
 impl Halo {
@@ -29,12 +32,13 @@ impl Halo {
 
     fn in_group(group: &mut RankGroup, bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
         let (rank, size) = (group.ranks.rank(), group.ranks.size());
-        let (mut receive, mut receive_cuts) = (Vec::new(), vec![0]);
+        let (mut receive, mut receive_cuts, mut unread) = (Vec::new(), vec![0], Vec::new());
         for other in 0..size {
             for body in bodies.iter().filter(|_| other != rank) {
                 let part = group.part(other, body.len(), block);
                 let rows = body.start + part.start..body.start + part.end;
-                receive.extend(rows.filter(|&row| wanted[row]).map(|row| row as u32));
+                receive.extend(rows.clone().filter(|&row| wanted[row]).map(|row| row as u32));
+                unread.extend(rows.filter(|&row| group.spoils && !wanted[row]).map(|row| row as u32));
             }
             receive_cuts.push(receive.len());
         }
@@ -55,7 +59,7 @@ impl Halo {
             (bytemuck::cast_slice(&receive), &bytes(&receive_cuts)),
             (bytemuck::cast_slice_mut(&mut send), &bytes(&send_cuts)),
         );
-        Self { cut: Some(group.cut.clone()), send, send_cuts, receive, receive_cuts }
+        Self { cut: Some(group.cut.clone()), send, send_cuts, receive, receive_cuts, unread }
     }
 
     /// Whether it belongs to the present cut.
@@ -86,6 +90,7 @@ impl Halo {
             for (&row, from) in self.receive.iter().zip(into.chunks_exact(size)) {
                 bytes[at(row)].copy_from_slice(from);
             }
+            self.unread.iter().for_each(|&row| bytes[at(row)].fill(SPOILED));
             (group.parts, group.received) = (out, into);
         });
     }

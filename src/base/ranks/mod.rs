@@ -16,10 +16,11 @@ mod tree;
 
 pub use collective::Ranks;
 pub use cut::Cut;
-pub use exchange::{share, share_bodies, share_some};
+pub use exchange::{share, share_bodies, share_some, spoil_others};
 pub(crate) use group::work;
 pub use group::{
-    Traffic, abort, agree, any, balanced_cut, enter, has_several, is_first, own_blocks, set_cut, traffic,
+    Traffic, abort, agree, any, balanced_cut, enter, has_several, is_first, own_blocks, set_cut,
+    spoil_old_rows, traffic,
 };
 pub use halo::Halo;
 pub(crate) use tree::{complete, maximal_subtrees};

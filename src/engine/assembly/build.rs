@@ -2,6 +2,7 @@
 
 use std::any::Any;
 
+use super::named_fields::with_neighbours;
 use super::names;
 use super::options::BuildOptions;
 use super::overlap;
@@ -68,7 +69,7 @@ fn build_in(
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_ringing(&mut sim);
-    crate::solids::add_fields(&mut sim);
+    with_neighbours().for_each(|field| sim.add_field(field));
     assemble(scene, formulations, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);

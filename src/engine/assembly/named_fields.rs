@@ -17,9 +17,13 @@ pub fn fields(registry: &Registry) -> Vec<Field> {
     columns.add::<PlasticStrain>().add::<EquivalentStress>().add::<YieldStress>().add::<PlasticWork>();
     columns.add::<InternalEnergy>().add::<Temperature>().add::<Damage>();
     let mut fields = named(&columns);
-    fields.extend(solids::fields());
-    fields.extend(formulations::fluid::fields());
+    fields.extend(with_neighbours());
     fields.sort_by(|one, other| one.name().cmp(other.name()));
     fields.dedup_by(|one, other| one.name() == other.name());
     fields
+}
+
+/// Those that need neighbours. All scenes know them, so that a scene without fluid is told that its bodies lack the vorticity, and not that nobody knows it.
+pub(super) fn with_neighbours() -> impl Iterator<Item = Field> {
+    solids::fields().into_iter().chain(formulations::fluid::fields())
 }

@@ -4,15 +4,10 @@ use glam::{DMat3, DVec3};
 
 use crate::correction::AffineFit;
 use crate::fields::{Field, FieldInput};
-use crate::plugin::{BodyKind, SimBuilder};
+use crate::plugin::BodyKind;
 use crate::world::{
     Column, Damage, DeformationGradient, MissingColumn, Position, ReferencePosition, ReferenceVolume,
 };
-
-/// Adds the fields.
-pub(crate) fn add_fields(sim: &mut SimBuilder<'_>) {
-    fields().into_iter().for_each(|field| sim.add_field(field));
-}
 
 /// The fields.
 pub(crate) fn fields() -> [Field; 2] {

@@ -39,7 +39,7 @@ pub use bodies::{BodyPass, SolidBodies, SolidBody, SolidPart};
 pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidSum};
 pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
 pub(crate) use damping::DampedInShortSteps;
-pub(crate) use fields::{add_fields, fields};
+pub(crate) use fields::fields;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 pub use local_motion::LocalMotion;

@@ -24,9 +24,17 @@ impl OwnOnly {
         Self(columns.iter().map(|_| AtomicBool::new(false)).collect())
     }
 
-    fn flag(&self, columns: &ColumnSet, column: TypeId) -> Option<&AtomicBool> {
-        let place = columns.iter().position(|own| own.type_id == column)?;
-        self.0.get(place)
+    /// The column and its flag.
+    fn of_column<'s>(
+        &'s self,
+        columns: &'s ColumnSet,
+        column: TypeId,
+    ) -> Option<(&'s ColumnInfo, &'s AtomicBool)> {
+        columns.iter().zip(&self.0).find(|(own, _)| own.type_id == column)
+    }
+
+    fn flag<'s>(&'s self, columns: &'s ColumnSet, column: TypeId) -> Option<&'s AtomicBool> {
+        self.of_column(columns, column).map(|(_, flag)| flag)
     }
 }
 
@@ -55,9 +63,13 @@ impl<'a> PhaseView<'a> {
     /// The rows of a column are written by each rank for its own from now on.
     pub(crate) fn mark_own(&self, column: TypeId) {
         if ranks::has_several()
-            && let Some(flag) = self.own_only().flag(self.columns(), column)
+            && let Some((column, flag)) = self.own_only().of_column(self.columns(), column)
         {
             flag.store(true, Ordering::Relaxed);
+            let bodies = self.body_rows().iter().cloned();
+            self.write_own_bytes(column, &mut |bytes| {
+                ranks::spoil_others(bytes, column.element_size, BLOCK, bodies.clone());
+            });
         }
     }
 

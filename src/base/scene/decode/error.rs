@@ -40,10 +40,10 @@ impl Error {
         let head = node.head();
         let problem = match self {
             Self::Reported => return Self::Reported,
-            Self::Expected(expected) => Problem::at_span(
-                whole_or_head(node),
-                format!("expected {expected}, found {}", node.describe()),
-            ),
+            Self::Expected(expected) => {
+                let message = format!("expected {expected}, found {}", node.describe());
+                Problem::at_span(whole_or_head(node), message).helps(brackets_of_a_list(node, &expected))
+            }
             Self::Length { found, expected } => {
                 let found = if found == 1 { "1 entry".into() } else { format!("{found} entries") };
                 Problem::at_span(whole_or_head(node), format!("expected {expected}, found {found}"))
@@ -61,6 +61,16 @@ impl Error {
         };
         context.report(problem);
         Self::Reported
+    }
+}
+
+/// Help where entries stand in the round brackets of a name whose value is a list.
+fn brackets_of_a_list(node: &Node, expected: &str) -> Vec<String> {
+    match (&node.kind, &node.name) {
+        (NodeKind::Tuple(entries), Some(name)) if entries.len() > 1 && expected == A_LIST => {
+            vec![format!("write its entries as a list: `{}([...])`", name.text)]
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -98,6 +108,8 @@ fn located(node: &Node, message: &str) -> Problem {
     if help.is_empty() { problem } else { problem.help(help) }
 }
 
+const A_LIST: &str = "a list `[...]`";
+
 /// What serde calls a type, in the words of a scene.
 fn in_words(expected: &dyn Expected) -> String {
     let expected = expected.to_string();
@@ -107,7 +119,7 @@ fn in_words(expected: &dyn Expected) -> String {
         "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, zero or more".into(),
         "a boolean" => "`true` or `false`".into(),
         "a string" => "a text in double quotes".into(),
-        "a sequence" => "a list `[...]`".into(),
+        "a sequence" => A_LIST.into(),
         "a map" => "a map `{...}`".into(),
         "option" => "a value or `None`".into(),
         other => match other.rsplit_once(' ') {

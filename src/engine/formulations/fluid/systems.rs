@@ -1,6 +1,5 @@
 //! The systems of a flow and of its effect on what bounds it.
 
-use super::fields::fields;
 use crate::formulations::fluid::cloud::{
     ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
     Neighbors, REPELLED, Role, SPINS,
@@ -92,7 +91,6 @@ pub fn add(
         );
     }
     add_state(sim, fluid, account);
-    fields().into_iter().for_each(|field| sim.add_field(field));
     add_force(sim, groups, fluid, FLUID_FORCE, terms);
     if spin {
         let system = System::new(Stage::Boundary, "fluid_spin", Spin::default())

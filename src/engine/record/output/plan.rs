@@ -42,6 +42,10 @@ impl OutputPlan {
         let (mut recorded, mut written): (Vec<ChosenField>, Vec<ChosenField>) = Default::default();
         for (k, name) in scene.record.fields.iter().enumerate() {
             let place = SourcePlace::Path(format!("record.fields[{k}]"));
+            if scene.record.fields[..k].contains(name) {
+                let message = format!("`{name}` stands twice in `fields`");
+                problems.push(Problem { at: place.clone(), ..Problem::new(message) });
+            }
             match table.choose(name, &everything, false) {
                 Ok(field) if field.width() > 3 && !scene.record.vtk => problems.push(tensor(&field, place)),
                 Ok(field) => {
