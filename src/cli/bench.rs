@@ -1,7 +1,7 @@
 //! `meshless bench`: how fast the program is on the benchmark cases, with everything on and output off.
 //!
 //! A work is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
-//! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of works
+//! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of benchmarks
 //! measured in one call count.
 
 mod apart;
@@ -62,7 +62,7 @@ fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
     ranks.iter().flat_map(|&ranks| threads.iter().map(move |&threads| (ranks, threads)))
 }
 
-/// Measures the works that were asked for.
+/// Measures the benchmarks that were asked for.
 pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
     let works = chosen(&arguments.works)?;
     if arguments.list {

@@ -77,7 +77,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     }
 }
 
-/// One run. That it fails is told in its row, so that the others still run.
+/// One run. A failure is reported in its row, so that the others still run.
 fn run(
     case: &Case,
     scene: &Scene,

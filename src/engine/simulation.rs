@@ -10,7 +10,7 @@ use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, StateHash};
 use crate::scene::{self, Scene, Source};
 use crate::schedule::{
-    Clock, Ledger, Limit, Resources, Schedule, Shared, Stage, Step, StepError, TimeStepLimits, Turn,
+    Clock, Ledger, Limit, Resources, Schedule, Shared, Stage, Step, StepError, StepPart, TimeStepLimits,
 };
 use crate::world::{MissingColumn, PhaseId, World};
 
@@ -328,7 +328,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut self.limits,
             warnings: &mut self.warnings,
-            turn: Turn::long(&self.sub_steps.phases, self.clock.step),
+            part: StepPart::long(&self.sub_steps.phases, self.clock.step),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)
@@ -343,7 +343,7 @@ impl Simulation {
             ledger: &mut self.ledger,
             limits: &mut state.limits,
             warnings: &mut self.warnings,
-            turn: Turn::short(phases, *divided, state.total),
+            part: StepPart::short(phases, *divided, state.total),
             stop: &mut self.stop,
         };
         self.schedule.run(&mut step, wanted)

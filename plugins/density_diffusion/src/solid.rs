@@ -78,7 +78,7 @@ impl Run for Diffusion {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for k in 0..self.diffusers.len() {
             let diffuser = self.diffusers[k];
-            if step.turn.is_due(step.world, diffuser.body) {
+            if step.part.is_due(step.world, diffuser.body) {
                 self.diffuse(diffuser, step)?;
             }
         }

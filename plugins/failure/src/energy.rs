@@ -1,4 +1,4 @@
-//! The energy that damage sets free, in the books.
+//! The energy that damage releases, in the energy balance.
 
 use meshless_engine::parallel::{BlockSum, for_each_block};
 use meshless_engine::plugin::SimBuilder;

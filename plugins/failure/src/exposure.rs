@@ -42,7 +42,7 @@ struct Exposure {
 
 impl Run for Exposure {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        for &body in self.bodies.iter().filter(|&&body| step.turn.is_due(step.world, body)) {
+        for &body in self.bodies.iter().filter(|&&body| step.part.is_due(step.world, body)) {
             let (view, rows) = step.world.body_view(body);
             let Some(solid) = step.resources.solid(step.world.body(body).phase) else { continue };
             let (damage, removed) = (view.read::<Damage>()?, view.read::<Removed>()?);

@@ -8,7 +8,7 @@ use serde::Deserialize;
 /// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to be lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub enum Then {
-    /// It resists compression of its volume alone, like rubble, until it is so long and thin that its areas are three times as large: it then carries
+    /// It resists compression of its volume alone, like a granular material, until it is so long and thin that its areas are three times as large: it then carries
     /// nothing any more. On the way there damage takes from positive principal stresses.
     #[default]
     NoTension,
@@ -60,7 +60,7 @@ impl Then {
     }
 }
 
-/// Volume ratio beyond which a liquid has lost its integrity, and mean ratio of areas beyond which liquids and rubble have.
+/// Volume ratio beyond which a liquid has lost its integrity, and mean ratio of areas beyond which liquids and granular materials have.
 const TORN: [f64; 2] = [2.0, 3.0];
 
 /// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.

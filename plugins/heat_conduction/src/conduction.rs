@@ -109,7 +109,7 @@ impl Run for Conduction {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         for k in 0..self.conductors.len() {
             let conductor = self.conductors[k];
-            if step.turn.is_due(step.world, conductor.body) {
+            if step.part.is_due(step.world, conductor.body) {
                 self.conduct(&conductor, step)?;
             }
         }

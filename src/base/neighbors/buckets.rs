@@ -30,7 +30,7 @@ impl Buckets {
         rows.resize(count, 0);
         let tasks = if count < FEW { 1 } else { rayon::current_num_threads() };
         // starts[b + 1] serves as the place to write bucket b to, and ends as the start of b + 1.
-        tally(keys, 0, &mut starts[2..], tasks);
+        count_keys(keys, 0, &mut starts[2..], tasks);
         for b in 2..starts.len() {
             starts[b] += starts[b - 1];
         }
@@ -56,14 +56,14 @@ impl Buckets {
 }
 
 /// Counts the keys from `first` on; every task goes through all of them and looks at a part of the buckets.
-fn tally(keys: &[u32], first: u32, counts: &mut [u32], tasks: usize) {
+fn count_keys(keys: &[u32], first: u32, counts: &mut [u32], tasks: usize) {
     if tasks > 1 && counts.len() > 1 {
         let half = counts.len() / 2;
         let (low, high) = counts.split_at_mut(half);
         let rest = first + half as u32;
         rayon::join(
-            || tally(keys, first, low, tasks.div_ceil(2)),
-            || tally(keys, rest, high, tasks.div_ceil(2)),
+            || count_keys(keys, first, low, tasks.div_ceil(2)),
+            || count_keys(keys, rest, high, tasks.div_ceil(2)),
         );
         return;
     }

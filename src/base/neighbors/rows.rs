@@ -261,7 +261,7 @@ impl<'a, const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES:
             }
             if BOXES {
                 let distance = a.larger(x, a.scale(-1.0, x));
-                x = a.or_zero(a.minus(distance, Lanes4::splat(half[axis])));
+                x = a.max_zero(a.minus(distance, Lanes4::splat(half[axis])));
             }
             square = a.times_add(x, x, square);
         }

@@ -51,7 +51,7 @@ pub trait Arithmetic: Copy + Send + Sync {
     fn sqrt(self, a: Self::Lanes) -> Self::Lanes;
 
     /// `a`, or zero in lanes where it is not above zero.
-    fn or_zero(self, a: Self::Lanes) -> Self::Lanes;
+    fn max_zero(self, a: Self::Lanes) -> Self::Lanes;
 
     /// `s a`.
     #[inline(always)]
@@ -180,7 +180,7 @@ impl Arithmetic for Portable {
     }
 
     #[inline(always)]
-    fn or_zero(self, a: Lanes4) -> Lanes4 {
+    fn max_zero(self, a: Lanes4) -> Lanes4 {
         Lanes4([above_zero(a.0[0]), above_zero(a.0[1]), above_zero(a.0[2]), above_zero(a.0[3])])
     }
 }
@@ -322,7 +322,7 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn or_zero(self, a: Lanes4) -> Lanes4 {
+        fn max_zero(self, a: Lanes4) -> Lanes4 {
             // Where an operand is not a number the instruction gives the second one, zero.
             cast::<f64x4, Lanes4>(self.max_f64x4(cast(a), cast(Lanes4::ZERO)))
         }

@@ -4,14 +4,14 @@ use super::arithmetic::FourLanes;
 use super::path::{HotLoop, run_hot};
 
 /// A loop that is compiled for two and for three axes, each for every instruction path.
-pub trait PlaneOrSolid {
+pub trait PlaneOrSpace {
     /// The loop over `D` axes; mark it `#[inline(always)]`.
     fn run<A: FourLanes, const D: usize>(self, arithmetic: A);
 }
 
 struct Axes<L, const D: usize>(L);
 
-impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
+impl<L: PlaneOrSpace, const D: usize> HotLoop for Axes<L, D> {
     type Output = ();
 
     #[inline(always)]
@@ -22,6 +22,6 @@ impl<L: PlaneOrSolid, const D: usize> HotLoop for Axes<L, D> {
 
 /// Runs the plane or the solid version on the best instruction path of this processor.
 #[inline]
-pub fn run_hot_in<L: PlaneOrSolid>(plane: bool, hot: L) {
+pub fn run_hot_in<L: PlaneOrSpace>(plane: bool, hot: L) {
     if plane { run_hot(Axes::<L, 2>(hot)) } else { run_hot(Axes::<L, 3>(hot)) }
 }

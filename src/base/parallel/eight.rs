@@ -187,7 +187,7 @@ mod portable {
         }
 
         #[inline(always)]
-        fn or_zero(self, a: Lanes8) -> Lanes8 {
+        fn max_zero(self, a: Lanes8) -> Lanes8 {
             lane_by_lane!(K => if a.0[K] > 0.0 { a.0[K] } else { 0.0 })
         }
     }
@@ -280,7 +280,7 @@ mod v3 {
         }
 
         #[inline(always)]
-        fn or_zero(self, a: Lanes8) -> Lanes8 {
+        fn max_zero(self, a: Lanes8) -> Lanes8 {
             // Where an operand is not a number the instruction gives the second one, zero.
             cast(self.0.avx._mm256_max_ps(cast(a), cast(Lanes8::ZERO)))
         }

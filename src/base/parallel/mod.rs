@@ -18,7 +18,7 @@ pub use blocks::{
     BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks, for_each_heavy_block,
     sum_over_blocks,
 };
-pub use dimension::{PlaneOrSolid, run_hot_in};
+pub use dimension::{PlaneOrSpace, run_hot_in};
 pub use eight::{BlockLoop, EIGHT, EightLanes, Lanes8, run_blocks_on};
 pub use lanes::Lanes4;
 pub use largest::Largest;

@@ -36,7 +36,7 @@ impl<A: Arithmetic> Arithmetic for Plane<A> {
         below(a: A::Lanes, b: A::Lanes) -> usize;
         times_add(a: A::Lanes, b: A::Lanes, c: A::Lanes) -> A::Lanes;
         sqrt(a: A::Lanes) -> A::Lanes;
-        or_zero(a: A::Lanes) -> A::Lanes;
+        max_zero(a: A::Lanes) -> A::Lanes;
     }
 }
 

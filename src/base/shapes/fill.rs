@@ -116,7 +116,7 @@ impl Filling<'_> {
         }
     }
 
-    /// The particles of the inner shape of a transform, taken along with it.
+    /// The particles of the inner shape of a transform, moved with it.
     fn moved(
         &self,
         shape: &Shape,

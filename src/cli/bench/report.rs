@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::measure::Measurement;
 use super::work::Work;
 
-/// The works, one a line.
+/// The benchmarks, one a line.
 pub fn list(works: &[&Work]) -> String {
     works.iter().map(|work| format!("{:<14} {}\n", work.name, work.title)).collect()
 }

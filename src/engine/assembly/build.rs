@@ -68,7 +68,7 @@ fn build_in(
     drawn_sides::warn(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
-    crate::formulations::fluid::damp_ringing(&mut sim);
+    crate::formulations::fluid::damp_sub_cycled_bodies(&mut sim);
     with_neighbours().for_each(|field| sim.add_field(field));
     assemble(scene, formulations, &mut sim)?;
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;

@@ -16,7 +16,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
             let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
             // A layer that stands on its side needs nothing behind it.
             let is_side = support.on.face.is_some() && support.edge == Edge::Stated;
-            // What is wrong with a selection is told where the condition is built.
+            // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
             for (id, rows) in selection.parts.iter().filter(|_| all && !(is_side && sides_are_placed)) {
                 let first = sim.bodies[id.0].rows.start;

@@ -13,7 +13,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
         registry.support(item, |support| {
             let Some(face) = support.on.face else { return };
             let is_clamped = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
-            // What is wrong with a selection is told where the condition is built.
+            // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
             for (id, rows) in selection.parts.iter().filter(|_| support.axes[face.outward().0] && !is_clamped)
             {

@@ -20,7 +20,7 @@ pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>)
     let is_wet = sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid);
     for item in scene.conditions.iter().filter(|item| item.name() == "Fix") {
         registry.support(item, |support| {
-            // What is wrong with a selection is told where the condition is built.
+            // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
             if support.edge != Edge::Stated || support.on.nearest.is_some() {
                 return;

@@ -23,7 +23,7 @@ pub fn fields(registry: &Registry) -> Vec<Field> {
     fields
 }
 
-/// Those that need neighbours. All scenes know them, so that a scene without fluid is told that its bodies lack the vorticity, and not that nobody knows it.
+/// Those that need neighbours. All scenes know them, so that the vorticity in a scene without fluid is a field that its bodies lack, and not an unknown one.
 pub(super) fn with_neighbours() -> impl Iterator<Item = Field> {
     solids::fields().into_iter().chain(formulations::fluid::fields())
 }

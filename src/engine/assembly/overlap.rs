@@ -62,7 +62,7 @@ pub(super) fn problems(bodies: &[BodyPlan], scene: &Scene, folder: &Path) -> Vec
     problems
 }
 
-/// The shapes of bodies, made where they are asked for; none of those that are lists of particles.
+/// The shapes of bodies, built where they are asked for; none of those that are lists of particles.
 struct Shapes<'a> {
     scene: &'a Scene,
     folder: &'a Path,

@@ -29,7 +29,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
             else {
                 return;
             };
-            // What is wrong with a selection is told where the condition is built.
+            // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
             for (id, rows) in &selection.parts {
                 let body = &sim.bodies[id.0];

@@ -44,7 +44,7 @@ pub(super) fn place(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>
                 return;
             };
             let region = shape.region(scene.dimension, sim.folder, "within");
-            // What is wrong with a selection is told where the condition is built.
+            // A fault of a selection is reported where the condition is built.
             let (Ok(region), Ok(selection)) = (region, sim.select_at_start(support.on, "on")) else { return };
             for (id, rows) in &selection.parts {
                 let first = sim.bodies[id.0].rows.start;

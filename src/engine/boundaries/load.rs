@@ -106,7 +106,7 @@ impl Run for Load {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let account = step.ledger.account(self.label, AccountKind::Supplied);
         for (k, (part, last)) in self.parts.iter_mut().zip(&mut self.forces).enumerate() {
-            if !step.turn.is_due(step.world, part.body) {
+            if !step.part.is_due(step.world, part.body) {
                 continue;
             }
             part.follow(step.world, last)?;

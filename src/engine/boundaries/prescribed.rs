@@ -94,7 +94,7 @@ fn prescription(motion: &PrescribedMotion) -> Prescription {
     }
 }
 
-/// Gives walls their velocity before the first force is made: friction with a wall that seems to be at rest would kick a fluid that moves with it.
+/// Gives walls their velocity before the first force is computed: friction with a wall that seems to be at rest would kick a fluid that moves with it.
 fn start_walls(motion: &Arc<PrescribedMotion>, sim: &mut SimBuilder<'_>) {
     let is_wall = |part: &&Part| sim.body(part.body).kind == BodyKind::Boundary;
     let walls: Vec<Part> = motion.parts.iter().filter(is_wall).cloned().collect();
@@ -215,7 +215,7 @@ impl Run for SetVelocity {
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let axes = self.motion.field.axes();
         for part in &self.motion.parts {
-            if !step.turn.is_due(step.world, part.body) {
+            if !step.part.is_due(step.world, part.body) {
                 continue;
             }
             self.motion.velocities(part, self.end_of_step, step, &mut self.values)?;

@@ -145,7 +145,7 @@ pub(super) fn apply(
     Ok(())
 }
 
-/// The system that works out the forces.
+/// The system that computes the forces.
 struct Make(Shared<Vec<SkinLoad>>);
 
 impl Run for Make {

@@ -80,7 +80,7 @@ impl Plugin for Symmetry {
 /// The symmetry planes of the scene at which a body ends, whether their conditions are built already or not.
 pub(super) fn planes_of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<MirrorPlane> {
     let items = sim.scene().conditions.iter().filter(|item| item.name() == Symmetry::NAME);
-    // What is wrong with a plane is told where its condition is built.
+    // A fault of a plane is reported where its condition is built.
     let planes = items.filter_map(|item| item.parse::<Symmetry>().ok());
     let cut = planes.filter(|own| body.offers(Offer::MirrorImages) && own.cuts(body).unwrap_or(false));
     let plane =

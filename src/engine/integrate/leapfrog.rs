@@ -135,7 +135,7 @@ impl Run for KickDrift {
         let dt = step.clock.dt;
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
-        for id in step.turn.due(step.world, &self.bodies) {
+        for id in step.part.due(step.world, &self.bodies) {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();
@@ -206,7 +206,7 @@ impl Run for Kick {
         let dt = step.clock.dt;
         let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
-        for id in step.turn.due(step.world, &self.bodies) {
+        for id in step.part.due(step.world, &self.bodies) {
             let body = step.world.body(id);
             let view = step.world.phase(body.phase);
             let rows = body.rows.clone();

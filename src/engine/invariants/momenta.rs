@@ -53,7 +53,7 @@ impl<E: From<RunError> + From<MissingColumn>> Specimen<'_, E> {
     /// Throws the specimen with a velocity at the start that is a function of place, and runs it to its end.
     ///
     /// # Errors
-    /// The simulation cannot be made or fails.
+    /// The simulation cannot be built or fails.
     pub fn thrown(&self, velocity: impl Fn(DVec3) -> DVec3) -> Result<Thrown, E> {
         let mut simulation = self.moved(|_, x| x, velocity)?;
         simulation.start()?;

@@ -53,7 +53,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
     /// A simulation before its start, with places and velocities that are functions of the place; `place` also gets the number of the particle.
     ///
     /// # Errors
-    /// The simulation cannot be made.
+    /// The simulation cannot be built.
     pub fn moved(
         &self,
         place: impl Fn(usize, DVec3) -> DVec3,
@@ -74,7 +74,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
     /// Moves the specimen by an affine map `x -> map x + shift`.
     ///
     /// # Errors
-    /// The simulation cannot be made or fails.
+    /// The simulation cannot be built or fails.
     pub fn affine(&self, map: DMat3, shift: DVec3) -> Result<Affine, E> {
         let mut simulation = self.moved(|_, x| map * x + shift, |_| DVec3::ZERO)?;
         simulation.start()?;
@@ -89,7 +89,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
     /// Forces after a rough displacement, for stabilizers without an energy.
     ///
     /// # Errors
-    /// The simulation cannot be made or fails.
+    /// The simulation cannot be built or fails.
     pub fn rough(&self) -> Result<Net, E> {
         let axes = (self.make)()?.world().dimension().count();
         let mut simulation = self.moved(|_, x| x + rough(axes, x), |_| DVec3::ZERO)?;
@@ -101,7 +101,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
     /// three particles.
     ///
     /// # Errors
-    /// The simulation cannot be made or fails.
+    /// The simulation cannot be built or fails.
     pub fn slope(&self) -> Result<Slope, E> {
         let moved = |moved: usize, axis: usize, by: f64| -> Result<Simulation, E> {
             let mut simulation = (self.make)()?;

@@ -80,7 +80,7 @@ impl Hardening {
         matches!(self, Self::JohnsonCook(_))
     }
 
-    /// Flow stress, Pa, at slow deformation.
+    /// Quasi-static flow stress, Pa.
     #[inline]
     pub fn static_stress(&self, strain: f64, temperature: f64) -> f64 {
         match *self {

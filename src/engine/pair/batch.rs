@@ -85,7 +85,7 @@ pub struct PairBatch {
 }
 
 /// Room for the neighbours of a row.
-pub struct Room<'a> {
+pub struct RowSlots<'a> {
     /// Four neighbours each.
     pub pairs: &'a mut [FourPairs],
     /// Rows in the phase.
@@ -98,7 +98,7 @@ pub struct Room<'a> {
     pub supports: &'a mut [Lanes4],
 }
 
-/// One neighbour, as [`Room::put`] takes it.
+/// One neighbour, as [`RowSlots::put`] takes it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Neighbor {
     /// Real row in the phase.
@@ -121,7 +121,7 @@ pub struct Neighbor {
     pub support: f64,
 }
 
-impl Room<'_> {
+impl RowSlots<'_> {
     /// Puts a neighbour in place `k`: for formulations that do not fill the lanes themselves.
     pub fn put(&mut self, k: usize, neighbor: Neighbor) {
         let Neighbor { row, signs, current, reference, velocity, weight, kernel, volume, support } = neighbor;
@@ -176,7 +176,7 @@ impl PairBatch {
 
     /// Adds the row of the next particle, of volume V_i, m3, with room for that many neighbours, to be filled by the caller.
     #[inline(always)]
-    pub fn add_row(&mut self, volume_i: f64, neighbors: usize) -> Room<'_> {
+    pub fn add_row(&mut self, volume_i: f64, neighbors: usize) -> RowSlots<'_> {
         let start = self.starts[self.count];
         let end = start + neighbors.div_ceil(4);
         if self.pairs.len() < end {
@@ -186,7 +186,7 @@ impl PairBatch {
         self.count += 1;
         self.starts[self.count] = end;
         let Extras { reference, mirrors, supports, .. } = self.extras;
-        Room {
+        RowSlots {
             pairs: &mut self.pairs[start..end],
             rows: &mut self.rows[start..end],
             reference: if reference { &mut self.reference[start..end] } else { &mut [] },

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::batch::{Extras, MAX_ROWS, PairBatch};
 use super::block::{BlockPairs, TermSums};
-use super::of_phase::Fastest;
+use super::of_phase::RateBounds;
 use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
 use crate::parallel::{BlockLoop, EightLanes, FourLanes, HotLoop, run_blocks_on, run_hot_on};
@@ -33,7 +33,7 @@ pub(super) struct RowsOut<'a> {
     /// Density rates of all terms; empty where the phase has none.
     pub density: &'a mut [DensityRate],
     /// Rates that limit the step.
-    pub fastest: &'a mut [Fastest; MAX_ROWS],
+    pub fastest: &'a mut [RateBounds; MAX_ROWS],
 }
 
 struct Bound<'a, T: PairTerm> {

@@ -14,9 +14,9 @@ mod read;
 mod term;
 mod work;
 
-pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, Room, WeightAt};
+pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, RowSlots, WeightAt};
 pub(crate) use block::{BlockPairs, CHUNK, EightPairs, TermSums};
-pub(crate) use of_phase::{AllSums, BodyTerms, BoundTerms, Fastest, PhaseTerms, TermRows};
+pub(crate) use of_phase::{AllSums, BodyTerms, BoundTerms, PhaseTerms, RateBounds, TermRows};
 pub(crate) use pass::with_batch;
 pub use pass::{PairRows, PairSource, add_pair_systems};
 pub use read::{FourOf, ReadSet, Relative};

@@ -24,7 +24,7 @@ const STIFFNESS_SAFETY: f64 = 0.65;
 const DAMPING_SAFETY: f64 = 0.5;
 
 /// The terms of one body, and the force of each on every particle of it: row by row, one entry a term. The forces are
-/// made anew in every step, so no checkpoint holds them.
+/// computed in every step, so no checkpoint holds them.
 pub(crate) struct BodyTerms {
     pub id: BodyId,
     pub terms: Vec<usize>,
@@ -39,7 +39,7 @@ pub(crate) struct PhaseTerms {
     of_changing_density: BodySet,
     /// What the terms make, shared with the systems that book their work.
     forces: Shared<Vec<BodyTerms>>,
-    sums: Vec<Fastest>,
+    sums: Vec<RateBounds>,
     /// What the terms read of the pairs.
     pub reads: PairReads,
     /// Account of the first term that changes the density.
@@ -137,9 +137,9 @@ impl PhaseTerms {
         step: &Step<'_>,
         id: BodyId,
         force: &mut [Force],
-        run: &mut dyn FnMut(&BoundTerms<'_>, TermRows<'_>, &mut Vec<Fastest>) -> Fastest,
-    ) -> Result<Fastest, StepError> {
-        let mut fastest = Fastest::default();
+        run: &mut dyn FnMut(&BoundTerms<'_>, TermRows<'_>, &mut Vec<RateBounds>) -> RateBounds,
+    ) -> Result<RateBounds, StepError> {
+        let mut fastest = RateBounds::default();
         let mut bodies = step.resources.of_mut(self.forces);
         let body = bodies.iter_mut().find(|body| body.id == id);
         let Some(BodyTerms { terms: indices, forces, .. }) = body else { return Ok(fastest) };
@@ -178,11 +178,11 @@ pub(crate) struct BoundTerms<'a> {
 impl BoundTerms<'_> {
     /// Runs all terms on the rows of a batch, of particle `first` of the phase and those after it, and writes what they make into
     /// a block from row `k` on. Gives the largest rates.
-    pub fn run(&self, first: usize, batch: &PairBatch, k: usize, block: &mut TermRows<'_>) -> Fastest {
+    pub fn run(&self, first: usize, batch: &PairBatch, k: usize, block: &mut TermRows<'_>) -> RateBounds {
         let rows = batch.rows();
         let density = if block.density.is_empty() { &mut [] } else { &mut block.density[k..k + rows] };
         density.fill(DensityRate(0.0));
-        let mut fastest = [Fastest::default(); MAX_ROWS];
+        let mut fastest = [RateBounds::default(); MAX_ROWS];
         let out = RowsOut {
             by_term: &mut block.by_term[k * block.terms..(k + rows) * block.terms],
             term: block.terms - 1,
@@ -192,7 +192,7 @@ impl BoundTerms<'_> {
             fastest: &mut fastest,
         };
         self.chain.rows(first, batch, self.plane, out);
-        let mut largest = Fastest::default();
+        let mut largest = RateBounds::default();
         fastest.iter().for_each(|of_row| largest.add(of_row));
         largest
     }
@@ -212,12 +212,12 @@ impl BoundTerms<'_> {
 /// The largest rates of a block.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Fastest {
+pub(crate) struct RateBounds {
     pub(super) damping: f64,
     pub(super) stiffness: f64,
 }
 
-impl Fastest {
+impl RateBounds {
     /// Limits the step.
     pub fn limit(&self, step: &mut Step<'_>, id: BodyId) {
         let name = &step.world.body(id).name;
@@ -232,7 +232,7 @@ impl Fastest {
     }
 }
 
-impl Fastest {
+impl RateBounds {
     /// The largest of a block of particles.
     #[inline]
     pub fn add_block(&mut self, sums: &[TermSums]) {
@@ -247,7 +247,7 @@ impl Fastest {
     }
 }
 
-impl BlockSum for Fastest {
+impl BlockSum for RateBounds {
     #[inline]
     fn add(&mut self, next: &Self) {
         self.damping = self.damping.max(next.damping);

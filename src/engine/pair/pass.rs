@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::Range;
 
 use super::batch::PairBatch;
-use super::of_phase::{BoundTerms, Fastest, PhaseTerms, TermRows};
+use super::of_phase::{BoundTerms, PhaseTerms, RateBounds, TermRows};
 use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_own_block};
 use crate::plugin::{SetupError, SimBuilder};
@@ -81,7 +81,7 @@ impl<S: PairSource> Run for PairPass<S> {
         for &id in &self.bodies {
             let rows = step.world.body(id).rows.clone();
             let (source, terms) = (&self.source, &mut self.terms);
-            let mut fastest = Fastest::default();
+            let mut fastest = RateBounds::default();
             source.with_rows(step, id, terms.reads, &mut |pairs| {
                 let total = &mut force[rows.clone()];
                 fastest = terms.on_body(step, id, total, &mut |terms, written, sums| {
@@ -97,8 +97,13 @@ impl<S: PairSource> Run for PairPass<S> {
     }
 }
 
-fn run_block(terms: &BoundTerms<'_>, pairs: &dyn PairRows, first: usize, mut block: TermRows<'_>) -> Fastest {
-    let mut fastest = Fastest::default();
+fn run_block(
+    terms: &BoundTerms<'_>,
+    pairs: &dyn PairRows,
+    first: usize,
+    mut block: TermRows<'_>,
+) -> RateBounds {
+    let mut fastest = RateBounds::default();
     let rows = block.total.len();
     with_batch(|batch| {
         let mut done = 0;

@@ -1,6 +1,6 @@
 //! The work of pair terms, booked so that the ledger closes as it does without them.
 //!
-//! A force f made at the end of a step acts in the second kick of that step and in the first kick of the next. Its work
+//! A force f computed at the end of a step acts in the second kick of that step and in the first kick of the next. Its work
 //! is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with the velocity v and the
 //! acceleration a between the two: two sums over the particles give both.
 

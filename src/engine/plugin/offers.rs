@@ -12,7 +12,7 @@ pub enum BodyKind {
     Solid,
     /// A fluid: particles with density and pressure.
     Fluid,
-    /// Boundary particles of a fluid, which move as they are told.
+    /// Boundary particles of a fluid, which move as prescribed.
     Boundary,
     /// A body that moves as a whole.
     Rigid,

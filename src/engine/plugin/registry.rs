@@ -267,7 +267,7 @@ impl Registry {
             .map_or("", |(_, entry)| entry.reference)
     }
 
-    /// Shows what a condition holds; nothing if its parameters cannot be read, which is told where it is built.
+    /// Shows what a condition holds; nothing if its parameters cannot be read, which is reported where it is built.
     pub(crate) fn support(&self, item: &Item, mut look: impl FnMut(Support<'_>)) {
         if let Some(read) = self.supports.get(item.name()) {
             read(item, &mut look);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::world::{Force, sum_by_row};
 
 /// Velocities at mid-step of the particles of a phase that are taken out in this step, m/s. The last kick of their motion is one of forces that are
-/// only made after they have gone, and whoever makes such forces books what that kick would have taken from them: a formulation that puts this into its phase,
+/// only computed after they have gone, and the system that computes such forces books what that kick would have taken from them: a formulation that puts this into its phase,
 /// and contact.
 #[derive(Debug, Default)]
 pub(crate) struct Leaving(Vec<(u32, DVec3)>);

@@ -114,7 +114,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         return Ok(());
     }
     let (view, own) = step.world.body_view(body);
-    let due = step.turn.is_due(step.world, body);
+    let due = step.part.is_due(step.world, body);
     let mut leaving = step.resources.try_get_mut_of::<Leaving>(step.world.body(body).phase);
     let kinetic = {
         let (velocity, force) = (view.read::<Velocity>()?, view.read::<Force>()?);
@@ -123,7 +123,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         if let Some(leaving) = leaving.as_mut().filter(|_| due) {
             rows.iter().for_each(|&row| leaving.push(row, velocity[row as usize].0));
         }
-        // The last kick is that of forces which are only made after they have gone. Who makes them books what it would take from the motion, if they
+        // The last kick is that of forces which are only made after they have gone. The system that computes them books what it would take from the motion, if they
         // ask who leaves.
         let kick_takes = leaving.is_none();
         let half_step = 0.5 * step.clock.dt;

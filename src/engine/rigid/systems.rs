@@ -66,7 +66,7 @@ impl RigidBody {
 
     /// Pushes with a force and a torque, N and N m, for half a step, s, at its end, and changes those of the state. Returns the gain of
     /// kinetic energy and the work that constraints supply, J.
-    pub(crate) fn push_late(&mut self, push: [DVec3; 2], change: [DVec3; 2], half: f64) -> (f64, f64) {
+    pub(crate) fn correct(&mut self, push: [DVec3; 2], change: [DVec3; 2], half: f64) -> (f64, f64) {
         let before = (self.kinetic(), self.state.force, self.state.torque);
         [self.state.force, self.state.torque] = push;
         let constraints = -half * self.constraint_power();

@@ -134,7 +134,7 @@ impl Ledger {
         self.stored_at_start
     }
 
-    /// Opens the books: what is stored now is the energy at the start, and nothing is supplied or dissipated yet.
+    /// Opens the energy balance: what is stored now is the energy at the start, and nothing is supplied or dissipated yet.
     pub fn open(&mut self) {
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
             account.per_body.fill(0.0);

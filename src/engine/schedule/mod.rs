@@ -7,9 +7,9 @@ mod order;
 mod resources;
 mod stage;
 mod step;
+mod step_part;
 mod system;
 mod trigger;
-mod turn;
 
 pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, Ledger};
@@ -21,5 +21,5 @@ pub use step::{Clock, Step, StepError, warn_anew};
 pub use system::{Run, System};
 
 pub use crate::world::{Access, Mode};
+pub use step_part::{Cadence, StepPart};
 pub use trigger::Trigger;
-pub use turn::{Pace, Turn};

@@ -9,8 +9,8 @@ use thiserror::Error;
 use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
+use super::step_part::Cadence;
 use super::system::System;
-use super::turn::Pace;
 use crate::world::{Access, Declared, Mode, PhaseId};
 
 /// Why the systems cannot be put in order.
@@ -57,7 +57,7 @@ pub enum ScheduleError {
 #[derive(Default)]
 pub struct Schedule {
     systems: Vec<System>,
-    paces: Vec<Pace>,
+    cadences: Vec<Cadence>,
     times: Vec<Duration>,
 }
 
@@ -75,14 +75,14 @@ impl Schedule {
             ordered.extend(order_stage(stage, stage_systems, sub_cycled)?);
         }
         let times = vec![Duration::ZERO; ordered.len()];
-        let paces = ordered.iter().map(|system: &System| system.pace(sub_cycled)).collect();
-        Ok(Self { systems: ordered, paces, times })
+        let cadences = ordered.iter().map(|system: &System| system.cadence(sub_cycled)).collect();
+        Ok(Self { systems: ordered, cadences, times })
     }
 
     /// Runs the systems of the stages that `wanted` accepts, as far as they run in this part of the step.
     pub fn run(&mut self, step: &mut Step<'_>, wanted: impl Fn(Stage) -> bool) -> Result<(), StepError> {
         for (k, (system, time)) in self.systems.iter_mut().zip(&mut self.times).enumerate() {
-            if wanted(system.stage) && step.turn.has(self.paces[k]) {
+            if wanted(system.stage) && step.part.has(self.cadences[k]) {
                 step.ledger.enter(k);
                 let start = Instant::now();
                 step.world.enter(Some(k));
@@ -134,17 +134,17 @@ impl Schedule {
         let mut text = String::new();
         let exchanges = self.exchanges();
         for stage in Stage::ALL {
-            let all = self.systems.iter().zip(&self.paces).zip(&exchanges);
+            let all = self.systems.iter().zip(&self.cadences).zip(&exchanges);
             let members: Vec<_> = all.filter(|((system, _), _)| system.stage == stage).collect();
             if members.is_empty() {
                 continue;
             }
             let _ = writeln!(text, "{stage:?}");
-            for ((system, pace), exchanged) in members {
-                let when = match pace {
-                    Pace::Long => "",
-                    Pace::Short => " (sub-steps)",
-                    Pace::Both => " (long and sub-steps)",
+            for ((system, cadence), exchanged) in members {
+                let when = match cadence {
+                    Cadence::Long => "",
+                    Cadence::Short => " (sub-steps)",
+                    Cadence::Both => " (long and sub-steps)",
                 };
                 let _ = write!(text, "  {}{when}", system.label);
                 for (mode, verb) in Mode::VERBS {
@@ -287,11 +287,14 @@ fn check_ambiguity(
     precedes: &[Vec<bool>],
     sub_cycled: &[PhaseId],
 ) -> Result<(), ScheduleError> {
-    let paces: Vec<Pace> = systems.iter().map(|system| system.pace(sub_cycled)).collect();
+    let cadences: Vec<Cadence> = systems.iter().map(|system| system.cadence(sub_cycled)).collect();
     for a in 0..systems.len() {
         for b in a + 1..systems.len() {
             // Systems of the long step and of the short ones run apart.
-            let apart = matches!((paces[a], paces[b]), (Pace::Long, Pace::Short) | (Pace::Short, Pace::Long));
+            let apart = matches!(
+                (cadences[a], cadences[b]),
+                (Cadence::Long, Cadence::Short) | (Cadence::Short, Cadence::Long)
+            );
             if apart || precedes[a][b] || precedes[b][a] {
                 continue;
             }

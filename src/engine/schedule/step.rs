@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::ledger::Ledger;
 use super::limits::TimeStepLimits;
 use super::resources::Resources;
-use super::turn::Turn;
+use super::step_part::StepPart;
 use crate::notation::{quantity, quantity_to};
 use crate::world::{MissingColumn, Undeclared, World};
 
@@ -48,7 +48,7 @@ pub struct Step<'s> {
     /// What the user should look at; repeated at the end of the run.
     pub warnings: &'s mut Vec<String>,
     /// Which part of the step this is: a system that is [`by_body`](super::System::by_body) asks it for the bodies that are due.
-    pub turn: Turn<'s>,
+    pub part: StepPart<'s>,
     /// Set it to end the run after this step; the text says why.
     pub stop: &'s mut Option<String>,
 }

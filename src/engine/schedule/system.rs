@@ -5,7 +5,7 @@ use super::ledger::{AccountKind, EnergyAccount};
 use super::resources::Resources;
 use super::stage::Stage;
 use super::step::{Step, StepError};
-use super::turn::Pace;
+use super::step_part::Cadence;
 use crate::world::{Access, BodySet, Column, Declared, Mode, PhaseId};
 
 /// What a system does. A closure is enough for a system without state of its own.
@@ -89,7 +89,7 @@ impl System {
         let of = bodies.clone();
         let mut system = Self::new(stage, label, move |step: &mut Step<'_>| {
             let clock = step.clock;
-            for body in step.turn.due(step.world, &bodies) {
+            for body in step.part.due(step.world, &bodies) {
                 let (phase, rows) = step.world.body_view(body);
                 Q::for_each(&phase, rows, &|row| f(&clock, row))?;
             }
@@ -115,7 +115,7 @@ impl System {
             let clock = step.clock;
             let EnergyAccount { name, kind } = account;
             let account = step.ledger.account(name, kind);
-            for body in step.turn.due(step.world, &bodies) {
+            for body in step.part.due(step.world, &bodies) {
                 let (phase, rows) = step.world.body_view(body);
                 let energy = Q::for_each(&phase, rows, &|row| f(&clock, row))?;
                 match kind {
@@ -190,7 +190,7 @@ impl System {
         self
     }
 
-    /// Declares that the system acts on the bodies that are due alone ([`Turn::due`](super::Turn::due)): where some of its
+    /// Declares that the system acts on the bodies that are due alone ([`StepPart::due`](super::StepPart::due)): where some of its
     /// phases are sub-cycled and others are not, it runs in the long step and in the short ones.
     pub fn by_body(mut self) -> Self {
         self.by_body = true;
@@ -248,17 +248,17 @@ impl System {
     }
 
     /// When it runs, where these phases are sub-cycled.
-    pub(super) fn pace(&self, sub_cycled: &[PhaseId]) -> Pace {
+    pub(super) fn cadence(&self, sub_cycled: &[PhaseId]) -> Cadence {
         let Some(phases) = self.phases.as_ref().filter(|phases| !self.long && !phases.is_empty()) else {
-            return Pace::Long;
+            return Cadence::Long;
         };
         let short = phases.iter().filter(|phase| sub_cycled.contains(phase)).count();
         if short == phases.len() {
-            Pace::Short
+            Cadence::Short
         } else if short > 0 && self.by_body {
-            Pace::Both
+            Cadence::Both
         } else {
-            Pace::Long
+            Cadence::Long
         }
     }
 

@@ -98,7 +98,7 @@ impl Checkpoint {
         self.header.clock
     }
 
-    /// A warning where the run was made on another instruction path, so that the last bits will differ.
+    /// A warning where the run was carried out on another instruction path, so that the last bits will differ.
     pub fn path_warning(&self) -> Option<String> {
         let (then, now) = (self.header.instruction_path.as_str(), instruction_path());
         (!have_same_bits(then, now)).then(|| {

@@ -47,7 +47,7 @@ impl Simulation {
     pub(super) fn fail(&mut self, error: &RunError) {
         self.failure = Some(error.to_string());
         if let Some(mut output) = self.output() {
-            // The failure of the run is told; one of this attempt would hide it.
+            // The failure of the run is reported; one of this attempt would hide it.
             let _ = output.flush();
         }
     }
@@ -64,7 +64,7 @@ impl Simulation {
         if !self.output().is_some_and(|output| output.has_begun()) {
             return Ok(self.summary());
         }
-        // Each part is tried, whatever has become of the others; the first fault is told.
+        // Each part is tried, whatever has become of the others; the first fault is reported.
         let kept = match self.failure.is_none() && (self.clock.time < self.end || self.checkpoint_at_end) {
             true => self.checkpoint().map(drop),
             false => Ok(()),

@@ -79,7 +79,7 @@ impl SolidPart<'_> {
 
     /// That of a step.
     pub fn of(step: &Step<'_>) -> Self {
-        Self { dt: step.clock.dt, is_short: step.turn.is_part(), refits: None }
+        Self { dt: step.clock.dt, is_short: step.part.is_sub_step(), refits: None }
     }
 }
 
@@ -342,7 +342,7 @@ impl SolidBodies {
         let damage = view.read_own::<Damage>().ok();
         for (k, (own, stable_step)) in self.bodies.iter_mut().zip(stable).enumerate() {
             let body = step.world.body(own.id);
-            if step.turn.number().is_multiple_of(STRETCH_INTERVAL) {
+            if step.part.number().is_multiple_of(STRETCH_INTERVAL) {
                 let damage = damage.as_deref().map(|damage| &damage[body.rows.clone()]);
                 own.stretch_factor = factor(k, &*own.law, &gradient[body.rows.clone()], damage);
             }

@@ -190,7 +190,7 @@ pub struct SolidBlock {
     strength: [f64; BLOCK],
     /// Plastic work of the step per reference volume, J/m3.
     plastic_work: [f64; BLOCK],
-    /// Stress at the end of the last step, Pa; after the law, that which makes the force where there is damping.
+    /// Stress at the end of the last step, Pa; after the law, the one that enters the force where there is damping.
     stress: [DMat3; BLOCK],
 }
 
@@ -246,7 +246,7 @@ pub struct Constitutive<'a> {
 }
 
 impl Constitutive<'_> {
-    /// Computes the stress of a block whose deformation gradient is there, and calls `make` with what makes the force: the stress with that of damping.
+    /// Computes the stress of a block whose deformation gradient is there, and calls `make` with the stress that enters the force: that of the law with that of damping.
     /// Each particle makes the share of its force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no deformation
     /// gradient for want of neighbours; other shares beside what is held.
     pub fn stress(

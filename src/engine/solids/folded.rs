@@ -11,7 +11,7 @@ use crate::parallel::split_by_rows;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
-/// A block of particles of one body, after their stress is known and before the pass over pairs that makes the force.
+/// A block of particles of one body, after their stress is known and before the pass over pairs that computes the force.
 /// All slices have one length. Beside particles that have failed, displacement gradient and error are those of a fit to the neighbours that
 /// hold, and what a term adds does not act on those that have failed: no bond across a crack carries a force of a term.
 pub struct FoldedRows<'a> {

@@ -67,7 +67,7 @@ pub(super) fn from_law(
     }
 }
 
-/// When the forces are made: what the stress column holds.
+/// When the forces are computed: what the stress column holds.
 pub(super) fn to_column(refits: &[(u32, DMat3)], first: usize, stress: &mut [DMat3]) {
     for (row, c) in refits {
         stress[*row as usize - first] *= 1.0 / c.determinant();

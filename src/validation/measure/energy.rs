@@ -1,6 +1,6 @@
 //! The energy balance of a run, and what each kind of run may miss of it.
 //!
-//! The books name every joule, so that what is missing is the error of the leapfrog. It is that of the square of the step where bodies and flows move smoothly, and that of single
+//! Every energy has an account, so that the residual is the error of the leapfrog. It is that of the square of the step where bodies and flows move smoothly, and that of single
 //! steps where something begins or ends within one: a touch, a yield, a bond that breaks, a reference that is renewed. The largest error of the run counts, over the largest energy of
 //! an account in the run.
 

@@ -8,7 +8,7 @@ use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, DeformationGradient, Velocity};
 
-/// How fast a body is at most, m/s, and a bound of how far it is stretched: in tenths, so that lists are seldom made for another one.
+/// How fast a body is at most, m/s, and a bound of how far it is stretched: in tenths, so that lists are seldom built for another one.
 #[derive(Clone, Copy)]
 pub(in crate::contact) struct MotionBounds {
     pub speed: f64,

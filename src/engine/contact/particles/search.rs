@@ -32,10 +32,10 @@ pub(super) struct Search {
     /// Largest radius on each side, m.
     largest: [f64; 2],
     periodic: Periodic,
-    /// How far the two bodies may move together before the list is made again, m; how far they have.
+    /// How far the two bodies may move together before the list is built again, m; how far they have.
     budget: f64,
     travelled: f64,
-    /// How far particles were stretched at most when the list was made.
+    /// How far particles were stretched at most when the list was built.
     stretch: f64,
     regions: [NearRegion; 2],
     search: NeighborSearch,
@@ -102,7 +102,7 @@ impl Search {
     }
 
     /// Takes in how far the two bodies may have moved together, m, and how far their particles are stretched at most, and says whether
-    /// the list has to be made again. It is then made for this stretch.
+    /// the list has to be built again. It is then built for this stretch.
     pub fn moved(&mut self, distance: f64, stretch: f64) -> bool {
         self.travelled += distance;
         let grown = (self.largest[0] + self.largest[1]) * (stretch - self.stretch).max(0.0);

@@ -29,7 +29,7 @@ pub(super) struct Planner<'a> {
     pub planes: &'a [MirrorPlane],
     /// The skins that bodies touch with.
     pub skins: BodySkins,
-    /// What the user is told of bodies that have none.
+    /// What is reported of bodies that have none.
     pub warnings: Vec<String>,
 }
 
@@ -161,7 +161,7 @@ impl Planner<'_> {
         })
     }
 
-    /// The skin that a body touches with, if it has one; else the user is told why not.
+    /// The skin that a body touches with, if it has one; else the reason is reported.
     fn skin(&mut self, body: &BodyPlan, named: &Named<'_>) -> Option<Arc<Skin>> {
         let contact = named.contact;
         let found = if contact.friction_heat.is_some() && contact.surface == ContactSurface::Skin {

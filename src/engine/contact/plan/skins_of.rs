@@ -9,7 +9,7 @@ use crate::skins::Skin;
 use crate::symmetry::MirrorPlane;
 use crate::world::BodyId;
 
-/// The skins that have been made, each once for all contacts of its body.
+/// The skins that have been built, each once for all contacts of its body.
 #[derive(Default)]
 pub(in crate::contact) struct BodySkins {
     known: Vec<(BodyId, Option<Arc<Skin>>)>,

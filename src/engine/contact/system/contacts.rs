@@ -156,7 +156,7 @@ impl Contacts {
     }
 }
 
-/// The system that works out the forces.
+/// The system that computes the forces.
 struct ContactSystem(Shared<Contacts>);
 
 impl Run for ContactSystem {

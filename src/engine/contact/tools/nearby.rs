@@ -9,7 +9,7 @@ use crate::rigid::RigidBody;
 
 /// Skin over the size of a node.
 const SKIN: f64 = 1.0;
-/// Gap, over the size of a node, up to which a node counts as near the surface. All that are so near are candidates whenever the list was made, so
+/// Gap, over the size of a node, up to which a node counts as near the surface. All that are so near are candidates whenever the list was built, so
 /// that what follows from them follows from positions alone.
 pub(in crate::contact) const NEAR: f64 = 0.5;
 

@@ -64,7 +64,7 @@ impl Dilatation {
 }
 
 impl EulerianRows {
-    /// tr(tau) V_0 over the axes, with the stress that the force is made of, J.
+    /// tr(tau) V_0 over the axes, with the stress that the force is computed from, J.
     fn held(&self, row: usize) -> f64 {
         let inverse = self.near.around[row].inverse_moment;
         let corrected = self.stresses[row].columns.map(|column| column.xyz());

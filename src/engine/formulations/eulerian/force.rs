@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::rows::EulerianRows;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};
 
@@ -55,7 +55,7 @@ struct EulerianForceRows<'a> {
     force: &'a mut [Force],
 }
 
-impl PlaneOrSolid for EulerianForceRows<'_> {
+impl PlaneOrSpace for EulerianForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let EulerianRows { lists, near, points, stresses, control, .. } = self.packed;

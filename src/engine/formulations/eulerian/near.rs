@@ -4,10 +4,10 @@ use crate::correction::MomentMatrix;
 use crate::formulations::eulerian::rows::EulerianParticle;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, Split, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};
 
 /// Least determinant of M_i in units of `(tr M_i / d)^d`. Below it the neighbours are so nearly on a line, or in space in a plane, that a gradient across
-/// it is noise: what is left of a body that has been torn to pieces. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
+/// it is noise: what is left of a body that has separated fully. Spacings along two axes may differ by more than two, corners of bodies have above 0.8.
 pub(super) const LEAST_SPREAD: f64 = 0.02;
 
 /// What the pass finds of every row.
@@ -18,7 +18,7 @@ pub(super) struct NearbyMotion {
     /// Inverse of M_i; zero for a particle with too few neighbours.
     pub inverse_moment: Sym3,
     /// `sum_j V_0,j w_ij x_ij`, 1/m.
-    pub reach: glam::DVec3,
+    pub first_moment: glam::DVec3,
     /// `sum_j V_0,j w_ij`, 1/m2.
     pub weight_sum: f64,
     /// `sum_j V_j W_ij` with the particle itself: 1 inside of a body.
@@ -111,7 +111,7 @@ struct LookLoop<'a, 'r, K: KernelProfile> {
     look: LookAtBlock<'a, 'r>,
 }
 
-impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
+impl<K: KernelProfile> PlaneOrSpace for LookLoop<'_, '_, K> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { kernel, look: LookAtBlock { support, lists, points, first, rows, .. } } = self;
@@ -131,7 +131,7 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
                 rows.neighbors[start + count] = j;
                 count += usize::from((square < limit) & (square > 0.0) & (other.0[3] > 0.0));
             }
-            let (mut moment, mut reach) = ([Lanes4::ZERO; D], Lanes4::ZERO);
+            let (mut moment, mut first_moment) = ([Lanes4::ZERO; D], Lanes4::ZERO);
             let (mut weight_sum, mut filled) = (0.0, itself * points[first + k].velocity.0[3]);
             let part = start..start + count;
             let pairs = rows.neighbors[part.clone()].iter().zip(&mut rows.weights[part.clone()]);
@@ -146,14 +146,15 @@ impl<K: KernelProfile> PlaneOrSolid for LookLoop<'_, '_, K> {
                 for axis in 0..D {
                     moment[axis] = a.scale_add(arm.0[axis], weighted, moment[axis]);
                 }
-                reach = a.plus(reach, weighted);
+                first_moment = a.plus(first_moment, weighted);
                 weight_sum += volume * w;
                 filled += velocity.0[3] * kernel_value;
             }
             let inverse_moment =
                 MomentMatrix::of_columns(&moment).inverse_above(LEAST_SPREAD).unwrap_or_default();
             let count = count as u32;
-            rows.around[k] = NearbyMotion { count, inverse_moment, reach: reach.xyz(), weight_sum, filled };
+            rows.around[k] =
+                NearbyMotion { count, inverse_moment, first_moment: first_moment.xyz(), weight_sum, filled };
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::rows::{EulerianParticle, EulerianRows};
-use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
+use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, PhaseId};
@@ -90,7 +90,7 @@ struct FourNeighbors {
 
 /// Puts four neighbours into place `n` of the room.
 #[inline(always)]
-fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, room: &mut Room<'_>) {
+fn put<A: FourLanes>(a: A, packed: &EulerianRows, four: FourNeighbors, n: usize, room: &mut RowSlots<'_>) {
     let FourNeighbors { i, neighbors: four, count, first: at } = four;
     let EulerianRows { lists, near, points, carried, .. } = packed;
     let [j, k, l, m] = four.map(|row| row as usize);

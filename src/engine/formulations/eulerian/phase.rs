@@ -48,7 +48,7 @@ impl SolidPhase for EulerianRows {
             velocity: velocity[row].0,
             rate: sum * around.inverse_moment.to_matrix() * f,
             mobility: mobility.0,
-            own: f.transpose() * (around.inverse_moment * around.reach),
+            own: f.transpose() * (around.inverse_moment * around.first_moment),
         }
     }
 

@@ -12,7 +12,7 @@ use super::start;
 use crate::correction::MomentMatrix;
 use crate::formulations::total_lagrangian::fit;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{
     DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
@@ -133,7 +133,7 @@ struct AdvanceLoop<'a, K: KernelProfile> {
     of: Advance<'a>,
 }
 
-impl<K: KernelProfile> PlaneOrSolid for AdvanceLoop<'_, K> {
+impl<K: KernelProfile> PlaneOrSpace for AdvanceLoop<'_, K> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self {

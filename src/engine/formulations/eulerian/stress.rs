@@ -173,7 +173,7 @@ impl Stress {
     }
 
     /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same places: what the removed particles held
-    /// leaves the books, and what the motion up to here, made by the old forces, loses by the new ones in the second kick goes with it.
+    /// leaves the energy balance, and what the motion up to here, with the old forces, loses by the new ones in the second kick goes with it.
     fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let removed = view.read_near::<Removed>()?;

@@ -102,7 +102,7 @@ fn in_common(fluids: &[FluidBody], sim: &SimBuilder<'_>) -> Result<Common, Setup
     Ok(Common { kernel, support, spacing, periodic, plane: sim.dimension() == Dimension::Two })
 }
 
-/// An error or a warning where a fluid would see through what bounds it.
+/// An error or a warning where a fluid would interact through its boundary.
 fn check_boundaries(
     walls: &[WallBody],
     moved: &[BodyId],

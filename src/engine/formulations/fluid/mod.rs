@@ -13,7 +13,7 @@ mod lanes;
 /// Who is near whom: the lists of neighbours.
 mod lists;
 
-/// All particles that a fluid meets, as one cloud.
+/// All particles of a flow as one cloud.
 mod cloud;
 
 /// Density and pressure of fluids.
@@ -60,7 +60,7 @@ pub(crate) use cloud::FLOW_LOADS;
 pub use cloud::FLOW_RECORDS;
 pub use cloud::{ArrangementPass, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 pub use cloud::{BoundarySurface, FlowCloud, FluidState, Group, Near, Role};
-pub use coupling::damp_ringing;
+pub use coupling::damp_sub_cycled_bodies;
 pub use density::{DensityShift, SHIFTING_ENERGY};
 pub(crate) use fields::fields;
 pub use formulation::Fluid;

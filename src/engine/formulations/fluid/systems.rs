@@ -1,4 +1,4 @@
-//! The systems of a flow and of its effect on what bounds it.
+//! The systems of a flow and of its effect on its boundaries.
 
 use crate::formulations::fluid::cloud::{
     ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
@@ -26,7 +26,7 @@ const COMPRESSION: &str = "fluid_compression";
 /// Label of the system that gives walls their pressure.
 const WALL_PRESSURE: &str = "wall_pressure";
 
-/// The phases of what bounds the flow.
+/// The phases of the boundary particles.
 fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
     let mut phases: Vec<PhaseId> =
         groups.iter().filter(|group| group.fluid().is_none()).map(|group| group.phase).collect();
@@ -130,7 +130,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
     );
 }
 
-/// Adds the pressure of what bounds the flow, and the force on it.
+/// Adds the pressure of the boundary particles, and the force on them.
 fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<PhaseId>, spin: bool) {
     if !boundaries.is_empty() {
         let state = WallState { gravity: sim.gravity(), beside: Vec::new() };

@@ -15,13 +15,13 @@ use crate::parallel::{BLOCK, block_count};
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
 
-/// Blocks of rows whose bonds are made before they are put together: enough for all threads, and little memory.
+/// Blocks of rows whose bonds are computed before they are put together: enough for all threads, and little memory.
 const BLOCKS_AT_ONCE: usize = 256;
 
 /// Rows whose stable steps one task finds.
 const ROWS_OF_TASK: usize = 1024;
 
-/// Why the bonds of a body cannot be made.
+/// Why the bonds of a body cannot be computed.
 #[derive(Debug, Error)]
 pub enum BondError {
     /// The neighbour search failed.
@@ -50,7 +50,7 @@ pub struct Bonds {
     /// Inverse of M_i = sum_j V_j w_ij X_ij (x) X_ij; zero for a free particle.
     pub(in crate::formulations) inverse_moment: Vec<Sym3>,
     /// `sum_j V_j w_ij X_ij`.
-    pub(in crate::formulations) reach: Vec<DVec3>,
+    pub(in crate::formulations) first_moment: Vec<DVec3>,
     /// `sum_j V_j w_ij`, 1/m2.
     pub(in crate::formulations) weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
@@ -190,12 +190,13 @@ impl Bonds {
 
     /// Lets go of all bonds; memory is kept.
     pub(in crate::formulations) fn clear(&mut self) {
-        let Self { offsets, neighbors, weights, inverse_moment, reach, weight_sum, free, carried: _ } = self;
+        let Self { offsets, neighbors, weights, inverse_moment, first_moment, weight_sum, free, carried: _ } =
+            self;
         offsets.clear();
         neighbors.clear();
         weights.clear();
         inverse_moment.clear();
-        reach.clear();
+        first_moment.clear();
         weight_sum.clear();
         free.clear();
     }
@@ -224,27 +225,27 @@ impl Bonds {
             .into_par_iter()
             .map(|i| {
                 let mut moment = MomentMatrix::new(dimension);
-                let (mut reach, mut weight_sum) = (DVec3::ZERO, 0.0);
+                let (mut first_moment, mut weight_sum) = (DVec3::ZERO, 0.0);
                 for (j, weight) in self.row(i) {
                     let volume_weight = volume[ghosts.source(j)] * f64::from(weight);
                     let x_ij = ghosts.pair(position, i, j);
                     moment.add(volume_weight, x_ij);
-                    reach += x_ij * volume_weight;
+                    first_moment += x_ij * volume_weight;
                     weight_sum += volume_weight;
                 }
-                (moment.inverse().filter(|_| volume[i] > 0.0), reach, weight_sum)
+                (moment.inverse().filter(|_| volume[i] > 0.0), first_moment, weight_sum)
             })
             .collect();
         self.inverse_moment.resize(self.inverse_moment.len().max(rows.end), Sym3::ZERO);
-        self.reach.resize(self.inverse_moment.len(), DVec3::ZERO);
+        self.first_moment.resize(self.inverse_moment.len(), DVec3::ZERO);
         self.weight_sum.resize(self.inverse_moment.len(), 0.0);
         self.free.retain(|&row| !rows.contains(&(row as usize)));
-        for (i, (inverse, reach, weight_sum)) in rows.zip(corrected) {
+        for (i, (inverse, first_moment, weight_sum)) in rows.zip(corrected) {
             if inverse.is_none() {
                 self.free.push(u32::try_from(i).unwrap_or(u32::MAX));
             }
             self.inverse_moment[i] = inverse.unwrap_or_default();
-            self.reach[i] = reach;
+            self.first_moment[i] = first_moment;
             self.weight_sum[i] = weight_sum;
         }
     }
@@ -288,7 +289,7 @@ impl Bonds {
         self.weights.resize(other.weights.len(), 0.0);
         let rows = other.inverse_moment.len();
         self.inverse_moment.resize(rows, Sym3::ZERO);
-        self.reach.resize(rows, DVec3::ZERO);
+        self.first_moment.resize(rows, DVec3::ZERO);
         self.weight_sum.resize(rows, 0.0);
         self.free.clear();
     }

@@ -90,7 +90,7 @@ impl Cracks {
         ghosts: &Ghosts,
     ) {
         if self.failed != known.len() {
-            self.relist(known, damage.len(), bonds, ghosts);
+            self.rebuild(known, damage.len(), bonds, ghosts);
         }
         let is_failed = |row: usize| damage[row].0 >= 1.0 && removed[row] == Removed::NO;
         let own = (damage, removed);
@@ -114,7 +114,7 @@ impl Cracks {
     }
 
     /// Makes the marks of the given failed rows of a phase of `len` anew.
-    pub fn relist(&mut self, failed: &[u32], len: usize, bonds: &Bonds, ghosts: &Ghosts) {
+    pub fn rebuild(&mut self, failed: &[u32], len: usize, bonds: &Bonds, ghosts: &Ghosts) {
         self.marks.clear();
         self.marks.resize(len, Mark::Holds);
         failed.iter().for_each(|&row| self.marks[row as usize] = Mark::Failed);

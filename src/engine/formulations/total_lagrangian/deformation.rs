@@ -106,8 +106,8 @@ impl DeformationPass<'_> {
         self.add_terms(constitutive, constitutive.folded(&mut rows, block, stresses), edges, &mut sum);
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             self.frame.complete(stress, &sites[first + k]);
-            let reach = bonds.reach[first + k];
-            *self_force = stress.times(reach, stretch[k] - self.frame.gradient * reach);
+            let first_moment = bonds.first_moment[first + k];
+            *self_force = stress.times(first_moment, stretch[k] - self.frame.gradient * first_moment);
         }
         sum.close(&rows, block);
         sum

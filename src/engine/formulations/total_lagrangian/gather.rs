@@ -7,7 +7,7 @@ use super::rows::PackedParticle;
 use super::spread::{DisplacementMoment, fit};
 use crate::linalg::Sym3;
 use crate::parallel::{
-    BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows,
+    BLOCK, FourLanes, HotLoop, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows,
 };
 use crate::solids::CorrectedStress;
 
@@ -26,7 +26,7 @@ pub(in crate::formulations) struct Gather<'a> {
     pub volume: &'a mut [f64; BLOCK],
 }
 
-impl PlaneOrSolid for Gather<'_> {
+impl PlaneOrSpace for Gather<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, sites, first, count, gradient, residual, stretch, volume } = self;

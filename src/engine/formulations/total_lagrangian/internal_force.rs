@@ -20,7 +20,7 @@ use super::cracks::Cracks;
 use super::frame::{AffineFrame, bodies_of, frame_of};
 use super::phase::PackedRows;
 use super::rows::PackedParticle;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_own_block, run_hot_in, share_rows_of};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Step, StepError};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
@@ -93,7 +93,7 @@ struct InternalForceRows<'a> {
     adds: bool,
 }
 
-impl PlaneOrSolid for InternalForceRows<'_> {
+impl PlaneOrSpace for InternalForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let InternalForce { bonds, sites, stresses, self_force, frames, mass, gravity, .. } = *self.pass;

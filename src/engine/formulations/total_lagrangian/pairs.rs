@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::bonds::Bonds;
 use super::rows::PackedParticle;
 use crate::kernels::Kernel;
-use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, Room, WeightAt};
+use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
 use crate::scene::Dimension;
 use crate::schedule::{Step, StepError};
@@ -187,7 +187,7 @@ impl BodyPairs<'_> {
         own: &OwnSite<A>,
         four: FourBonds,
         n: usize,
-        room: &mut Room<'_>,
+        room: &mut RowSlots<'_>,
     ) {
         let FourBonds { neighbors: four, weights: weight } = four;
         let Self { ghosts, sites, support, uniform, velocity, .. } = *self;
@@ -233,7 +233,7 @@ impl BodyPairs<'_> {
 }
 
 /// Puts kernel values of the reference lengths into a row.
-fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: Room<'_>) {
+fn put_kernel(kernel: &Kernel, uniform: Option<f64>, room: RowSlots<'_>) {
     for (k, (pairs, reference)) in room.pairs.iter_mut().zip(room.reference).enumerate() {
         for lane in 0..4 {
             let support = uniform.unwrap_or_else(|| room.supports[k].0[lane]);

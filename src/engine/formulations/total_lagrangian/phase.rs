@@ -113,7 +113,7 @@ impl SolidPhase for PackedRows {
             velocity: velocity[row].0,
             rate: sum * inverse.to_matrix(),
             mobility: mobility.0,
-            own: *inverse * self.bonds.reach[row],
+            own: *inverse * self.bonds.first_moment[row],
         }
     }
 
@@ -128,7 +128,7 @@ impl SolidPhase for PackedRows {
                 let site = &sites[row].reference;
                 let stress = *couple * bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
                 stresses.row(k).add(&stress, site.xyz());
-                *self_force.row(k) += stress * bonds.reach[row];
+                *self_force.row(k) += stress * bonds.first_moment[row];
             }
         });
     }

@@ -40,8 +40,8 @@ impl Deformation {
     /// Takes up what has been removed since the last step; returns whether the pass has been run with it.
     ///
     /// The passes run twice from the same places, with the bonds that are gone and without them: what these held leaves
-    /// the books. The second kick of the step uses the new forces, the motion up to here was made by the old ones:
-    /// what that takes from the motion leaves the books with it.
+    /// the energy balance. The second kick of the step uses the new forces, the motion up to here has used the old ones:
+    /// what that takes from the motion leaves the balance with it.
     pub(super) fn take_up_removed(
         &mut self,
         step: &mut Step<'_>,
@@ -121,7 +121,7 @@ impl Deformation {
         hessian.is_stale = true;
         if !self.failed.is_empty() {
             self.failed.retain(|row| self.removed.rows.binary_search(row).is_err());
-            cracks.relist(&self.failed, view.len(), bonds, ghosts);
+            cracks.rebuild(&self.failed, view.len(), bonds, ghosts);
         }
         let mut taken_up = view.write::<TakenUp>()?;
         TakenUp::write(&mut taken_up, Loss::Removed, &self.removed.rows);

@@ -1,4 +1,4 @@
-//! What is made before the first step: support radii, bonds, ghosts, and the packed rows.
+//! Set-up before the first step: support radii, bonds, ghosts, and the packed rows.
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ use crate::world::{
     World,
 };
 
-/// A body, with what its bonds are made of.
+/// A body with the input of its bonds.
 pub(in crate::formulations) struct BodySetUp {
     pub id: BodyId,
     pub kernel: KernelName,

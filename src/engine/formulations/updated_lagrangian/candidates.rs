@@ -2,7 +2,7 @@
 //!
 //! Two particles are neighbours where both measure a distance below the mean of their support radii. With half axes l and support radii s, they are then closer
 //! than the mean of `s l`, more exactly of [`radii`]. The list holds who is closer than that and a skin, and lasts as long as particles near each other have moved by less
-//! than the skin against each other. What is taken from it does not depend on when it was made: rows are ascending, and the distance decides.
+//! than the skin against each other. What is taken from it does not depend on when it was built: rows are ascending, and the distance decides.
 
 use std::ops::Range;
 
@@ -40,9 +40,9 @@ pub(super) struct Candidates {
     list: NeighborList,
     skin: f64,
     parting: Parting,
-    /// The radii that it was made with, m; empty where it holds for one time.
+    /// The radii that it was built with, m; empty where it holds for one time.
     radii: Vec<f64>,
-    /// Whether a list was made before: that of the start lasts no longer than the start.
+    /// Whether a list was built before: that of the start lasts no longer than the start.
     is_late: bool,
 }
 

@@ -159,8 +159,8 @@ impl ControlPass<'_> {
                 *stress = CorrectedStress::default();
             }
             frame.complete(stress, &sites[first + k]);
-            let reach = bonds.reach[first + k];
-            *self_force = stress.times(reach, stretch[k] - frame.gradient * reach);
+            let first_moment = bonds.first_moment[first + k];
+            *self_force = stress.times(first_moment, stretch[k] - frame.gradient * first_moment);
         }
     }
 }

@@ -89,8 +89,8 @@ impl UpdatedGradientPass<'_> {
         }
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             self.frame.complete(stress, &self.sites[first + k]);
-            let reach = self.bonds.reach[first + k];
-            *self_force = stress.times(reach, stretch[k] - self.frame.gradient * reach);
+            let first_moment = self.bonds.first_moment[first + k];
+            *self_force = stress.times(first_moment, stretch[k] - self.frame.gradient * first_moment);
         }
         sum.close(&rows, block);
         if let Some(pass) = &self.control {

@@ -1,4 +1,4 @@
-//! Neighbours, weights and moments of a reference, made from lists of who may be a neighbour.
+//! Neighbours, weights and moments of a reference, built from lists of candidates.
 //!
 //! Everything is done block by block in buffers that are kept from one update to the next: who is near by the largest radius, who is within the ellipsoids, weights of
 //! their distances, and moments of the weights as they are rounded. The stabilizers have the same neighbours with other weights, at the distances of the original pair vectors as
@@ -18,7 +18,7 @@ use crate::neighbors::NeighborSearch;
 use crate::parallel::{BLOCK, block_count, run_hot_on};
 use crate::symmetry::Ghosts;
 
-/// Blocks of rows that are made before they are put together: enough for all threads, and little memory.
+/// Blocks of rows that are built before they are put together: enough for all threads, and little memory.
 const BLOCKS_AT_ONCE: usize = 256;
 
 /// What is kept from one update to the next.
@@ -115,7 +115,7 @@ impl ReferenceLists {
     /// Gives the bonds of the stabilizers of some rows, whose neighbours are there already, weights and moments.
     pub fn weigh_control(&mut self, rows: &Range<usize>, kernel: &Kernel, bonds: &mut Bonds) {
         let Self { seen, columns, blocks, .. } = self;
-        let Bonds { offsets, neighbors, weights, inverse_moment, reach, weight_sum, .. } = bonds;
+        let Bonds { offsets, neighbors, weights, inverse_moment, first_moment, weight_sum, .. } = bonds;
         let source = PairOrigin::Known { offsets, neighbors, columns };
         let pairs = RowPairs { seen, source, has_ghosts: seen.len() > inverse_moment.len() };
         let mut row = rows.start;
@@ -124,7 +124,7 @@ impl ReferenceLists {
             weights[first..first + block.len()].copy_from_slice(&block.weights);
             for correction in &block.corrections {
                 inverse_moment[row] = correction.inverse;
-                reach[row] = correction.reach;
+                first_moment[row] = correction.first_moment;
                 weight_sum[row] = correction.weight_sum;
                 row += 1;
             }
@@ -141,7 +141,7 @@ fn append(bonds: &mut Bonds, block: &PairBlock) {
     bonds.weights.extend_from_slice(&block.weights);
     for correction in &block.corrections {
         bonds.inverse_moment.push(correction.inverse);
-        bonds.reach.push(correction.reach);
+        bonds.first_moment.push(correction.first_moment);
         bonds.weight_sum.push(correction.weight_sum);
     }
 }

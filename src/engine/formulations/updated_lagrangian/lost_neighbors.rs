@@ -21,7 +21,7 @@ const GROWTH: f64 = 1.2;
 /// Largest support radius over the first one.
 const LARGEST: f64 = 2.0;
 
-/// Widens the support of particles that have lost neighbours; returns whether there are any, so that the lists have to be made again. What can fail may tear.
+/// Widens the support of particles that have lost neighbours; returns whether there are any, so that the lists have to be built again. What can fail may tear.
 pub(super) fn widen(
     packed: &UpdatedRows,
     world: &World,

@@ -22,7 +22,7 @@ use crate::world::{
     ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
-/// Updated-Lagrangian solid: neighbours, weights and corrections are made anew while the body deforms.
+/// Updated-Lagrangian solid: neighbours, weights and corrections are recomputed while the body deforms.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UpdatedLagrangian {

@@ -136,7 +136,7 @@ impl SolidPhase for UpdatedRows {
             velocity: velocity[row].0,
             rate: sum * inverse.to_matrix() * f_r,
             mobility: mobility.0,
-            own: f_r.transpose() * (*inverse * self.bonds.reach[row]),
+            own: f_r.transpose() * (*inverse * self.bonds.first_moment[row]),
         }
     }
 
@@ -148,7 +148,7 @@ impl SolidPhase for UpdatedRows {
             let pulled = *couple * self.gradient[row].transpose();
             let stress = pulled * self.bonds.inverse_moment[row].to_matrix() * (-1.0 / site.0[3]);
             self.stresses[row].add(&stress, site.xyz());
-            self.self_force[row] += stress * self.bonds.reach[row];
+            self.self_force[row] += stress * self.bonds.first_moment[row];
         }
     }
 

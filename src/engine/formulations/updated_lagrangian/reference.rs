@@ -16,7 +16,7 @@ use crate::world::{
     BodyId, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius, World,
 };
 
-/// Why the lists of a body cannot be made.
+/// Why the lists of a body cannot be built.
 pub(super) struct RenewError {
     pub body: BodyId,
     pub error: BondError,

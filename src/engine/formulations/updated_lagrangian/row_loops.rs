@@ -35,7 +35,7 @@ pub(super) struct Correction {
     /// Inverse moment matrix; zero where there is none.
     pub inverse: Sym3,
     /// `sum_j V_j w_ij x_ij`.
-    pub reach: DVec3,
+    pub first_moment: DVec3,
     /// `sum_j V_j w_ij`, 1/m2.
     pub weight_sum: f64,
 }
@@ -140,8 +140,13 @@ impl MeasurePairs<'_, '_> {
             match *source {
                 PairOrigin::Near { list, first, square } => {
                     let own = OwnParticle::new(a, &seen[i]);
-                    let count =
-                        sieve::<A, GHOSTS>(a, (seen, &own, i), list.row(i - first), square, &mut block.near);
+                    let count = keep_near::<A, GHOSTS>(
+                        a,
+                        (seen, &own, i),
+                        list.row(i - first),
+                        square,
+                        &mut block.near,
+                    );
                     block.reserve(used, count);
                     used = measure_near::<A, GHOSTS>(a, (seen, &own, i), count, used, block);
                 }
@@ -175,7 +180,7 @@ fn put(values: &mut [f64], at: usize, four: Lanes4) {
 
 /// Takes those candidates that are closer than the root of `square`; returns how many there are.
 #[inline(always)]
-fn sieve<A: FourLanes, const GHOSTS: bool>(
+fn keep_near<A: FourLanes, const GHOSTS: bool>(
     a: A,
     (seen, own, i): (&[SeenParticle], &OwnParticle<A>, usize),
     candidates: &[u32],
@@ -336,7 +341,7 @@ fn correction<A: FourLanes, const GHOSTS: bool>(
 ) -> Correction {
     let own = OwnParticle::new(a, &seen[i]);
     let (mut x, mut y, mut z) = (Vector::zero(a), Vector::zero(a), Vector::zero(a));
-    let (mut reach, mut weight_sum) = (Vector::zero(a), Number::zero(a));
+    let (mut first_moment, mut weight_sum) = (Vector::zero(a), Number::zero(a));
     for n in (0..row.len()).step_by(4) {
         let (arm, volume) = own.arms::<GHOSTS>(a, of(seen, four(row, n, i)));
         let mut weight = Lanes4::ZERO;
@@ -345,18 +350,19 @@ fn correction<A: FourLanes, const GHOSTS: bool>(
         }
         let volume_weight = volume * Number::new(a, weight);
         add_moment([&mut x, &mut y, &mut z], volume_weight, arm);
-        reach = arm.mul_add(volume_weight, reach);
+        first_moment = arm.mul_add(volume_weight, first_moment);
         weight_sum += volume_weight;
     }
     let [xx, xy, xz, yy] = a.sums([x.x.lanes(), x.y.lanes(), x.z.lanes(), y.y.lanes()]).0;
-    let [yz, zz, reach_x, reach_y] = a.sums([y.z.lanes(), z.z.lanes(), reach.x.lanes(), reach.y.lanes()]).0;
+    let [yz, zz, first_x, first_y] =
+        a.sums([y.z.lanes(), z.z.lanes(), first_moment.x.lanes(), first_moment.y.lanes()]).0;
     let [reach_z, weight_sum, _, _] =
-        a.sums([reach.z.lanes(), weight_sum.lanes(), Lanes4::ZERO, Lanes4::ZERO]).0;
+        a.sums([first_moment.z.lanes(), weight_sum.lanes(), Lanes4::ZERO, Lanes4::ZERO]).0;
     let moment = MomentMatrix::of(Sym3 { xx, yy, zz, xy, xz, yz }, A::AXES);
     let inverse = if seen[i].place.0[3] > 0.0 { moment.inverse() } else { None };
     Correction {
         inverse: inverse.unwrap_or_default(),
-        reach: DVec3::new(reach_x, reach_y, reach_z),
+        first_moment: DVec3::new(first_x, first_y, reach_z),
         weight_sum,
     }
 }

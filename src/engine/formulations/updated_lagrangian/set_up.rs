@@ -1,4 +1,4 @@
-//! What is made before the first step: the columns of the reference, and its lists.
+//! Set-up before the first step: the columns of the reference, and its lists.
 
 use glam::{DMat3, DVec3};
 

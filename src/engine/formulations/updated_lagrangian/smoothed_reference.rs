@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{Bonds, fit_gradients};
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSolid, for_each_block, run_hot_in};
+use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
 /// theta: it takes nine tenths of a saw-tooth along one axis of a square lattice at once, and all of a checkerboard.
@@ -55,7 +55,7 @@ pub(super) struct ReferenceSmoothing<'a> {
 #[derive(Default)]
 pub(super) struct ReferenceRelaxation {
     held: Vec<Expected>,
-    pulls: Vec<Pull>,
+    pulls: Vec<DisplacementSum>,
     /// What a place has moved from its particle, m, with the volume of what holds.
     moved: Vec<Lanes4>,
     next: Vec<Lanes4>,
@@ -89,7 +89,7 @@ impl Expected {
 
 /// What moves a place.
 #[derive(Clone, Copy, Default)]
-struct Pull {
+struct DisplacementSum {
     /// `sum_j V_j w_ij [x_ij - (F_i + F_j) X_ij / 2]`, with `sum_j V_j w_ij` in the last lane.
     sum: Lanes4,
     /// theta over `sum_j V_j w_ij`; zero where nothing moves.
@@ -107,7 +107,7 @@ impl ReferenceRelaxation {
         self.expect(by, &rows, places);
         let Self { held, pulls, moved, next } = self;
         let (bonds, ghosts, start) = (&by.packed.bonds, &by.packed.ghosts, rows.start);
-        for_each_block(&mut pulls[rows.clone()], &mut Vec::new(), &|first, pulls: &mut [Pull]| {
+        for_each_block(&mut pulls[rows.clone()], &mut Vec::new(), &|first, pulls: &mut [DisplacementSum]| {
             run_hot_in(by.plane, Pulls { bonds, held, first: start + first, pulls });
         });
         let farthest = FARTHEST * by.h;
@@ -140,7 +140,7 @@ impl ReferenceRelaxation {
         };
         let Self { held, pulls, moved, next } = self;
         held.resize(sites.len(), Expected::default());
-        pulls.resize(volume.len(), Pull::default());
+        pulls.resize(volume.len(), DisplacementSum::default());
         moved.resize(sites.len(), Lanes4::ZERO);
         next.resize(sites.len(), Lanes4::ZERO);
         let own = (&mut held[rows.clone()], &mut next[rows.clone()]);
@@ -171,17 +171,17 @@ struct Pulls<'a> {
     held: &'a [Expected],
     /// First row of the block in the phase.
     first: usize,
-    pulls: &'a mut [Pull],
+    pulls: &'a mut [DisplacementSum],
 }
 
-impl PlaneOrSolid for Pulls<'_> {
+impl PlaneOrSpace for Pulls<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, held, first, pulls } = self;
         for (k, pull) in pulls.iter_mut().enumerate() {
             let i = first + k;
             let own = &held[i];
-            *pull = Pull::default();
+            *pull = DisplacementSum::default();
             if own.place.0[3] == 0.0 {
                 continue;
             }
@@ -197,7 +197,7 @@ impl PlaneOrSolid for Pulls<'_> {
             }
             if total > 0.0 {
                 let sum = own.pull(a, &columns, place, total);
-                *pull = Pull { sum: Lanes4::new(sum, total), factor: SHARE / total };
+                *pull = DisplacementSum { sum: Lanes4::new(sum, total), factor: SHARE / total };
             }
         }
     }
@@ -227,7 +227,7 @@ impl Expected {
 /// Moves the places of a block once.
 struct Moves<'a> {
     bonds: &'a Bonds,
-    pulls: &'a [Pull],
+    pulls: &'a [DisplacementSum],
     moved: &'a [Lanes4],
     /// First row of the block in the phase.
     first: usize,
@@ -237,13 +237,13 @@ struct Moves<'a> {
     is_first: bool,
 }
 
-impl PlaneOrSolid for Moves<'_> {
+impl PlaneOrSpace for Moves<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, pulls, moved, first, farthest, next, is_first } = self;
         for (k, next) in next.iter_mut().enumerate() {
             let i = first + k;
-            let (own, Pull { sum, factor }) = (moved[i], pulls[i]);
+            let (own, DisplacementSum { sum, factor }) = (moved[i], pulls[i]);
             let mut pull = sum;
             if !is_first && factor > 0.0 {
                 pull = a.scale_add(-sum.0[3], own, pull);

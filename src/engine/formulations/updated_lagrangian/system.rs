@@ -211,7 +211,7 @@ impl UpdatedSolids {
     /// material holds together keeps the one that it has.
     fn is_due(&mut self, k: usize, step: &mut Step<'_>, packed: &UpdatedRows) -> Result<bool, MissingColumn> {
         let body = step.world.body(self.solids.id(k));
-        let (rows, number) = (body.rows.clone(), step.turn.number());
+        let (rows, number) = (body.rows.clone(), step.part.number());
         if self.keeps[k] || !self.rules[k].is_due(rows.clone(), number, packed) {
             return Ok(false);
         }
@@ -232,7 +232,7 @@ impl UpdatedSolids {
 
     /// Makes the present configuration the reference of the bodies that are due, among them those of which particles have been removed or have failed.
     ///
-    /// The second kick of the step uses the new forces, the motion up to here was made by the old ones: what that takes from the motion is booked with the
+    /// The second kick of the step uses the new forces, the motion up to here has used the old ones: what that takes from the motion is booked with the
     /// change of the stored energies.
     fn update(
         &mut self,

@@ -10,7 +10,7 @@ use crate::world::{BodyId, World};
 
 /// Stored energy over what was there at the start or supplied since, beyond which the run is stopped.
 const FACTOR: f64 = 10.0;
-/// Steps in a row for which that must hold: the books of a plugin may lag behind by a step. An instability can take
+/// Steps in a row for which that must hold: the account of a plugin may lag behind by a step. An instability can take
 /// two orders of magnitude of energy a step, so that more patience would see numbers overflow first.
 const PATIENCE: u32 = 3;
 

@@ -14,7 +14,7 @@ use crate::parallel::{Arithmetic, Vector};
 pub struct ArrangementPass<'a, F> {
     /// The particles.
     pub cloud: &'a FlowCloud,
-    /// What is made of the row in the cloud, the moment matrix and the first moment.
+    /// The result for the row in the cloud, the moment matrix and the first moment.
     pub output: F,
 }
 

@@ -1,4 +1,4 @@
-//! All particles that a fluid meets, as one cloud: the fluids first, then what bounds them.
+//! All particles of a flow as one cloud: the fluids first, then the boundary particles.
 
 use glam::DVec3;
 
@@ -41,7 +41,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) viscosities: Viscosities,
     pub(in crate::formulations::fluid) plane: bool,
     pub(in crate::formulations::fluid) periods: Periods,
-    /// Positions of what bounds the flow at the start of the step, of bodies that take sub-steps alone.
+    /// Positions of boundary particles at the start of the step, of bodies that take sub-steps alone.
     pub(in crate::formulations::fluid) before: Vec<DVec3>,
     pub(in crate::formulations::fluid) records: Vec<FlowParticle>,
     pub(in crate::formulations::fluid) pairs: FlowPairs,
@@ -124,7 +124,7 @@ impl FlowCloud {
         self.groups.iter().find(|group| group.body == body).and_then(Group::fluid)
     }
 
-    /// Number of neighbours within the support of every particle of a fluid body, what bounds the fluid included.
+    /// Number of neighbours within the support of every particle of a fluid body, boundary particles included.
     pub fn neighbor_counts(&self, body: BodyId) -> Option<Vec<usize>> {
         let group = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())?;
         let count = |i: usize| {

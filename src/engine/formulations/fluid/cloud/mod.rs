@@ -1,4 +1,4 @@
-//! All particles that a fluid meets, as one cloud that is packed, searched and sorted in the course of the run.
+//! All particles of a flow as one cloud that is packed, searched and sorted in the course of the run.
 
 mod group;
 

@@ -3,7 +3,7 @@
 //! Friction that is frozen in the long step lags: a part of the body that swings there and back within some steps of the flow is pushed on by what should
 //! slow it down. So the sub-steps add what the friction changes by the motion of the body, with frozen weights:
 //!
-//! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was made with, and `c_w = 2 sum_f V_w V_f 4 mu w_wf`.
+//! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was computed with, and `c_w = 2 sum_f V_w V_f 4 mu w_wf`.
 //!
 //! At the end of the long step the body gets what it lacks of dt/2 (f(n) + f(n+1)), as the fluid has: momentum is kept.
 
@@ -22,7 +22,7 @@ crate::column! {
     pub struct CouplingDrag(f64) = "coupling_drag", "c_w", "kg/s";
 }
 crate::column! {
-    /// Velocity that the frozen friction was made with.
+    /// Velocity that the frozen friction was computed with.
     pub struct CouplingMotion(glam::DVec3) = "coupling_motion", "v_w(n)", "m/s";
 }
 crate::column! {
@@ -117,11 +117,11 @@ type Rows<'a> = (&'a mut [Force], &'a [Velocity], DragRows<'a>);
 impl Run for Drag {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         // In one sub-step there is nothing to follow.
-        if !step.turn.is_part() {
+        if !step.part.is_sub_step() {
             return Ok(());
         }
         let half = 0.5 * step.clock.dt;
-        for body in step.turn.due(step.world, &self.bodies) {
+        for body in step.part.due(step.world, &self.bodies) {
             let (view, rows) = step.world.body_view(body);
             let (mut force, velocity) = (view.write::<Force>()?, view.read::<Velocity>()?);
             let mut columns = DragColumns::new(&view)?;
@@ -153,7 +153,7 @@ impl DragRows<'_> {
         self.damping.get(k).map_or(DVec3::ZERO, |damping| damping.0)
     }
 
-    /// Begins a long step of particle `k` with friction made at that velocity, m/s. Returns the work of the change of friction in the last one, J.
+    /// Begins a long step of particle `k` with friction computed at that velocity, m/s. Returns the work of the change of friction in the last one, J.
     pub fn begin(&mut self, k: usize, drag: f64, velocity: DVec3) -> f64 {
         if k >= self.drag.len() {
             return 0.0;

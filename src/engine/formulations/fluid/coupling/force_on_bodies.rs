@@ -7,10 +7,10 @@
 
 use glam::DVec3;
 
+use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
-use super::late_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};

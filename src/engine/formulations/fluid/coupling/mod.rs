@@ -4,11 +4,11 @@ mod exchange;
 
 mod drag;
 
-mod late_impulse;
+mod correction_impulse;
 
 mod force_on_bodies;
 
-mod ringing;
+mod sub_cycled;
 
 pub use force_on_bodies::add_force_on_bodies;
-pub use ringing::damp_ringing;
+pub use sub_cycled::damp_sub_cycled_bodies;

@@ -84,7 +84,7 @@ impl FluidKernel {
     /// (1 - q)^5 (1 + 5 q) and (1 - q)^7 (1 + 7 q + 16 q^2).
     #[inline(always)]
     pub(in crate::formulations::fluid) fn shapes<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
-        let s = a.or_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
+        let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
         let square = a.times(s, s);
         let cube = a.times(square, s);
         let q = a.scale(self.inverse_support, r);
@@ -121,7 +121,7 @@ impl FluidKernel {
     /// (1 - q)^8 (1 + 8 q + 25 q^2 + 32 q^3).
     #[inline(always)]
     pub fn values<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
-        let s = a.or_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
+        let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
         let square = a.times(s, s);
         let fourth = a.times(square, square);
         let one = a.splat(1.0);
@@ -209,7 +209,7 @@ pub struct WendlandC2Lanes {
 impl PairShape for WendlandC2Lanes {
     #[inline(always)]
     fn shape<A: Arithmetic>(self, a: A, r: A::Lanes) -> A::Lanes {
-        let s = a.or_zero(a.scale_add(self.slope, r, a.splat(1.0)));
+        let s = a.max_zero(a.scale_add(self.slope, r, a.splat(1.0)));
         a.times(a.times(s, s), s)
     }
 }
@@ -239,7 +239,7 @@ const QUINTIC_WEIGHT: f64 = 1.0 / 72.0;
 #[inline(always)]
 fn spline<A: Arithmetic, const N: usize>(a: A, q: A::Lanes) -> A::Lanes {
     let power = |knot: f64| {
-        let s = a.or_zero(a.scale_add(-3.0, q, a.splat(knot)));
+        let s = a.max_zero(a.scale_add(-3.0, q, a.splat(knot)));
         let square = a.times(s, s);
         let fourth = a.times(square, square);
         if N == 5 { a.times(fourth, s) } else { fourth }

@@ -76,7 +76,7 @@ impl Periods {
 /// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer.
 const SHIFT: f64 = 6755399441055744.0;
 
-/// A particle in every lane, made once for all of its neighbours.
+/// A particle in every lane, packed once for all of its neighbours.
 #[derive(Clone, Copy)]
 pub struct OwnRecord<const D: usize> {
     /// x_i per axis.

@@ -19,7 +19,7 @@ pub struct Skins {
     pub support: f64,
     /// Skin of the lists of fluids among themselves.
     pub fluid: f64,
-    /// Skin of the lists of fluids and what bounds them.
+    /// Skin of the lists of fluids and boundary particles.
     pub walls: f64,
     /// Skin of the lists of boundaries among themselves; without end where there are none.
     pub gaps: f64,
@@ -27,7 +27,7 @@ pub struct Skins {
 
 /// Skin of the neighbour lists of fluids over their spacing.
 const SKIN: f64 = 0.4;
-/// The same of fluids and what bounds them: fluids slide along walls, and few particles are near one.
+/// The same of fluids and boundary particles: fluids slide along walls, and few particles are near one.
 const WALL_SKIN: f64 = 0.8;
 
 impl Skins {
@@ -45,7 +45,7 @@ impl Skins {
     }
 }
 
-/// Displacements in a cell: of fluids, and of what bounds them.
+/// Displacements in a cell: of fluids, and of boundary particles.
 type Pair = [DisplacementBounds; 2];
 
 /// The cells, with the particles that were in each when the lists were built.

@@ -27,7 +27,7 @@ pub struct FlowPairs {
     search: NeighborSearch,
     /// Fluid neighbours of each fluid particle.
     pub fluid: NeighborList,
-    /// Neighbours of each fluid particle among what bounds it, as rows of the cloud.
+    /// Neighbours of each fluid particle among the boundary particles, as rows of the cloud.
     pub walls: NeighborList,
     /// Fluid neighbours of each boundary particle; row 0 is the first particle after the fluid.
     pub boundary: NeighborList,

@@ -11,7 +11,7 @@ use crate::formulations::fluid::lanes::{
 };
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
-    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows_of,
+    FourLanes, Lanes4, PlaneOrSpace, Split, for_each_own_block, run_hot_in, share_rows_of,
 };
 use crate::schedule::{Run, Step, StepError};
 
@@ -76,7 +76,7 @@ struct CompressionRows<'a> {
     near: NearWriter<'a>,
 }
 
-impl PlaneOrSolid for CompressionRows<'_> {
+impl PlaneOrSpace for CompressionRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }

@@ -1,4 +1,4 @@
-//! The system that makes the forces of a flow, and its opposite on what bounds it.
+//! The system that computes the forces of a flow, and their opposite on the boundary particles.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ use crate::parallel::{for_each_block, share_wide_rows};
 use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
-/// Label of the system that makes the forces of fluids and walls.
+/// Label of the system that computes the forces of fluids and walls.
 pub const FLUID_FORCE: &str = "fluid_force";
 
 /// Declares what the force of a flow reads of the particles beside each.

@@ -12,9 +12,9 @@ use glam::DVec3;
 use super::pair_sums::{Between, Forces, PairsOfRow};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
 use crate::formulations::fluid::lanes::{FluidKernel, OwnRecord, sums};
-use crate::pair::{BoundTerms, Extras, Fastest, PairBatch, PhaseTerms, TermRows, with_batch};
+use crate::pair::{BoundTerms, Extras, PairBatch, PhaseTerms, RateBounds, TermRows, with_batch};
 use crate::parallel::{
-    BlockSum, FourLanes, PlaneOrSolid, Split, for_each_own_block, run_hot_in, share_rows, share_wide_rows,
+    BlockSum, FourLanes, PlaneOrSpace, Split, for_each_own_block, run_hot_in, share_rows, share_wide_rows,
 };
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
@@ -61,7 +61,7 @@ impl PairForce<'_> {
         });
     }
 
-    /// [`PairForce::run_own`] with the pair terms of the body, which get the geometry of each row as the pass has made it.
+    /// [`PairForce::run_own`] with the pair terms of the body, which get the geometry of each row as the pass has computed it.
     pub fn run_with(
         &self,
         terms: &mut PhaseTerms,
@@ -73,7 +73,7 @@ impl PairForce<'_> {
         let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
             let rows = ForceRows { written, parts: &mut *parts };
             for_each_own_block(rows, sums, &|first, rows| {
-                let mut fastest = Fastest::default();
+                let mut fastest = RateBounds::default();
                 with_batch(|batch| {
                     let terms = Some(Terms { terms, batch, fastest: &mut fastest });
                     run_hot_in(self.cloud.plane, PairForceRows { pass: self, first, rows, terms });
@@ -97,10 +97,10 @@ struct PairForceRows<'a> {
 struct Terms<'a> {
     terms: &'a BoundTerms<'a>,
     batch: &'a mut PairBatch,
-    fastest: &'a mut Fastest,
+    fastest: &'a mut RateBounds,
 }
 
-impl PlaneOrSolid for PairForceRows<'_> {
+impl PlaneOrSpace for PairForceRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.pass.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }

@@ -2,7 +2,7 @@
 
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
 use crate::formulations::fluid::lanes::{FluidKernel, Four, MASKS, OwnRecord, as_rows, dot, filled_up};
-use crate::pair::{FourPairs, Room};
+use crate::pair::{FourPairs, RowSlots};
 use crate::parallel::{FourLanes, Lanes4};
 
 /// The pairs of a particle with the neighbours in `row`.
@@ -193,7 +193,7 @@ impl<const D: usize> PairsOfRow<'_, D> {
     pub fn add_and_keep<A: FourLanes, const P: bool>(
         &self,
         a: A,
-        Room { pairs, rows, .. }: Room<'_>,
+        RowSlots { pairs, rows, .. }: RowSlots<'_>,
         with_kernel: bool,
         forces: &mut Forces<D>,
     ) {

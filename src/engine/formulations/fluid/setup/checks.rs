@@ -115,7 +115,7 @@ pub fn wall_is_thick(
     Ok(Some(format!("{message}: fluid on one side acts on that on the other; {help}")))
 }
 
-/// An error where a fluid starts faster than its sound, against what bounds it.
+/// An error where a fluid starts faster than its sound, relative to its boundaries.
 pub fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
     cloud.pack(world).map_err(|error| SetupError::internal(&error))?;
     for group in &cloud.groups {

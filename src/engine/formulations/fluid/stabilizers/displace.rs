@@ -1,4 +1,4 @@
-//! Displacements that are no motion: shifting and smoothing of fluid particles.
+//! Non-advective displacements: shifting and smoothing of fluid particles.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Flows against naive second implementations, closed forms, and the books.
+//! Flows against naive second implementations, closed forms, and the energy balance.
 
 use glam::{DMat3, DVec3};
 
@@ -52,7 +52,7 @@ struct Particle {
     volume: f64,
 }
 
-/// The particles of both bodies; walls with pressure and velocity made anew from the fluid.
+/// The particles of both bodies; walls with pressure and velocity recomputed from the fluid.
 fn particles(sim: &Simulation, no_slip: bool, kernel: &Kernel, h: f64) -> (Vec<Particle>, Vec<Particle>) {
     let (x, v) = (column::<Position>(sim, 0), column::<Velocity>(sim, 0));
     let (rho, m) = (column::<Density>(sim, 0), column::<Mass>(sim, 0));

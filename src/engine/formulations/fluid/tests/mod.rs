@@ -18,7 +18,7 @@ mod worn;
 
 mod thin;
 
-mod ringing;
+mod sub_cycled;
 
 mod noticing;
 

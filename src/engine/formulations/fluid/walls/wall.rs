@@ -1,4 +1,4 @@
-//! The wall formulation: particles that bound a fluid, and move only as they are told.
+//! The wall formulation: particles that bound a fluid, and move as prescribed.
 
 use glam::DVec3;
 use schemars::JsonSchema;

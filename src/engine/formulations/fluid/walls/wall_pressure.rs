@@ -13,7 +13,7 @@ use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
 use crate::parallel::{
-    FourLanes, Lanes4, PlaneOrSolid, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
+    FourLanes, Lanes4, PlaneOrSpace, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
 };
 use crate::ranks;
 
@@ -93,7 +93,7 @@ struct WallPressureRows<'a> {
     near: NearWriter<'a>,
 }
 
-impl PlaneOrSolid for WallPressureRows<'_> {
+impl PlaneOrSpace for WallPressureRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }

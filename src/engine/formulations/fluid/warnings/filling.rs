@@ -1,6 +1,6 @@
 //! Gaps and swelling: whether as much fluid is where the particles are as their densities say.
 //!
-//! `sum_j V_j W_ij`, the particle itself and what bounds the flow included, is one wherever the volumes m / rho fill space. The density of a
+//! `sum_j V_j W_ij`, the particle itself and boundary particles included, is one wherever the volumes m / rho fill space. The density of a
 //! particle is moved by the velocities around it and does not see gaps.
 
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Whether the lattices of a fluid and of what bounds it fit at the start.
+//! Whether the lattices of a fluid and of its boundaries fit at the start.
 //!
 //! Where particles of the two overlap or leave a gap, the densities of the fluid do not know it: a surface acts as if it stood elsewhere, by up to half a spacing, and forces are those of
 //! uneven particles. `sum_j V_j W_ij` of the particles beside the boundary shows it.
@@ -11,7 +11,7 @@ use crate::world::BodyId;
 /// Distance of the particles beside a boundary from one of its particles, over their spacing.
 const BESIDE: f64 = 1.5;
 /// Root mean square difference of the filling beside a boundary from that in the fluid that is worth a warning: a gap of a quarter of a spacing along a plane. Round bodies in square lattices have 0.03.
-const MISFIT: f64 = 0.04;
+const LARGEST_DEVIATION: f64 = 0.04;
 /// Least number of particles for a mean.
 const LEAST: usize = 8;
 /// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both spacings: half a spacing to two of empty space. What is farther away is to fall.
@@ -62,9 +62,9 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
             };
             let beside: Vec<f64> =
                 rows().filter(|(i, _)| is_beside(*i)).map(|(_, filling)| filling / even).collect();
-            let misfit = mean(beside.iter().map(|filling| (filling - 1.0).powi(2))).sqrt();
-            if beside.len() >= LEAST && misfit > MISFIT {
-                let text = text(names(), mean(beside.iter().copied()), misfit);
+            let deviation = mean(beside.iter().map(|filling| (filling - 1.0).powi(2))).sqrt();
+            if beside.len() >= LEAST && deviation > LARGEST_DEVIATION {
+                let text = text(names(), mean(beside.iter().copied()), deviation);
                 step.warnings.push(text);
             }
         }
@@ -97,13 +97,13 @@ fn text_of_gap([fluid, boundary]: [&String; 2], count: usize, gap: f64) -> Strin
     )
 }
 
-fn text([fluid, boundary]: [&String; 2], filling: f64, misfit: f64) -> String {
+fn text([fluid, boundary]: [&String; 2], filling: f64, deviation: f64) -> String {
     format!(
         "the lattices of `{fluid}` and `{boundary}` do not fit at the start: beside `{boundary}` particles fill {:.1} % of space, with a deviation of {:.1} % (root mean square); the surface acts as if it were \
          up to half a spacing elsewhere. Put it on a multiple of the spacing from where the lattice of `{fluid}` begins, turn both shapes together (`Rotate(shape: Difference(...))`), or give both \
          `lattice: Relaxed(seed: 1, iterations: 30)`",
         100.0 * filling,
-        100.0 * misfit
+        100.0 * deviation
     )
 }
 

@@ -12,7 +12,7 @@ use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, ReferenceVolume};
 
-/// Frames in sequence in which a body is held down before it is told of: what falls onto a body presses it down for a moment.
+/// Frames in sequence in which a body is held down before it is reported: what falls onto a body presses it down for a moment.
 const FRAMES: u32 = 3;
 /// Way from one frame to the next, over the spacing of the fluid, up to which a body stays where it is.
 const STILL: f64 = 0.05;

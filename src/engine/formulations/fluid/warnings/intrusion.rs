@@ -1,4 +1,4 @@
-//! Fluid particles inside of what bounds the flow.
+//! Fluid particles inside of the boundaries of the flow.
 //!
 //! A particle is taken back to where it would be in the body as the scene has it, by the affine map that fits the particles of the body around
 //! it, and is compared with the shape of the body there.

@@ -1,4 +1,4 @@
-//! What a flow must not do, looked at on the way: particles inside of what bounds it, compression, gaps and swelling, rows that break up.
+//! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps and swelling, rows that break up.
 
 use super::compression::CompressionWatch;
 use super::filling::FillingWatch;

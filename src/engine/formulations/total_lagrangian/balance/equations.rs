@@ -87,7 +87,7 @@ impl Equations {
         Self { rows: SparseRows::default(), rest: Vec::new(), unknown, column, balances: Vec::new() }
     }
 
-    /// Adds a coefficient of the share of a kind to the row that is being made.
+    /// Adds a coefficient of the share of a kind to the row that is being assembled.
     fn add(&mut self, kind: Option<u32>, value: f64) {
         if let Some(column) = kind.and_then(|kind| self.column[kind as usize]) {
             self.rows.add(column, value / self.unknown[column as usize].weight);

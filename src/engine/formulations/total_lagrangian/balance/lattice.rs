@@ -38,7 +38,7 @@ pub(super) struct Share {
 }
 
 impl BondLattice {
-    /// That of some particles. None if the bonds cannot be made.
+    /// That of some particles. None if the bonds cannot be computed.
     pub fn new(body: &HeldBody<'_>, particles: &[Placed], repeats: &[Repeat]) -> Option<Self> {
         let (numbers, position): (Vec<u32>, Vec<DVec3>) = particles.iter().copied().unzip();
         let volume: Vec<f64> = numbers.iter().map(|&k| body.plan.sites[k as usize].volume).collect();

@@ -26,7 +26,7 @@ pub(super) struct Lattices {
 }
 
 impl Lattices {
-    /// None where bonds cannot be made.
+    /// None where bonds cannot be computed.
     pub fn of(body: &HeldBody<'_>, zone: &Zone, kinds: &Kinds) -> Option<Self> {
         let plan = body.plan;
         let place = |k: u32| plan.sites[k as usize].position;

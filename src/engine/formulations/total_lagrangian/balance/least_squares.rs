@@ -16,12 +16,12 @@ const MOST: usize = 1000;
 const ON_BOUND: f64 = 1e-12;
 
 impl SparseRows {
-    /// Adds to the row that is being made.
+    /// Adds to the row that is being assembled.
     pub fn add(&mut self, column: u32, value: f64) {
         self.entries.push((column, value));
     }
 
-    /// Ends the row that is being made: what has been added to one column of it is one entry.
+    /// Ends the row that is being assembled: what has been added to one column of it is one entry.
     pub fn end(&mut self) {
         let start = self.ends.last().copied().unwrap_or(0);
         let mut row = self.entries.split_off(start);

@@ -33,7 +33,7 @@ use super::super::spread::{DisplacementMoment, fit};
 use super::rows::{BondedSites, HessianBody, HessianRows};
 use crate::linalg::Sym3;
 use crate::parallel::{
-    FourLanes, Lanes4, PlaneOrSolid, for_each_block, for_each_own_block, run_hot_in, share_rows,
+    FourLanes, Lanes4, PlaneOrSpace, for_each_block, for_each_own_block, run_hot_in, share_rows,
     sum_over_own_blocks,
 };
 use crate::solids::{
@@ -205,7 +205,7 @@ struct ResidualBlock<'a, 'r> {
     energy: &'r mut FoldedEnergy,
 }
 
-impl PlaneOrSolid for ResidualBlock<'_, '_> {
+impl PlaneOrSpace for ResidualBlock<'_, '_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Residuals { bonds, sites, slopes, frame, loose, moves } = *self.pass;
@@ -219,7 +219,7 @@ impl PlaneOrSolid for ResidualBlock<'_, '_> {
             for axis in 0..D {
                 sum = a.scale_add(-site.reference.0[axis], of_others.columns[axis], sum);
             }
-            let sum = sum.xyz() + slopes[i].times(bonds.reach[i], DVec3::ZERO);
+            let sum = sum.xyz() + slopes[i].times(bonds.first_moment[i], DVec3::ZERO);
             let before = (residual[k].0, held[k].0);
             let h = 0.5 * support[k].0;
             let now = sum * h;
@@ -244,7 +244,7 @@ impl PlaneOrSolid for ResidualBlock<'_, '_> {
     }
 }
 
-/// Second pass: the stress that makes the force.
+/// Second pass: the stress from which the force follows.
 fn add_forces(
     bonds: &Bonds,
     pulls: &[PackedParticle],
@@ -270,7 +270,7 @@ struct ForceBlock<'a> {
     self_force: &'a mut [DVec3],
 }
 
-impl PlaneOrSolid for ForceBlock<'_> {
+impl PlaneOrSpace for ForceBlock<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
         let Self { bonds, pulls, first, stresses, self_force } = self;
@@ -285,7 +285,7 @@ impl PlaneOrSolid for ForceBlock<'_> {
             let own = DMat3::from_cols(own[0].xyz(), own[1].xyz(), own[2].xyz()) * 0.5;
             stress.add(&own, x);
             stress.add_traction(-pull);
-            *self_force += own * bonds.reach[i] + pull * bonds.weight_sum[i];
+            *self_force += own * bonds.first_moment[i] + pull * bonds.weight_sum[i];
         }
     }
 }

@@ -227,8 +227,8 @@ impl HotLoop for AdjointStress<'_> {
         for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
             let i = first + k;
             let x = sites[i].reference.xyz();
-            let reach = bonds.reach[i];
-            let mut sum = theta[i] * shift[i].dot(reach);
+            let first_moment = bonds.first_moment[i];
+            let mut sum = theta[i] * shift[i].dot(first_moment);
             for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
                 let j = bonds.neighbors[bond] as usize;
                 let other = &sites[j].reference;
@@ -237,7 +237,7 @@ impl HotLoop for AdjointStress<'_> {
             }
             let own = sum * bonds.inverse_moment[i].to_matrix() * eta;
             stress.add(&own, x);
-            *self_force += own * reach;
+            *self_force += own * first_moment;
         }
     }
 }

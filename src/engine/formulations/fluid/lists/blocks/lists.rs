@@ -63,13 +63,13 @@ impl BlockLists {
         }
     }
 
-    /// The bits of the particles of a block that see its neighbours, fluids and what bounds them, where some hide.
+    /// The bits of the particles of a block that see its neighbours, fluids and boundary particles, where some hide.
     #[inline(always)]
     pub fn seen(&self, block: usize) -> (&[u8], &[u8]) {
         (self.fluid.lanes(block), &self.seen_walls[self.walls.range(block)])
     }
 
-    /// Makes blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each particle among what bounds the flow.
+    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each particle among the boundary particles.
     pub fn build(
         &mut self,
         sources: &ListSources<'_>,

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::lists::BlockLists;
 use super::record::{Packed, Units};
 use crate::formulations::fluid::lists::NearRows;
-use crate::pair::Fastest;
+use crate::pair::RateBounds;
 use crate::parallel::{BLOCK, Lanes8, own_rows};
 use crate::ranks::Halo;
 
@@ -25,7 +25,7 @@ pub struct Blocks {
     /// What the pass of the force sums for each block.
     pub forces: Vec<Lanes8>,
     /// The largest rates of the pair terms in blocks of the pass.
-    pub fastest: Vec<Fastest>,
+    pub fastest: Vec<RateBounds>,
     /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are then written down in every step.
     pub hides: bool,
 }

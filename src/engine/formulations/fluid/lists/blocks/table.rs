@@ -1,7 +1,7 @@
 //! Which particles are a block: eight that are near each other.
 //!
 //! The particles of a body are sorted into cells of some spacings, and runs of them are halved along the longest side of their box until eight are left: compact boxes have few
-//! neighbours in common. They are made anew with the lists. A box stays smaller than the support; where particles are far apart, lanes of a block are left without one.
+//! neighbours in common. They are rebuilt with the lists. A box stays smaller than the support; where particles are far apart, lanes of a block are left without one.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;

@@ -7,14 +7,14 @@ use super::pairs::{BlockForces, PairsOfBlock, hide};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
 use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, OwnBlock, Packed};
-use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, Fastest, PhaseTerms, TermRows, TermSums};
+use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, PhaseTerms, RateBounds, TermRows, TermSums};
 use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 use glam::DVec3;
 
 thread_local! {
-    /// The pairs of a block with some neighbours; kept, so that it is not made anew for every task.
+    /// The pairs of a block with some neighbours; kept, so that it is not allocated for every task.
     static PAIRS: RefCell<BlockPairs> = const { RefCell::new(BlockPairs::EMPTY) };
 }
 
@@ -54,7 +54,7 @@ impl BlockForce<'_> {
         Ok(())
     }
 
-    fn sum(&mut self, terms: Option<&BoundTerms<'_>>, count: usize) -> Fastest {
+    fn sum(&mut self, terms: Option<&BoundTerms<'_>>, count: usize) -> RateBounds {
         let range = self.blocks.lists.table.of_fluid(self.number);
         let stride = stride(count);
         let Blocks { forces, fastest, .. } = &mut *self.blocks;
@@ -93,13 +93,13 @@ struct AllForceBlocks<'a> {
     pass: Pass<'a>,
     first: usize,
     rows: BlockSums<'a>,
-    sums: &'a mut Vec<Fastest>,
+    sums: &'a mut Vec<RateBounds>,
 }
 
 impl KernelLoop for AllForceBlocks<'_> {
-    type Output = Fastest;
+    type Output = RateBounds;
 
-    fn run<K: PairShape>(self, kernel: K) -> Fastest {
+    fn run<K: PairShape>(self, kernel: K) -> RateBounds {
         let Self { pass, first, rows, sums } = self;
         for_each_own_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
             PAIRS.with_borrow_mut(|pairs| {
@@ -119,17 +119,17 @@ struct ForceBlocks<'a, K> {
 }
 
 impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
-    type Output = Fastest;
+    type Output = RateBounds;
 
     #[inline(always)]
-    fn run<A: EightLanes>(self, a: A) -> Fastest {
+    fn run<A: EightLanes>(self, a: A) -> RateBounds {
         let Self { pass, kernel, first, rows: BlockSums { lanes, stride }, pairs } = self;
         let Pass { cloud, group, blocks, terms, count } = *pass;
         let Blocks { lists, units, packed, near, hides, .. } = blocks;
         let packed: &[Packed] = packed;
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
         let factor = cloud.viscosities.factor();
-        let mut fastest = Fastest::default();
+        let mut fastest = RateBounds::default();
         let mut of_terms: AllSums = Default::default();
         for k in 0..lanes.len() / stride {
             let rows = &lists.table.rows[first + k];

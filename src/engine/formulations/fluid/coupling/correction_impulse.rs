@@ -58,7 +58,7 @@ impl Particles<'_> {
             for k in 0..rows.rows() {
                 let i = first + k;
                 let (mass, mobility) = (self.mass[i].0, self.mobility[i].0);
-                let late = self.late_impulse(i, k, &rows);
+                let late = self.correction_impulse(i, k, &rows);
                 let before = rows.velocity[k].0;
                 let kick = late * mobility;
                 sum.kinetic += mass * kick.dot(before + 0.5 * kick);
@@ -85,7 +85,7 @@ impl Particles<'_> {
     }
 
     /// What particle `i` lacks of dt/2 (f(n) + f(n+1)), N s.
-    fn late_impulse(&self, i: usize, k: usize, rows: &ParticleRows<'_>) -> DVec3 {
+    fn correction_impulse(&self, i: usize, k: usize, rows: &ParticleRows<'_>) -> DVec3 {
         let given = rows.drag.as_ref().map_or(DVec3::ZERO, |drag| drag.impulse(k));
         0.5 * self.dt * (self.force_now(i).0 - rows.frozen[k].0) - given
     }
@@ -130,12 +130,12 @@ pub fn give_to_rigid_body(
     let (mut push, mut change) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
     for i in 0..rows.rows() {
         let lever = particles.records[i].position() - body.state.center;
-        let late = if half > 0.0 { particles.late_impulse(i, i, &rows) / half } else { DVec3::ZERO };
+        let late = if half > 0.0 { particles.correction_impulse(i, i, &rows) / half } else { DVec3::ZERO };
         let next = particles.change(i, i, &rows);
         push = [push[0] + late, push[1] + lever.cross(late)];
         change = [change[0] + next, change[1] + lever.cross(next)];
     }
-    let (kinetic, constraints) = body.push_late(push, change, half);
+    let (kinetic, constraints) = body.correct(push, change, half);
     let mut sum = Exchange { kinetic, constraints, ..Exchange::default() };
     for i in 0..rows.rows() {
         let before = rows.velocity[i].0;

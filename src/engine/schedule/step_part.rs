@@ -4,7 +4,7 @@ use crate::world::{BodyId, BodySet, PhaseId, World};
 
 /// When a system runs in a step in which some phases are sub-cycled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
+pub enum Cadence {
     /// Once: it touches phases that are not sub-cycled, or says so by [`System::in_long_steps`](super::System::in_long_steps).
     Long,
     /// In every sub-step: all phases that it touches are sub-cycled.
@@ -15,14 +15,14 @@ pub enum Pace {
 
 /// Which part of a step runs now: the long step, or one of the sub-steps in it.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn<'s> {
+pub struct StepPart<'s> {
     short: bool,
     part: bool,
     number: u64,
     sub_cycled: &'s [PhaseId],
 }
 
-impl<'s> Turn<'s> {
+impl<'s> StepPart<'s> {
     /// The long step of this number; without sub-cycled phases, the whole of the step.
     pub fn long(sub_cycled: &'s [PhaseId], number: u64) -> Self {
         Self { short: false, part: false, number, sub_cycled }
@@ -40,7 +40,7 @@ impl<'s> Turn<'s> {
     }
 
     /// Whether this is one of several sub-steps in a long one.
-    pub fn is_part(self) -> bool {
+    pub fn is_sub_step(self) -> bool {
         self.part
     }
 
@@ -54,12 +54,12 @@ impl<'s> Turn<'s> {
         bodies.iter().filter(move |&body| self.is_due(world, body))
     }
 
-    /// Whether a system of this pace runs now.
-    pub(super) fn has(self, pace: Pace) -> bool {
-        match pace {
-            Pace::Long => !self.short,
-            Pace::Short => self.short,
-            Pace::Both => true,
+    /// Whether a system of this cadence runs now.
+    pub(super) fn has(self, cadence: Cadence) -> bool {
+        match cadence {
+            Cadence::Long => !self.short,
+            Cadence::Short => self.short,
+            Cadence::Both => true,
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::solids::DampedInShortSteps;
 use crate::world::BodySet;
 
 /// Asks for the damping of all deformable bodies of a scene with fluids, if they may take sub-steps.
-pub fn damp_ringing(sim: &mut SimBuilder<'_>) {
+pub fn damp_sub_cycled_bodies(sim: &mut SimBuilder<'_>) {
     let flows = sim.bodies().iter().any(|body| matches!(body.material.law, Law::Fluid(_)));
     let soft = sim.bodies().iter().filter(|body| body.kind == BodyKind::Solid);
     let soft: Vec<_> = soft.map(|body| body.id).collect();
