@@ -5,14 +5,12 @@ use glam::DVec3;
 use super::cavity;
 use super::concentric::Rings;
 use super::moments::Moments;
+use super::openings;
 use super::region::{Aabb, Region};
 use super::surface::{Surface, SurfacePoint};
 
 /// Cells that the faces of boxes may make before the volume is integrated numerically.
 const MAX_BOX_CELLS: usize = 200_000;
-
-/// Distance of two faces up to which they are one, over the extent of the hole.
-const COMMON: f64 = 1e-9;
 
 /// What is in any of the parts.
 pub(super) struct Union<R: ?Sized> {
@@ -45,34 +43,6 @@ impl<R: Region + ?Sized> DifferenceRegion<R> {
     /// Whether all of the hole, with `margin` \[m\] about it, is known to be inside the whole.
     pub fn is_hollow(&self, margin: f64) -> bool {
         holds(self.whole.as_ref(), &self.hole.bounds().grown(margin), self.axes)
-    }
-}
-
-impl<R: Region + ?Sized> DifferenceRegion<R> {
-    /// Whether the nearest face of the hole is one of the whole too: the hole opens there, as a pipe at its ends, and nothing is between the two.
-    fn opens_at(&self, whole: f64, hole: f64) -> bool {
-        (whole - hole).abs() < COMMON * self.hole.bounds().extent().max_element()
-    }
-
-    /// Distance of a point before an opening from the sides of the hole: that farther inside, where the opening is no longer the nearest.
-    fn distance_in_opening(&self, point: DVec3) -> f64 {
-        let extent = self.hole.bounds().extent().max_element();
-        let across = |axis: DVec3| {
-            let step = 1e-6 * extent * axis;
-            self.whole.distance(point + step) - self.whole.distance(point - step)
-        };
-        let axes = &DVec3::AXES[..self.axes];
-        let out = axes.iter().map(|&axis| across(axis) * axis).sum::<DVec3>().normalize_or_zero();
-        let from_face = -self.hole.distance(point);
-        let (mut depth, mut farthest) = (2.0 * from_face.abs(), f64::MIN_POSITIVE);
-        loop {
-            depth *= 2.0;
-            let inside = -self.hole.distance(point - depth * out);
-            farthest = farthest.max(inside);
-            if inside < 0.99 * (from_face + depth) || depth > 0.5 * extent {
-                return farthest;
-            }
-        }
     }
 }
 
@@ -139,7 +109,11 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
     fn clearance(&self, point: DVec3) -> f64 {
         let (whole, hole) = (self.whole.clearance(point), self.hole.distance(point));
         let distance = whole.max(-hole);
-        if distance > 0.0 && self.opens_at(whole, hole) { self.distance_in_opening(point) } else { distance }
+        if distance > 0.0 {
+            openings::through(self, point, whole, hole).unwrap_or(distance)
+        } else {
+            distance
+        }
     }
 
     fn bounds(&self) -> Aabb {

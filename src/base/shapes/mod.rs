@@ -18,6 +18,7 @@ mod lattice;
 mod mesh;
 mod moments;
 mod morton;
+mod openings;
 mod points;
 mod polygon;
 mod quadrature;

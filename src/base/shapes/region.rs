@@ -83,7 +83,8 @@ pub trait Region: Send + Sync {
     /// than the true distance (boolean combinations may give less).
     fn distance(&self, point: DVec3) -> f64;
 
-    /// The same of a point before an opening, where the end of a hole coincides with that of the body it is cut out of: from the sides of the hole, as there is no lid. Elsewhere the distance.
+    /// The same of a point before an opening, where a face of a hole coincides with one of the body it is cut out of: from what is beside the opening, as there is no lid. Elsewhere
+    /// the distance.
     fn clearance(&self, point: DVec3) -> f64 {
         self.distance(point)
     }

@@ -143,7 +143,8 @@ fn a_hole_through_a_body_has_no_lid() {
     // Before, at and behind the ends, and far from them.
     for x in [1e-4, 0.03, 0.3, 4.0, 7.97, 7.9999, 8.0001, 8.03, -0.02] {
         for y in [0.02, 0.3, 0.5, 0.9] {
-            let side = f64::min(y, 1.0 - y);
+            // Beyond the ends from their edges.
+            let side = f64::min(y, 1.0 - y).hypot(f64::max(0.0, f64::max(x - 8.0, -x)));
             let found = [channel.clearance(DVec3::new(x, y, 0.0)), turned.clearance(turn(x, y))];
             assert!(found.iter().all(|d| (d - side).abs() < 1e-6), "{x} {y}: {found:?} and {side}");
         }
@@ -151,9 +152,41 @@ fn a_hole_through_a_body_has_no_lid() {
     for x in [1e-4, 0.02, 3.0, 5.99, 6.01] {
         for r in [0.0, 0.5, 0.97] {
             let found = pipe.clearance(DVec3::new(x, 0.6 * r, 0.8 * r));
-            assert!((found - (1.0 - r)).abs() < 1e-6, "{x} {r}: {found}");
+            let side = f64::hypot(1.0 - r, f64::max(0.0, x - 6.0));
+            assert!((found - side).abs() < 1e-6, "{x} {r}: {found}");
         }
     }
     // In the material nothing changes.
     assert_eq!(channel.clearance(DVec3::new(0.5, -1.0, 0.0)), -0.5);
+}
+
+/// A slit in the floor of a tank, in the two orders and as one hole of two parts: the distance is that from the corners of the slit or its sides, and crossing the lines along which
+/// the sides go on it does not jump.
+#[test]
+fn a_slit_in_a_floor_is_open_and_has_no_sides_above_it() {
+    let (outer, tank, slit) = (
+        "Box(min: (-0.2, -0.2), max: (1.2, 0.8))",
+        "Box(min: (0, 0), max: (1, 2))",
+        "Box(min: (0.4, -0.3), max: (0.6, 0))",
+    );
+    let walls = [
+        format!("Difference(Difference({outer}, {tank}), {slit})"),
+        format!("Difference(Difference({outer}, {slit}), {tank})"),
+        format!("Difference({outer}, Union([{tank}, {slit}]))"),
+        format!("Difference({outer}, Translate(shape: Union([{slit}, {tank}]), by: (0, 0)))"),
+    ];
+    // Distance from a box of the floor beside the slit.
+    let beside = |x: f64, y: f64, from: f64, to: f64| {
+        f64::max(from - x, x - to).max(0.0).hypot(f64::max(-0.2 - y, y).max(0.0))
+    };
+    for wall in walls {
+        let wall = shape(&wall).cut_part_by_part().region(Two, Path::new(""), "shape").unwrap();
+        for x in [0.397, 0.399_999, 0.400_001, 0.402, 0.405, 0.41, 0.58, 0.599, 0.601] {
+            for y in [-0.1, -0.02, -0.003, 0.001, 0.002, 0.0044, 0.02, 0.3] {
+                let found = wall.clearance(DVec3::new(x, y, 0.0));
+                let right = beside(x, y, -0.2, 0.4).min(beside(x, y, 0.6, 1.2));
+                assert!(right == 0.0 || (found - right).abs() < 1e-8, "{x} {y}: {found} and {right}");
+            }
+        }
+    }
 }

@@ -195,3 +195,31 @@ fn a_channel_that_is_cut_out_of_a_block_is_open_where_the_domain_repeats_itself(
         assert!((velocity.0 - 0.3 * DVec3::X).length() < 1e-3, "{}", velocity.0);
     }
 }
+
+/// Water runs out of a slit in the floor of its tank as fast however the walls are written, and nothing at the slit gives it energy.
+#[test]
+fn water_leaves_a_tank_through_a_slit() {
+    let (outer, tank, slit) = (
+        "Box(min: (-0.06, -0.06), max: (0.46, 0.3))",
+        "Box(min: (0, 0), max: (0.4, 1))",
+        "Box(min: (0.16, -0.1), max: (0.24, 0))",
+    );
+    let run = |walls: &str| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", spacing: 0.02, formulation: Fluid, shape: Box(min: (0, 0), max: (0.4, 0.2))),
+                    (name: "walls", material: "wall", spacing: 0.02, formulation: Wall, shape: {walls}),
+                ], time: (end: 0.1))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        column::<Velocity>(&sim, 0)
+    };
+    let nested = run(&format!("Difference(Difference({outer}, {tank}), {slit})"));
+    let fastest = nested.iter().map(|v| v.0.length()).fold(0.0, f64::max);
+    // The fall from the surface at the start to the lowest place that a particle falls to in this time.
+    let limit = f64::sqrt(2.0 * 9.81 * (0.2 + 0.06 + 0.5 * 9.81 * 0.01));
+    assert!(fastest > 0.3 && fastest < limit, "{fastest} and {limit}");
+    let joined = run(&format!("Difference({outer}, Union([{tank}, {slit}]))"));
+    assert!(nested.iter().zip(&joined).all(|(a, b)| a.0 == b.0), "the two walls differ");
+}

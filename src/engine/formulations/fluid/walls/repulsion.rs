@@ -52,7 +52,7 @@ impl Repulsion {
         for group in groups {
             let Role::Boundary(boundary) = &group.role else { continue };
             let body = sim.body(group.body);
-            let shape = &sim.scene().bodies[body.id.0].shape;
+            let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
             let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
             let of_boundary =
                 if boundary.moved { 1.0 / mass(body.material.density, body.spacing) } else { 0.0 };

@@ -1,0 +1,108 @@
+//! Distances through the openings of holes: where the face of a hole is one of the body it is cut out of, as at the ends of a pipe or where a second hole begins, nothing is
+//! between the two, but what is beside the opening, on either side, is near.
+
+use glam::DVec3;
+
+use super::boolean::DifferenceRegion;
+use super::region::Region;
+use super::shape::Shape;
+
+/// Distance of two faces up to which they are one, over the extent of the hole.
+const COMMON: f64 = 1e-9;
+
+/// Step away from a face that is seen as on its other side, over the extent of the hole.
+const BESIDE: f64 = 1e-6;
+
+/// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and `of_hole` are its distances from the whole and from the hole \[m\].
+pub(super) fn through<R: Region + ?Sized>(
+    cut: &DifferenceRegion<R>,
+    point: DVec3,
+    of_whole: f64,
+    of_hole: f64,
+) -> Option<f64> {
+    let extent = cut.hole.bounds().extent().max_element();
+    if (of_whole - of_hole).abs() > COMMON * extent {
+        return None;
+    }
+    let axes = &DVec3::AXES[..cut.axes];
+    let slope = |axis: DVec3| {
+        let step = BESIDE * extent * axis;
+        cut.whole.distance(point + step) - cut.whole.distance(point - step)
+    };
+    let out = axes.iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero();
+    let (foot, depth) = (point - of_whole * out, of_whole.abs());
+    let in_hole = |x: DVec3| -cut.hole.distance(x);
+    let outside = |x: DVec3| cut.whole.clearance(x);
+    let is_open = in_hole(foot - BESIDE * extent * out) > 0.0 && outside(foot + BESIDE * extent * out) > 0.0;
+    if !is_open {
+        return None;
+    }
+    let reach = 0.5 * extent;
+    let [of_sides, beyond] = if of_whole < 0.0 {
+        [sideways(in_hole, point, -out, depth, reach), sideways(outside, foot, out, 0.0, reach)]
+    } else {
+        [sideways(outside, point, out, depth, reach), sideways(in_hole, foot, -out, 0.0, reach)]
+    };
+    Some(of_sides.min(depth.hypot(beyond)))
+}
+
+/// Distance from what is beside the way from `start` along `out`, away from an opening `behind` it: that at which the distance no longer grows as that from the opening \[m\].
+fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f64, reach: f64) -> f64 {
+    let (mut step, mut farthest) = (f64::max(behind, 1e-3 * reach), f64::MIN_POSITIVE);
+    loop {
+        step *= 2.0;
+        let found = distance(start + step * out);
+        farthest = farthest.max(found);
+        if found < 0.99 * (behind + step) || step > reach {
+            return farthest;
+        }
+    }
+}
+
+impl Shape {
+    /// The same set of points, every hole that is a union cut out part by part: where the parts touch, they open into each other.
+    #[must_use]
+    pub fn cut_part_by_part(&self) -> Self {
+        let inner = |shape: &Self| Box::new(shape.cut_part_by_part());
+        let all = |shapes: &[Self]| shapes.iter().map(Self::cut_part_by_part).collect();
+        match self {
+            Self::Difference(whole, hole) => {
+                hole.parts().into_iter().fold(whole.cut_part_by_part(), |whole, part| {
+                    Self::Difference(Box::new(whole), Box::new(part))
+                })
+            }
+            Self::Union(shapes) => Self::Union(all(shapes)),
+            Self::Intersection(shapes) => Self::Intersection(all(shapes)),
+            Self::Translate { shape, by } => Self::Translate { shape: inner(shape), by: *by },
+            Self::Rotate { shape, axis, angle_degrees, about } => Self::Rotate {
+                shape: inner(shape),
+                axis: *axis,
+                angle_degrees: *angle_degrees,
+                about: *about,
+            },
+            Self::Scale { shape, by, about } => Self::Scale { shape: inner(shape), by: *by, about: *about },
+            single => single.clone(),
+        }
+    }
+
+    /// Shapes that together are this one.
+    fn parts(&self) -> Vec<Self> {
+        let of = |shape: &Self, moved: &dyn Fn(Box<Self>) -> Self| -> Vec<Self> {
+            shape.parts().into_iter().map(|part| moved(Box::new(part))).collect()
+        };
+        match self {
+            Self::Union(shapes) => shapes.iter().flat_map(Self::parts).collect(),
+            Self::Translate { shape, by } => of(shape, &|shape| Self::Translate { shape, by: *by }),
+            Self::Rotate { shape, axis, angle_degrees, about } => of(shape, &|shape| Self::Rotate {
+                shape,
+                axis: *axis,
+                angle_degrees: *angle_degrees,
+                about: *about,
+            }),
+            Self::Scale { shape, by, about } => {
+                of(shape, &|shape| Self::Scale { shape, by: *by, about: *about })
+            }
+            single => vec![single.cut_part_by_part()],
+        }
+    }
+}
