@@ -12,7 +12,7 @@ use meshless_engine::parallel::{Arithmetic, Number, Vector};
 use meshless_engine::plugin::{BodyKind, Offer, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::{BodySet, Density};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 pub use gradient::DensityGradient;
 
@@ -32,7 +32,7 @@ pub struct DensityDiffusion {
 }
 
 /// What is diffused.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Model {
     /// What differs from a linear field: water at rest under gravity is left alone.
     #[default]

@@ -22,7 +22,7 @@ use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::world::BodyId;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Registers the plugin.
 pub fn register(registry: &mut Registry) {
@@ -61,7 +61,7 @@ pub struct Failure {
 }
 
 /// How damage grows where the criterion is met.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Growth {
     /// From 0 to 1 within one step.

@@ -3,10 +3,10 @@
 use glam::{DMat3, DVec3};
 use meshless_engine::linalg::{Eigen, Sym3};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to be lost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Then {
     /// It resists compression of its volume alone, like a granular material, until it is so long and thin that its areas are three times as large: it then carries
     /// nothing any more. On the way there damage takes from positive principal stresses.

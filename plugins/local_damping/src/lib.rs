@@ -13,7 +13,7 @@ use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
 use meshless_engine::schedule::{Stage, System};
 use meshless_engine::world::{Force, Mass, Mobility, Velocity};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use decay::{Decay, Window};
 use relaxation::RelaxationSystem;
@@ -40,7 +40,7 @@ pub struct LocalDamping {
 }
 
 /// How the rate is found.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum DampingMode {
     /// The rate that is given.

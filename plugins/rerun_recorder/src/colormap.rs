@@ -3,10 +3,10 @@
 //! The tables are every fifteenth of the 256 colours of the published maps; between them colours are interpolated.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A colour map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Colormap {
     /// Dark violet to yellow, perceptually uniform (S. van der Walt, N. Smith, 2015).
     Viridis,

@@ -1,7 +1,7 @@
 //! Symmetry planes.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::notation::number;
 use crate::plugin::{BodyKind, BodyPlan, Offer, Plugin, SetupError, SimBuilder};
@@ -28,7 +28,7 @@ pub struct Symmetry {
 }
 
 /// A side of a plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Side {
     /// Smaller coordinates.
     Below,

@@ -4,14 +4,14 @@
 //! reference volume. Pressure is that of the Cauchy stress, positive in compression.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::elastic_constants::ElasticConstants;
 use super::law::ParameterError;
 use super::stretches::Stretches;
 
 /// Pressure as a function of volume, and of internal energy where `gamma` is above zero.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum SolidEos {
     /// p = K mu with the bulk modulus of the material.

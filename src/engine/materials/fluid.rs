@@ -1,7 +1,7 @@
 //! Weakly compressible fluids: pressure as a function of density, and viscosity.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::law::{Law, Material, MaterialModel, ParameterError};
 
@@ -25,7 +25,7 @@ pub struct FluidMaterial {
 }
 
 /// Pressure as a function of density.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub enum EquationOfState {
     /// p = c_0^2 (rho - rho_0).
     #[default]

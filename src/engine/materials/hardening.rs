@@ -1,13 +1,13 @@
 //! Flow stress of a metal as a function of plastic strain, its rate, and temperature.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::johnson_cook::JohnsonCookFlow;
 use super::law::ParameterError;
 
 /// How the flow stress grows with plastic strain.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Hardening {
     /// Constant flow stress.

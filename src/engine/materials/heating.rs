@@ -1,13 +1,13 @@
 //! Adiabatic heating: heat of plastic work stays in the particle.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::johnson_cook::room;
 use super::law::ParameterError;
 
 /// Adiabatic heating: the temperature rises by taylor_quinney times the plastic work over density and specific heat.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Heating {
     /// Specific heat, J/(kg K). Without it the temperature stays as it is.

@@ -1,7 +1,7 @@
 //! Flow stress of Johnson and Cook, and the material that is named after it.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::elastic_parameters::elastic_parameters;
 use super::eos::SolidEos;
@@ -47,7 +47,7 @@ macro_rules! flow_stress {
     ([$($(#[$meta:meta])* $field:ident,)*]) => {
         /// Flow stress sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m),
         /// T* = (T - reference_temperature) / (melt_temperature - reference_temperature) between 0 and 1.
-        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
         pub struct JohnsonCookFlow {
             $($(#[$meta])* pub $field: f64,)*

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::body::{RigidBodies, RigidBody, RigidParts, RigidState};
 use super::constraint::{Constraint, DrivenBody, DrivenRotation, HalvedBody, Turning};
@@ -33,7 +33,7 @@ pub struct Rigid {
 }
 
 /// How a rigid body may turn.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub enum Rotation {
     /// Freely about its centre.
     Free,

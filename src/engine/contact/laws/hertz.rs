@@ -1,7 +1,7 @@
 //! The law of Hertz.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
 use crate::materials::ParameterError;
@@ -20,7 +20,7 @@ pub struct Hertz {
 }
 
 /// The force of Hertz in two dimensions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum PlaneForce {
     /// The force of a sphere over its radius, per metre of thickness.
     #[default]

@@ -6,7 +6,7 @@
 
 use glam::DMat3;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::rows::EulerianRows;
 use crate::column;
@@ -24,7 +24,7 @@ column! {
 }
 
 /// Artificial stress against the tensile instability, for comparison: it leaves hourglass modes as they are.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ArtificialStress {
     /// Share epsilon of the tensile stress.

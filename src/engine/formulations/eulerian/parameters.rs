@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::artificial_stress::{ArtificialStress, TensileStress};
 use super::control::{BodyControl, EulerianControlRows, HourglassEnergy};
@@ -44,7 +44,7 @@ pub struct Eulerian {
 }
 
 /// How the force comes from the stress.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Divergence {
     /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are kept.
     #[default]

@@ -74,6 +74,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let groups = bodies.groups.clone();
     let mut cloud = cloud(bodies, common, reach, sim)?;
     let spin = cloud.viscosities.spin;
+    advice::unfelt_walls(&walls, spin, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
@@ -139,7 +140,7 @@ impl Bodies {
     fn add_walls(&mut self, walls: &[WallBody], sim: &SimBuilder<'_>) {
         for WallBody { id, parameters } in walls {
             let surface = BoundarySurface {
-                no_slip: parameters.slip == Slip::No,
+                no_slip: parameters.slip == Some(Slip::No),
                 suction: parameters.suction,
                 velocity: parameters.surface_velocity.0,
                 moved: false,

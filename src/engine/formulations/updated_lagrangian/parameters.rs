@@ -1,7 +1,7 @@
 //! The formulation as scenes name it: its parameters, their check, its columns and systems.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::due::UpdateRule;
@@ -35,7 +35,7 @@ pub struct UpdatedLagrangian {
 }
 
 /// When the present configuration becomes the reference.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Update {
     /// `Adaptive(change: 1.0)` in bodies whose material flows plastically or can fail, and never in elastic ones, whose neighbours stay neighbours.

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, Group};
+use crate::formulations::fluid::walls::{Slip, WallBody};
 use crate::pair::PhaseTerms;
 use crate::plugin::{BodyKind, Setup, SimBuilder};
 use crate::rigid::{RigidBodies, RigidBody};
@@ -21,6 +22,29 @@ pub fn undamped_density(terms: Option<&PhaseTerms>, groups: &[Group], sim: &mut 
              `plugins: [density_diffusion()]`"
         ));
     }
+}
+
+/// Warns of walls along which a viscous fluid slides though nobody has said so, and of moving surfaces that no fluid sticks to.
+pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>) {
+    let name = |wall: &WallBody| sim.body(wall.id).name.clone();
+    let unstated = walls.iter().filter(|wall| viscous && wall.parameters.slip.is_none()).map(|wall| {
+        format!(
+            "a viscous fluid slides along the wall `{}`, whose `slip` is not stated: give it `Wall(slip: No)` if the fluid sticks to it, \
+             `Wall(slip: Free)` if it slides",
+            name(wall)
+        )
+    });
+    let moves = |wall: &&WallBody| {
+        wall.parameters.surface_velocity.0 != DVec3::ZERO && wall.parameters.slip != Some(Slip::No)
+    };
+    let unfelt = walls.iter().filter(moves).map(|wall| {
+        format!(
+            "no fluid feels the `surface_velocity` of the wall `{}`, along which it slides: give it `slip: No`",
+            name(wall)
+        )
+    });
+    let warnings: Vec<String> = unstated.chain(unfelt).collect();
+    warnings.into_iter().for_each(|warning| sim.warn(warning));
 }
 
 /// Warns of rigid bodies that sink to walls which do not hold them.

@@ -93,3 +93,26 @@ fn a_fluid_sticks_to_walls_or_slides_along_them() {
     // Particles of a wall are bumps, which the fluid hardly feels.
     assert!(error < 1e-5, "walls without friction took {error} of the speed");
 }
+
+/// A viscous fluid that slides along a wall because nobody has said what it does is warned of, and so is a belt that it does not feel.
+#[test]
+fn walls_whose_slip_is_not_stated_are_warned_of() {
+    let told = |wall: &str, viscosity: f64| {
+        let sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"fluid": Fluid(density: 1.0, sound_speed: 10.0, viscosity: {viscosity})}},
+                bodies: [
+                    (name: "fluid", material: "fluid", shape: Box(min: (0, 0), max: (0.5, 0.5)), spacing: 0.05, formulation: Fluid),
+                    (name: "belt", material: "wall", spacing: 0.05, formulation: Wall({wall}), shape: Box(min: (0, -0.2), max: (0.5, 0))),
+                ], time: (end: 0.1))"#
+        ));
+        let has = |part: &str| sim.warnings().iter().any(|text| text.contains(part));
+        (
+            has("along the wall `belt`, whose `slip` is not stated"),
+            has("the `surface_velocity` of the wall `belt`"),
+        )
+    };
+    assert_eq!(told("", 0.1), (true, false));
+    assert_eq!(told("slip: Free", 0.1), (false, false));
+    assert_eq!(told("slip: No, surface_velocity: (1, 0)", 0.1), (false, false));
+    assert_eq!(told("surface_velocity: (1, 0)", 1e-6), (false, true));
+}

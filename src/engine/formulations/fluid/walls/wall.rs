@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Vec3;
@@ -22,8 +22,8 @@ const WALL_WEIGHT: &str = "wall_weight";
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Wall {
-    /// Whether the fluid slides along the wall or sticks to it.
-    pub slip: Slip,
+    /// Whether the fluid slides along the wall or sticks to it. Where nothing is stated it slides; a viscous fluid then causes a warning.
+    pub slip: Option<Slip>,
     /// Whether the wall can pull at the fluid: confined flows need it, at a free surface it would hold drops.
     pub suction: bool,
     /// Velocity that the surface has beside that of its particles, such as that of a conveyor belt \[m/s\]; seen by a fluid that
@@ -32,10 +32,9 @@ pub struct Wall {
 }
 
 /// What a wall does to the motion of the fluid along it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Slip {
     /// The fluid slides along it.
-    #[default]
     Free,
     /// The fluid sticks to it.
     No,
