@@ -103,16 +103,6 @@ impl RigidBody {
         self.state.velocity + self.state.angular_velocity.cross(place - self.state.center)
     }
 
-    /// Largest speed of any of its points, m/s.
-    pub fn largest_speed(&self) -> f64 {
-        self.largest_speed_in(DVec3::ZERO)
-    }
-
-    /// The same in a frame of that velocity, m/s.
-    pub fn largest_speed_in(&self, frame: DVec3) -> f64 {
-        (self.state.velocity - frame).length() + self.state.angular_velocity.length() * self.reach
-    }
-
     /// How much a force at `place` along `direction` speeds up that point along it, 1/kg.
     #[inline]
     pub fn inverse_mass_at(&self, place: DVec3, direction: DVec3) -> f64 {

@@ -178,7 +178,7 @@ fn place_particles(body: &RigidBody, step: &Step<'_>) -> Result<(), StepError> {
     Ok(())
 }
 
-/// Share of the spacing by which a body may move in a step, and of a radian by which it may turn.
+/// Share of the spacing by which an acceleration may move a body in a step, and of a radian by which it may turn.
 const MOTION_FACTOR: f64 = 0.1;
 /// Steps of a body that nothing moves, in the whole run.
 const LEAST_STEPS: f64 = 100.0;
@@ -197,9 +197,12 @@ impl Run for RigidKick {
             let contact = sum_of_forces(body, step)?;
             share_out(body, contact, step)?;
             let power = body.constraint_power();
+            let middle = body.state.velocity;
             body.kick(half);
             let work = body.drive(true, &step.clock)?;
             step.ledger.add(constraints, body.id, work - half * power);
+            let gained = body.state.velocity - middle;
+            let driven = if half > 0.0 { gained / half } else { DVec3::ZERO };
             step.ledger.set(kinetic, body.id, body.kinetic());
             let (view, rows) = step.world.body_view(body.id);
             let position = view.read::<Position>()?;
@@ -212,7 +215,7 @@ impl Run for RigidKick {
             if !body.kinetic().is_finite() {
                 return Err(step.unstable("velocity is not a finite number", body.id, 0));
             }
-            propose(body, self.end, step);
+            propose(body, driven, self.end, step);
         }
         Ok(())
     }
@@ -272,13 +275,16 @@ fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), S
     Ok(())
 }
 
-fn propose(body: &RigidBody, end: f64, step: &mut Step<'_>) {
+/// Proposes the limit of the own motion of a body, whose velocity changes by `driven`, m/s2, where it is prescribed. Its velocity is no limit: against what it may touch the contacts
+/// know it, and nothing else does.
+fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
     let spacing = step.world.body(body.id).spacing;
-    let speed = body.state.velocity.length() / spacing + body.state.angular_velocity.length();
-    // Forces do not accelerate a body whose motion is prescribed.
-    let pulled = if body.is_driven() { DVec3::ZERO } else { body.state.force };
-    let acceleration = (pulled / body.mass).length() / spacing;
-    let rate = (speed / MOTION_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
+    let turning = body.state.angular_velocity.length();
+    let free = body.constraint.free_axes();
+    // Forces do not accelerate a body along axes on which its motion is prescribed.
+    let pulled = if free == DVec3::ZERO { DVec3::ZERO } else { free * body.state.force / body.mass };
+    let acceleration = (pulled + (DVec3::ONE - free) * driven).length() / spacing;
+    let rate = (turning / MOTION_FACTOR).max((acceleration / MOTION_FACTOR).sqrt()).max(LEAST_STEPS / end);
     let name = &step.world.body(body.id).name;
     step.limits.propose(1.0 / rate, format_args!("motion of `{name}`"));
 }

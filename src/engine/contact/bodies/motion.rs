@@ -1,4 +1,7 @@
 //! Bounds of the motion and the stretches of the bodies in contact, which determine how long a list of candidates is valid.
+//!
+//! Velocities of a body lie in a ball around a velocity of its own. So two bodies approach each other at most with the distance of their two velocities and both radii, which no
+//! common velocity changes, and no third body.
 
 use glam::DVec3;
 
@@ -6,91 +9,103 @@ use super::shape::squared_stretch;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
+use crate::symmetry::Map;
 use crate::world::{BodyId, DeformationGradient, Velocity};
 
-/// How fast a body is at most, m/s, and a bound of how far it is stretched: in tenths, so that lists are seldom built for another one.
+/// Bounds of the velocities of a body, and a bound of how far it is stretched: in tenths, so that lists are seldom built for another one.
 #[derive(Clone, Copy)]
 pub(in crate::contact) struct MotionBounds {
-    pub speed: f64,
-    /// The same in the frame that moves with one of the bodies.
-    pub beside: f64,
+    /// In the middle of the velocities, m/s.
+    pub velocity: DVec3,
+    /// How far any of them is from it at most, m/s.
+    pub spread: f64,
     pub stretch: f64,
 }
 
 impl MotionBounds {
     /// Of a body that does not move.
-    pub const NONE: Self = Self { speed: 0.0, beside: 0.0, stretch: 1.0 };
+    pub const NONE: Self = Self { velocity: DVec3::ZERO, spread: 0.0, stretch: 1.0 };
 
-    /// Bounds of the speeds of two bodies whose sum bounds how fast they approach each other, m/s: where all moves with a common velocity, in the frame that moves with it.
+    /// Bounds of the speeds of two bodies in the frame of the first one, whose sum bounds how fast they approach each other, m/s.
     pub fn speeds([first, second]: [Self; 2]) -> [f64; 2] {
-        if first.beside + second.beside < first.speed + second.speed {
-            [first.beside, second.beside]
-        } else {
-            [first.speed, second.speed]
-        }
+        [first.spread, first.velocity.distance(second.velocity) + second.spread]
     }
 
-    /// A velocity of a body, m/s, which may be that of a frame.
-    pub fn velocity(body: BodyId, step: &Step<'_>) -> Result<DVec3, StepError> {
-        if let Some(bodies) = step.resources.try_get::<RigidBodies>()
-            && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
-        {
-            return Ok(rigid.state.velocity);
-        }
-        let (view, rows) = step.world.body_view(body);
-        let velocity = view.read::<Velocity>()?[rows.start].0;
-        Ok(velocity)
+    /// Bound of how fast a body and an image of another approach each other, m/s.
+    pub fn approach([first, second]: [Self; 2], image: &Map) -> f64 {
+        let second = Self { velocity: image.vector(second.velocity), ..second };
+        Self::speeds([first, second]).iter().sum()
     }
 
-    /// Of a body, the shapes of whose particles follow their deformation if it is to `deform`, and in a `frame` of that velocity, m/s.
-    pub fn of(body: BodyId, deform: bool, frame: DVec3, step: &Step<'_>) -> Result<Self, StepError> {
+    /// Of a body, the shapes of whose particles follow their deformation if it is to `deform`.
+    pub fn of(body: BodyId, deform: bool, step: &Step<'_>) -> Result<Self, StepError> {
         if let Some(bodies) = step.resources.try_get::<RigidBodies>()
             && let Some(rigid) = bodies.iter().find(|rigid| rigid.id == body)
         {
             // The points that touch are farther out than the particles.
-            let [speed, beside] = [DVec3::ZERO, frame].map(|frame| rigid.largest_speed_in(frame));
-            return Ok(Self { speed, beside, ..Self::NONE });
+            let spread = rigid.state.angular_velocity.length() * rigid.reach;
+            return Ok(Self { velocity: rigid.state.velocity, spread, ..Self::NONE });
         }
         let (view, rows) = step.world.body_view(body);
-        let velocity = view.read::<Velocity>()?;
-        let fastest = |rows: &[Velocity]| Squares {
-            speed: Largest::of(rows.iter().map(|v| v.0.length_squared())),
-            beside: Largest::of(rows.iter().map(|v| (v.0 - frame).length_squared())),
+        let velocity = &view.read::<Velocity>()?[rows.clone()];
+        let first = velocity.first().map_or(DVec3::ZERO, |v| v.0);
+        let range = sum_over_blocks(velocity, &|_, rows: &[Velocity]| Range::around(first, rows));
+        let middle = first + range.middle();
+        let farthest = |rows: &[Velocity]| Squares {
+            spread: Largest::of(rows.iter().map(|v| v.0.distance_squared(middle))),
             ..Squares::default()
         };
         if !deform {
-            let squares = sum_over_blocks(&velocity[rows], &|_, rows: &[Velocity]| fastest(rows));
-            return Ok(squares.bounds(Self::NONE.stretch));
+            let squares = sum_over_blocks(velocity, &|_, rows: &[Velocity]| farthest(rows));
+            return Ok(Self { velocity: middle, spread: squares.spread.0.sqrt(), ..Self::NONE });
         }
         let gradient = view.read::<DeformationGradient>()?;
-        let rows = (&velocity[rows.clone()], &gradient[rows]);
         type Rows<'a> = (&'a [Velocity], &'a [DeformationGradient]);
-        let squares = sum_over_blocks(rows, &|_, (velocity, gradient): Rows<'_>| {
+        let squares = sum_over_blocks((velocity, &gradient[rows]), &|_, (velocity, gradient): Rows<'_>| {
             let stretch = Largest::of(gradient.iter().map(squared_stretch));
-            Squares { stretch, ..fastest(velocity) }
+            Squares { stretch, ..farthest(velocity) }
         });
-        Ok(squares.bounds(0.1 + 0.1 * (10.0 * squares.stretch.0.sqrt()).floor()))
+        let stretch = 0.1 + 0.1 * (10.0 * squares.stretch.0.sqrt()).floor();
+        Ok(Self { velocity: middle, spread: squares.spread.0.sqrt(), stretch })
+    }
+}
+
+/// The smallest and the largest components of velocities, from one of them.
+#[derive(Clone, Copy, Default)]
+struct Range {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Range {
+    fn around(first: DVec3, rows: &[Velocity]) -> Self {
+        rows.iter()
+            .map(|v| v.0 - first)
+            .fold(Self::default(), |Self { min, max }, v| Self { min: min.min(v), max: max.max(v) })
+    }
+
+    fn middle(&self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+}
+
+impl BlockSum for Range {
+    fn add(&mut self, next: &Self) {
+        self.min = self.min.min(next.min);
+        self.max = self.max.max(next.max);
     }
 }
 
 /// The largest squares.
 #[derive(Clone, Copy, Default)]
 struct Squares {
-    speed: Largest,
-    beside: Largest,
+    spread: Largest,
     stretch: Largest,
-}
-
-impl Squares {
-    fn bounds(&self, stretch: f64) -> MotionBounds {
-        MotionBounds { speed: self.speed.0.sqrt(), beside: self.beside.0.sqrt(), stretch }
-    }
 }
 
 impl BlockSum for Squares {
     fn add(&mut self, next: &Self) {
-        self.speed.add(&next.speed);
-        self.beside.add(&next.beside);
+        self.spread.add(&next.spread);
         self.stretch.add(&next.stretch);
     }
 }

@@ -76,6 +76,16 @@ impl ContactSides {
         }
     }
 
+    /// How far two rigid bodies are apart at least, m, by the balls around their centres; zero for particles and unbounded bodies.
+    pub fn gap(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
+        let NodeView::Rigid(body) = nodes else { return 0.0 };
+        if !(tool.surface.bounds().is_bounded() && body.surface.bounds().is_bounded()) {
+            return 0.0;
+        }
+        let distance = self.near(body.state.center, tool).distance(tool.state.center);
+        (distance - body.reach - tool.reach).max(0.0)
+    }
+
     /// Place of the first node that is deeper inside the other body than one may start, m.
     pub fn inside(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> Option<DVec3> {
         let deep = |i: usize, x: DVec3| {

@@ -83,12 +83,7 @@ impl ParticleContact {
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
     ) -> Result<ContactEnergy, StepError> {
-        // The image in a mirror moves another way.
-        let speed = if self.mirror == Map::IDENTITY {
-            MotionBounds::speeds(motion).iter().sum()
-        } else {
-            motion[0].speed + motion[1].speed
-        };
+        let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
             self.find(step)?;

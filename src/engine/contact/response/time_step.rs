@@ -1,5 +1,7 @@
 //! The stable time step of contact.
 
+use glam::DVec3;
+
 use crate::contact::laws::{NormalForce, Touch};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Mass};
@@ -133,6 +135,26 @@ pub(in crate::contact) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, Body
         let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
         let limit = IMPACT_FACTOR / squared.sqrt();
         step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
+    }
+}
+
+/// Share of the spacing by which two rigid bodies that may touch may approach in a step, and of the gap between them.
+const APPROACH_FACTOR: [f64; 2] = [0.1, 0.25];
+
+/// Proposes the limit of two bodies, one of which is rigid, that approach with a velocity, m/s, over a gap, m.
+pub(in crate::contact) fn propose_approach(
+    step: &mut Step<'_>,
+    pair: (BodyId, BodyId),
+    velocity: DVec3,
+    gap: f64,
+) {
+    let speed = velocity.length();
+    if speed > 0.0 {
+        let (one, other) = (step.world.body(pair.0), step.world.body(pair.1));
+        let [of_spacing, of_gap] = APPROACH_FACTOR;
+        let limit = (of_spacing * one.spacing.min(other.spacing) + of_gap * gap) / speed;
+        let (one, other) = (&one.name, &other.name);
+        step.limits.propose(limit, format_args!("speed of approach of `{one}` and `{other}`"));
     }
 }
 

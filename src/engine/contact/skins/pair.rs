@@ -26,6 +26,7 @@ use crate::neighbors::NeighborError;
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Patch, QuadratureRule, Skin, SkinColumns, SkinView, Wanted};
+use crate::symmetry::Map;
 
 /// Factor on the squared frequency of two skins: a particle at a corner is pressed from two sides.
 const CORNERS: f64 = 2.0;
@@ -70,7 +71,7 @@ impl SkinPair {
         let skins = [0, 1].map(|k| Arc::clone(&self.patches[k].skin));
         let first = SkinColumns::new(&skins[0], step.world)?;
         let second = SkinColumns::new(&skins[1], step.world)?;
-        let speed: f64 = MotionBounds::speeds(motion).iter().sum();
+        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
         self.keeps_reference = skins.iter().all(|skin| time_step::keeps_reference(step, skin.body));
         let (energies, stiffness) = self.act([first.view(), second.view()], speed, dt).map_err(failed)?;
         let squared = CORNERS * stiffness * (skins[0].lightness + skins[1].lightness);

@@ -78,10 +78,8 @@ impl InContact {
 
 impl Contacts {
     fn meet(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let frame = self.bodies.first().map(|first| MotionBounds::velocity(first.body, step));
-        let frame = frame.transpose()?.unwrap_or_default();
         for InContact { body, deform, motion } in &mut self.bodies {
-            *motion = MotionBounds::of(*body, *deform, frame, step)?;
+            *motion = MotionBounds::of(*body, *deform, step)?;
         }
         let motion_of = |body: BodyId| {
             let known = self.bodies.iter().find(|known| known.body == body);

@@ -12,6 +12,7 @@ use crate::contact::response::{ContactEnergy, Interaction};
 use crate::parallel::BlockSum;
 use crate::rigid::RigidBodies;
 use crate::schedule::{Step, StepError};
+use crate::symmetry::Map;
 
 /// Layers of particles of a side for which there is room from the start.
 const LAYERS: usize = 3;
@@ -49,7 +50,7 @@ impl SurfaceContact {
     /// Finds the nodes that touch, and adds what their springs do to the rigid bodies.
     pub fn find(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(), StepError> {
         let mut bodies = step.resources.get_mut::<RigidBodies>();
-        let (speed, dt) = (MotionBounds::speeds(motion).iter().sum::<f64>(), step.clock.dt);
+        let (speed, dt) = (MotionBounds::approach(motion, &Map::IDENTITY), step.clock.dt);
         let Self { interaction, sides, nearby, contacts, contact_nodes, .. } = self;
         let of_particles = sides.nodes.particles().is_some();
         (self.near, self.together) = sides.with(step.world, step.resources, &bodies, |nodes, tool| {
@@ -85,11 +86,11 @@ impl SurfaceContact {
     ) -> Result<ContactEnergy, StepError> {
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
-        let speed = MotionBounds::speeds(motion).iter().sum::<f64>();
+        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
         let dt = step.clock.dt;
         let Self { interaction, sides, contacts, gravity, contact_nodes, near, together, .. } = self;
         let of_particles = sides.nodes.particles();
-        let (energies, expected, count) =
+        let (energies, expected, count, gap) =
             sides.with(step.world, step.resources, &bodies, |nodes, tool| {
                 let together = together.map(|own| own.with_others(beside, nodes, tool));
                 let together = together.as_ref().map_or(&[][..], |both| &both[..]);
@@ -99,7 +100,7 @@ impl SurfaceContact {
                     |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
                     |(node, _), history, energies| on.end(node, history, energies),
                 );
-                (energies, on.expected(near, speed, *gravity), nodes.len())
+                (energies, on.expected(near, speed, *gravity), nodes.len(), sides.gap(nodes, tool))
             })?;
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {
@@ -121,7 +122,11 @@ impl SurfaceContact {
                 let touches = Touches { squared, stored: energies.stored, speed, reach };
                 time_step::propose(step, pair, &touches)?;
             }
-            _ => time_step::propose_rigid(step, pair, squared.max(expected)),
+            _ => {
+                time_step::propose_rigid(step, pair, squared.max(expected));
+                let velocity = motion[1].velocity - motion[0].velocity;
+                time_step::propose_approach(step, pair, velocity, gap);
+            }
         }
         Ok(energies)
     }
