@@ -7,9 +7,7 @@ use meshless_engine::scene::Scene;
 use meshless_engine::shapes::Lattice;
 use meshless_engine::simulation::Simulation;
 
-/// Smoothing length over spacing below which waves on an interface of two liquids are slow to grow and quick to return, in two dimensions: that of a support of 3.3 spacings, less round-off.
-const OF_TWO_LIQUIDS: f64 = 1.649;
-/// The same below which a cubic lattice at rest rearranges, in three dimensions: that of a support of 2.8 spacings.
+/// Smoothing length over spacing below which a cubic lattice at rest rearranges, in three dimensions: that of a support of 2.8 spacings.
 const OF_STILL_WATER: f64 = 1.399;
 /// Mean acceleration over gravity below which a fluid is at rest.
 const AT_REST: f64 = 0.1;
@@ -21,18 +19,12 @@ pub fn notes(scene: &Scene, sim: &Simulation) -> Vec<String> {
     let Some(cloud) = sim.resources().try_get::<FlowCloud>() else { return Vec::new() };
     let fluids: Vec<(&Group, &FluidState)> =
         cloud.groups.iter().filter_map(|group| Some((group, group.fluid()?))).collect();
-    let Some((first, one)) = fluids.first().copied() else { return Vec::new() };
+    let Some((first, _)) = fluids.first() else { return Vec::new() };
     let h = cloud.kernel.smoothing_length();
     let share = h / sim.world().body(first.body).spacing;
     let gravity = scene.gravity.0;
-    if gravity == DVec3::ZERO {
+    if gravity == DVec3::ZERO || cloud.plane() {
         return Vec::new();
-    }
-    if cloud.plane() {
-        let differ = fluids.iter().any(|(_, state)| state.density != one.density);
-        let text = "two fluids under gravity: waves on their interface have a period 2 to 10 % too short and grow too slowly; \
-             `Fluid(support: 3.3)`, with walls of four layers, has a fifth to a half of these errors";
-        return if differ && share < OF_TWO_LIQUIDS { vec![text.to_owned()] } else { Vec::new() };
     }
     let rearranges = |(group, state): &&(&Group, &FluidState)| {
         let rests = mean_speed(&cloud, group) < AT_REST * gravity.length() * sim.clock().time;

@@ -76,6 +76,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let spin = cloud.viscosities.spin;
     advice::unfelt_walls(&walls, spin, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());
+    advice::stiff_interface(&cloud, gravity, sim);
     sim.add_setup(move |setup| {
         start(&cloud, &pressures, setup)?;
         cloud.groups.iter_mut().for_each(|group| group.held = setup.held.contains(group.body));

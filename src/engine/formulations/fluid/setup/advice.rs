@@ -47,6 +47,25 @@ pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>)
     warnings.into_iter().for_each(|warning| sim.warn(warning));
 }
 
+/// Smoothing length over spacing below which waves on an interface of two liquids are slow to grow and quick to return, in two dimensions: that of a support of 3.3 spacings, less round-off.
+const OF_TWO_LIQUIDS: f64 = 1.649;
+
+/// Warns of two liquids under gravity in the plane whose support makes rows of particles stiff: the pressure gives them a shear modulus, and only the difference of two weights acts against it.
+pub fn stiff_interface(cloud: &FlowCloud, gravity: DVec3, sim: &mut SimBuilder<'_>) {
+    let mut fluids = cloud.groups.iter().filter_map(|group| Some((group, group.fluid()?)));
+    let Some((first, one)) = fluids.next() else { return };
+    let Some((second, _)) = fluids.find(|(_, state)| state.density != one.density) else { return };
+    let share = cloud.kernel.smoothing_length() / sim.body(first.body).spacing;
+    if cloud.plane && gravity != DVec3::ZERO && share < OF_TWO_LIQUIDS {
+        let names = [first, second].map(|group| sim.body(group.body).name.clone());
+        sim.warn(format!(
+            "waves on the interface of `{}` and `{}` have a period 2 to 10 % too short, and grow too slowly: rows of particles under pressure are stiff with the support of \
+             these fluids; `Fluid(support: 3.3)`, with walls of four layers, has a fifth to a half of these errors",
+            names[0], names[1]
+        ));
+    }
+}
+
 /// Warns of rigid bodies that sink to walls which do not hold them.
 pub fn sinking(
     cloud: &FlowCloud,

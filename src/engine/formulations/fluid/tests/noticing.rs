@@ -432,3 +432,25 @@ fn a_body_between_the_densities_of_two_fluids_floats_on_the_denser_one() {
     };
     assert!(!told(850.0) && told(1100.0));
 }
+
+#[test]
+fn rows_at_the_interface_of_two_liquids_are_warned_of_and_other_pairs_are_not() {
+    let scene = |support: &str, oil: f64, gravity: f64| {
+        format!(
+            r#"(dimension: Two, gravity: (0.0, {gravity}), domain: (min: (0, -1), max: (0.4, 1), periodic: [X]),
+                materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0), "oil": Fluid(density: {oil}, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid({support})),
+                    (name: "oil", material: "oil", shape: Box(min: (0, 0.2), max: (0.4, 0.4)), spacing: 0.02, formulation: Fluid({support})),
+                    (name: "floor", material: "wall", shape: Box(min: (0, -0.08), max: (0.4, 0)), spacing: 0.02, formulation: Wall()),
+                ],
+                time: (end: 0.1))"#
+        )
+    };
+    let is_told =
+        |text: &str| warning(&simulation(text), "waves on the interface of `water` and `oil`").is_some();
+    assert!(is_told(&scene("", 800.0, -9.81)));
+    assert!(!is_told(&scene("support: 3.3", 800.0, -9.81)));
+    assert!(!is_told(&scene("", 1000.0, -9.81)));
+    assert!(!is_told(&scene("", 800.0, 0.0)));
+}
