@@ -1,6 +1,6 @@
-//! The particles beside each in the body of a boundary, and how they turn around it.
+//! The particles beside each in the body of a boundary, and how they move around it.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::Sym3;
@@ -8,7 +8,7 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
 use crate::plugin::BodyPlan;
 use crate::world::BodyId;
 
-/// Distance of the particles that turn with one, over the spacing of the fluid.
+/// Distance of the particles that move with one, over the spacing of the fluid.
 const REACH: f64 = 1.5;
 
 /// The neighbours of the particles of a body at its start.
@@ -19,14 +19,14 @@ pub struct Neighborhood {
 }
 
 /// A particle and its neighbours in the body, weighed by their volumes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Cluster {
     /// Centre of mass, from the particle, m.
     pub mean: DVec3,
     /// Moment matrix about the centre, m5.
     pub moment: Sym3,
-    /// Angular momentum about the centre over the density, m5/s.
-    pub angular: DVec3,
+    /// The same sum with velocities in the place of the first of its two factors, m5/s.
+    pub motion: DMat3,
 }
 
 impl Neighborhood {
@@ -41,10 +41,10 @@ impl Neighborhood {
     pub fn cluster(&self, records: &[FlowParticle], k: usize, periodic: &Periodic) -> Cluster {
         let own = &records[k];
         if own.volume() == 0.0 {
-            return Cluster::default();
+            return Cluster { mean: DVec3::ZERO, moment: Sym3::ZERO, motion: DMat3::ZERO };
         }
         let (mut volume, mut first, mut momentum) = (own.volume(), DVec3::ZERO, DVec3::ZERO);
-        let (mut moment, mut angular) = (Sym3::ZERO, DVec3::ZERO);
+        let (mut moment, mut motion) = (Sym3::ZERO, DMat3::ZERO);
         for &j in self.list.row(k) {
             let other = &records[j as usize];
             let x = periodic.minimal_image(other.position() - own.position());
@@ -53,9 +53,14 @@ impl Neighborhood {
             first += other.volume() * x;
             momentum += other.volume() * v;
             moment += Sym3::dyad(x) * other.volume();
-            angular += other.volume() * x.cross(v);
+            motion += dyad(other.volume() * v, x);
         }
         let mean = first / volume;
-        Cluster { mean, moment: moment - Sym3::dyad(mean) * volume, angular: angular - mean.cross(momentum) }
+        Cluster { mean, moment: moment - Sym3::dyad(mean) * volume, motion: motion - dyad(momentum, mean) }
     }
+}
+
+/// `v (x) x`.
+fn dyad(v: DVec3, x: DVec3) -> DMat3 {
+    DMat3::from_cols(v * x.x, v * x.y, v * x.z)
 }

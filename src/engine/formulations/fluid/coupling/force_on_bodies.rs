@@ -14,7 +14,7 @@ use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchang
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
-use crate::formulations::fluid::rotation::Couples;
+use crate::formulations::fluid::rotation::Moments;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -61,7 +61,7 @@ pub fn add_force_on_bodies(
         parts: Vec::new(),
         other_total: Vec::new(),
         other_parts: Vec::new(),
-        couples: Couples::default(),
+        moments: Moments::default(),
         drag: Vec::new(),
         sums: Vec::new(),
     };
@@ -120,7 +120,7 @@ struct Coupling {
     /// The same from the other side of a thin body.
     other_total: Vec<Force>,
     other_parts: Vec<DVec3>,
-    couples: Couples,
+    moments: Moments,
     /// How fast friction grows with the velocity of each particle, kg/s.
     drag: Vec<f64>,
     sums: Vec<Exchange>,
@@ -130,20 +130,20 @@ impl Coupling {
     /// Sums the forces of the flow on the particles of a body over both of its sides, if it is thin.
     fn sum_forces(&mut self, cloud: &FlowCloud, body: BodyId) {
         for (side, group) in cloud.groups.iter().filter(|group| group.body == body).enumerate() {
-            let Self { total, parts, other_total, other_parts, couples, .. } = self;
+            let Self { total, parts, other_total, other_parts, moments, .. } = self;
             let (to, parts_to) =
                 if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
             to.resize(group.rows.len(), Force::default());
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
             PairForce { cloud, group, adds: false }.run(to, parts_to);
-            couples.add(cloud, group, to, parts_to);
+            moments.add(cloud, group, to, parts_to);
             cloud.repel(group, to, parts_to);
             cloud.press_gaps(group, to, parts_to);
             if side == 0 {
                 self.drag.clear();
                 self.drag.resize(group.rows.len(), 0.0);
             }
-            self.couples.add_drag(&mut self.drag);
+            self.moments.add_drag(&mut self.drag);
             if side > 0 {
                 self.total.iter_mut().zip(&self.other_total).for_each(|(sum, other)| sum.0 += other.0);
                 self.parts.iter_mut().zip(&self.other_parts).for_each(|(sum, other)| *sum += *other);

@@ -1,10 +1,12 @@
-//! The rotation around each particle, which friction must not feel.
+//! How a flow turns around each particle, which friction must not feel, and how a boundary moves beside it.
+
+mod affine;
 
 mod spin;
 
-mod body_spin;
+mod body_gradient;
 
-mod couples;
+mod moments;
 
-pub use couples::Couples;
+pub use moments::Moments;
 pub use spin::Spin;

@@ -6,6 +6,8 @@ mod several;
 
 mod spin;
 
+mod soft_block;
+
 mod channel;
 
 mod loads;

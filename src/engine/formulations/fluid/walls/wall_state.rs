@@ -28,9 +28,11 @@ impl Run for WallState {
         cloud.near_boundary = near;
         let first = cloud.fluid;
         for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
-            // A fluid that turns with its wall like one rigid body feels no friction.
+            // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or are sheared alike.
             let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
-            cloud.for_each_spin(group, beside, |fluid, spin| fluid.velocity -= spin.cross(fluid.offset));
+            cloud.for_each_gradient(group, beside, |fluid, gradient| {
+                fluid.velocity -= gradient * fluid.offset
+            });
         }
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {

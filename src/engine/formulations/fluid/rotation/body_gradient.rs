@@ -1,8 +1,8 @@
-//! The spin of boundary particles: how the particles beside each in its body turn around it.
+//! How boundary particles move around each other in their body.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::spin::rotation;
+use super::affine::affine;
 use crate::formulations::fluid::cloud::{Cluster, FlowCloud, Group, Neighborhood};
 use crate::parallel::for_each_block;
 
@@ -12,12 +12,12 @@ impl FlowCloud {
         self.neighborhoods.iter().find(|near| near.body == group.body)
     }
 
-    /// Calls `then` with `out` of every particle of a boundary and its spin, 1/s, where anything moves.
-    pub(in crate::formulations::fluid) fn for_each_spin<T: Send>(
+    /// Calls `then` with `out` of every particle of a boundary and the velocity gradient of its body there, 1/s, where anything moves.
+    pub(in crate::formulations::fluid) fn for_each_gradient<T: Send>(
         &self,
         group: &Group,
         out: &mut [T],
-        then: impl Fn(&mut T, DVec3) + Sync,
+        then: impl Fn(&mut T, DMat3) + Sync,
     ) {
         let records = &self.records[group.cloud.clone()];
         let Some(near) = self.neighborhood(group) else { return };
@@ -26,8 +26,8 @@ impl FlowCloud {
         }
         for_each_block(out, &mut Vec::new(), &|first, out: &mut [T]| {
             for (k, out) in out.iter_mut().enumerate() {
-                let Cluster { moment, angular, .. } = near.cluster(records, first + k, self.pairs.periodic());
-                then(out, rotation(&moment, angular, self.plane));
+                let Cluster { moment, motion, .. } = near.cluster(records, first + k, self.pairs.periodic());
+                then(out, affine(&moment, motion, self.plane));
             }
         });
     }
