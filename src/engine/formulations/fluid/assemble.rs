@@ -213,6 +213,7 @@ fn cloud(
         reach,
         repelled: Vec::new(),
         gap_forces: Vec::new(),
+        gap_work: 0.0,
         loads: Vec::new(),
         spins: if spin { vec![Lanes4::ZERO; total] } else { Vec::new() },
         neighborhoods,

@@ -19,6 +19,7 @@ use crate::removal::REMOVAL;
 use crate::schedule::{Access, Mode, Stage, System};
 use crate::world::{
     BodySet, Column, Density, DensityRate, Force, Mass, PhaseId, Pressure, ReferencePosition, Removed,
+    Velocity,
 };
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
@@ -154,6 +155,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
                 .touches_packed(GAP_FORCES, Mode::Writes)
+                .reads_near::<Velocity>()
                 .after(WALL_PRESSURE),
         );
     }

@@ -10,6 +10,9 @@ use crate::world::BodyId;
 /// Least pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as tension.
 const TENSION: f64 = 0.1;
 
+/// Share of the energy that walls have given above which it is that of gaps.
+const GAP_SHARE: f64 = 0.5;
+
 /// The plugins of all bodies.
 pub(super) struct Remedies {
     /// Names of the plugins of each body, those of the scene included.
@@ -31,8 +34,13 @@ impl Remedies {
         self.plugins[body.0].iter().any(|name| name == plugin)
     }
 
-    /// What walls want that give energy.
-    pub fn of_walls(&self, step: &Step<'_>) -> String {
+    /// What walls want that have given so much energy, J.
+    pub fn of_walls(&self, step: &Step<'_>, given: f64) -> String {
+        if step.resources.try_get::<FlowCloud>().is_some_and(|cloud| cloud.gap_work > GAP_SHARE * given) {
+            return "the pressure in gaps that no particle of the fluid fits into has moved a body, and no fluid has followed: start the body two spacings of the fluid from walls and others, hold it \
+                    while the fluid strikes it, or take more particles"
+                .to_owned();
+        }
         let lacks_diffusion = step.resources.try_get::<FlowCloud>().is_some_and(|cloud| {
             let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
             fluids.any(|group| !self.has(group.body, "density_diffusion"))

@@ -78,7 +78,7 @@ impl WrongSign {
                 quantity(-account.total(), "J"),
                 100.0 * share,
                 quantity(step.clock.end(), "s"),
-                advice(&account.name, remedies, step)
+                advice(account, remedies, step)
             );
             warn_anew(step.warnings, &begin, text);
         }
@@ -114,9 +114,9 @@ fn work_of_loads(cloud: &FlowCloud) -> f64 {
     cloud.groups.iter().map(of).sum()
 }
 
-fn advice(account: &str, remedies: &Remedies, step: &Step<'_>) -> String {
-    if account == WALLS {
-        return remedies.of_walls(step);
+fn advice(account: &Account, remedies: &Remedies, step: &Step<'_>) -> String {
+    if account.name == WALLS {
+        return remedies.of_walls(step, -account.total());
     }
     "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
         .to_owned()

@@ -61,6 +61,8 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) repelled: Vec<Repelled>,
     /// Force on every boundary particle beside a gap, N; empty where there is none.
     pub(in crate::formulations::fluid) gap_forces: Vec<DVec3>,
+    /// Work of these forces since the start of the run, J.
+    pub gap_work: f64,
     /// Acceleration of every fluid particle by loads; empty where nothing loads a fluid.
     pub(in crate::formulations::fluid) loads: Vec<DVec3>,
     /// Spins of all particles, 1/s; zero for boundaries, and none at all where friction goes without.

@@ -3,6 +3,9 @@
 //! A particle with fluid in its support has the pressure of a wall. From there, and from where a dry gap is open to the air, pressures are continued along the body in steps of a
 //! support: each particle takes the mean of those near it that are known, with the weight of the fluid between the two. In a gap that is wet on one side and dry on the other, the
 //! two meet halfway.
+//!
+//! A gap that opens has to be filled from where the fluid is: its pressure falls by the head of that flow. Without it an impact of the fluid beside a body would lift it with a
+//! pressure that no fluid follows.
 
 use glam::DVec3;
 
@@ -14,11 +17,13 @@ const LEAST_SHARE: f64 = 1e-10;
 /// Closed share below which a dry gap is at its end.
 const OPEN: f64 = 0.5;
 
-/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m.
+/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the way to where it is, m.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestOfGap {
     pub pressure: f64,
     pub slope: DVec3,
+    density: f64,
+    way: f64,
 }
 
 impl RestOfGap {
@@ -29,16 +34,20 @@ impl RestOfGap {
 
     /// Beside a boundary particle, if fluid is in its support.
     pub fn of_wet(cloud: &FlowCloud, gravity: DVec3, row: u32) -> Option<Self> {
-        let (mut total, mut slope) = (0.0, DVec3::ZERO);
+        let (mut total, mut mass, mut slope, mut place) = (0.0, 0.0, DVec3::ZERO, DVec3::ZERO);
         let near = cloud.near_row(row as usize);
         for pair in near.iter().filter_map(|&j| cloud.gap_pair(row as usize, j)) {
             let density = cloud.groups.iter().find(|group| group.cloud.contains(&pair.row));
             let density = density.and_then(|group| group.fluid()).map_or(0.0, |state| state.density);
             total += pair.value;
+            mass += pair.value * density;
+            place += pair.value * pair.x;
             slope += pair.value * density * (gravity + cloud.load(pair.row));
         }
         let pressure = cloud.records[row as usize].pressure();
-        (total > LEAST_SHARE).then(|| Self { pressure, slope: slope / total })
+        let of_mean =
+            || Self { pressure, slope: slope / total, density: mass / total, way: place.length() / total };
+        (total > LEAST_SHARE).then(of_mean)
     }
 }
 
@@ -52,6 +61,40 @@ pub struct Gap {
     pub closed: f64,
     /// The fluid there; none before it is known.
     pub fluid: Option<RestOfGap>,
+    /// What its pressure falls by because the gap opens, Pa.
+    pub fall: f64,
+}
+
+/// How the boundaries move.
+pub struct Motion<'a> {
+    /// Velocity of every boundary particle, m/s.
+    pub velocities: &'a [DVec3],
+    /// Spacing of the fluid, m.
+    pub spacing: f64,
+}
+
+impl Gap {
+    /// The fluid there with the pressure that is left, and nothing where it is not known.
+    pub fn filled(&self) -> Option<RestOfGap> {
+        let left = |fluid: RestOfGap| (fluid.pressure - self.fall).max(0.0);
+        self.fluid.map(|fluid| RestOfGap { pressure: left(fluid), ..fluid })
+    }
+
+    /// Bernoulli: what flows into a gap as wide as the spacing that opens comes along the way from where the fluid is, the faster the longer that is.
+    fn open(&mut self, cloud: &FlowCloud, motion: &Motion<'_>) {
+        let velocity = |row: usize| motion.velocities[row - cloud.fluid];
+        let Some(RestOfGap { density, way, .. }) = self.fluid else { return };
+        let (mut total, mut mean) = (0.0, DVec3::ZERO);
+        for pair in cloud.across_gap(self.particle) {
+            total += pair.value;
+            mean += pair.value * velocity(pair.row);
+        }
+        if total > LEAST_SHARE {
+            let apart = mean / total - velocity(self.particle[0] as usize);
+            let inflow = apart.dot(self.around.toward()).max(0.0) * way / motion.spacing;
+            self.fall = 0.5 * density * inflow * inflow;
+        }
+    }
 }
 
 /// Finds the fluid at the particles beside gaps that are joined to the fluid or to the air.
@@ -66,7 +109,7 @@ pub struct Fill {
 
 impl Fill {
     /// Continues what is known of the gaps to the others, and to their other sides.
-    pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap]) {
+    pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap], motion: &Motion<'_>) {
         self.numbers.clear();
         self.numbers.resize(cloud.records.len() - cloud.fluid, u32::MAX);
         for (k, gap) in (0..).zip(gaps.iter_mut()) {
@@ -86,6 +129,7 @@ impl Fill {
             }
         }
         self.found = found;
+        gaps.iter_mut().for_each(|gap| gap.open(cloud, motion));
         self.go_beyond(cloud, gaps);
     }
 
@@ -100,9 +144,16 @@ impl Fill {
             total += pair.value;
             sum.pressure += pair.value * there.at(-pair.x);
             sum.slope += pair.value * there.slope;
+            sum.density += pair.value * there.density;
+            sum.way += pair.value * (there.way + pair.x.length());
         }
         // A floor of zero keeps a gap above the surface dry.
-        let mean = || RestOfGap { pressure: (sum.pressure / total).max(0.0), slope: sum.slope / total };
+        let mean = || RestOfGap {
+            pressure: (sum.pressure / total).max(0.0),
+            slope: sum.slope / total,
+            density: sum.density / total,
+            way: sum.way / total,
+        };
         (total > LEAST_SHARE).then(mean)
     }
 
@@ -111,7 +162,7 @@ impl Fill {
         self.beyond.clear();
         self.beyond.resize(cloud.records.len() - cloud.fluid, [0.0; 2]);
         for gap in gaps {
-            let Some(fluid) = gap.fluid else { continue };
+            let Some(fluid) = gap.filled() else { continue };
             for pair in cloud.across_gap(gap.particle) {
                 let sum = &mut self.beyond[pair.row - cloud.fluid];
                 sum[0] += pair.value;
@@ -120,10 +171,11 @@ impl Fill {
         }
     }
 
-    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support.
-    pub fn beyond(&self, cloud: &FlowCloud, row: usize) -> Option<f64> {
+    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support, less that `fall`, Pa.
+    pub fn beyond(&self, cloud: &FlowCloud, row: usize, fall: f64) -> Option<f64> {
         if !cloud.near_row(row).is_empty() {
-            return Some(cloud.records[row].pressure());
+            let pressure = cloud.records[row].pressure();
+            return Some(if fall > 0.0 { (pressure - fall).max(0.0) } else { pressure });
         }
         let [total, pressure] = self.beyond[row - cloud.fluid];
         (total > LEAST_SHARE).then(|| pressure / total)

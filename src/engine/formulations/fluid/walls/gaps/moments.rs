@@ -80,10 +80,15 @@ impl Surrounding {
         sum
     }
 
+    /// Direction of the other bodies.
+    pub fn toward(&self) -> DVec3 {
+        self.other.normalize_or_zero()
+    }
+
     /// Share of the empty space around the particle that is a gap, zero where it is open; `surface` is the first moment of a plane surface, 1/m.
     pub fn closed(&self, surface: f64) -> f64 {
         let empty = -(self.own + self.other) / surface;
-        let toward = self.other.normalize_or_zero();
+        let toward = self.toward();
         let along = empty.dot(toward);
         let across = (empty - along * toward).length();
         let below = |x: f64, [low, high]: [f64; 2]| ((high - x) / (high - low)).clamp(0.0, 1.0);

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::fill::{Fill, Gap, RestOfGap};
+use super::fill::{Fill, Gap, Motion, RestOfGap};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
 use crate::parallel::{for_each_block, for_each_heavy_block};
 use crate::schedule::{Run, Step, StepError};
-use crate::world::Force;
+use crate::world::{Force, Velocity};
 
 /// Finds the forces of the pressure in gaps.
 #[derive(Default)]
@@ -20,6 +20,8 @@ pub struct GapPressure {
     gaps: Vec<Gap>,
     fill: Fill,
     across: Vec<GapPair>,
+    /// Velocity of every boundary particle, m/s; that in the cloud is the one that friction sees.
+    velocities: Vec<DVec3>,
 }
 
 type Rows<'a> = (&'a mut [Gap], &'a [[u32; 2]]);
@@ -32,7 +34,7 @@ impl GapPressure {
 
     /// Looks at what surrounds the particles beside gaps, and finds the fluid there; says whether there is any pressure.
     fn measure(&mut self, cloud: &FlowCloud) -> bool {
-        let Self { gravity, spacing, gaps, fill, .. } = self;
+        let Self { gravity, spacing, gaps, fill, velocities, .. } = self;
         let particles = &cloud.pairs.gaps.particles[..];
         gaps.resize(particles.len(), Gap::default());
         let rows = (&mut gaps[..], particles);
@@ -52,20 +54,32 @@ impl GapPressure {
                 gap.closed = gap.around.closed(surface);
             }
         });
-        fill.run(cloud, gaps);
+        let motion = Motion { velocities, spacing: *spacing };
+        fill.run(cloud, gaps, &motion);
         true
+    }
+
+    /// Reads how boundaries move.
+    fn look_at_motion(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
+        self.velocities.clear();
+        for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
+            let view = step.world.phase(group.phase);
+            let velocities = view.read_near::<Velocity>()?;
+            self.velocities.extend(velocities[group.rows.clone()].iter().map(|velocity| velocity.0));
+        }
+        Ok(())
     }
 
     /// Finds the forces on all boundary particles beside gaps.
     fn press(&mut self, cloud: &FlowCloud, forces: &mut [DVec3]) {
         let Self { gaps, fill, across, .. } = self;
         for gap in gaps {
-            let Some(RestOfGap { pressure, slope }) = gap.fluid else { continue };
+            let Some(RestOfGap { pressure, slope, .. }) = gap.filled() else { continue };
             let row = gap.particle[0] as usize;
             across.clear();
             across.extend(cloud.across_gap(gap.particle));
             let of_pair = |pair: &GapPair| {
-                let there = fill.beyond(cloud, pair.row).unwrap_or(pressure);
+                let there = fill.beyond(cloud, pair.row, gap.fall).unwrap_or(pressure);
                 (pressure + there) * pair.weight * pair.x
             };
             let mut force = -across.iter().map(of_pair).sum::<DVec3>();
@@ -82,9 +96,14 @@ impl Run for GapPressure {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let mut forces = std::mem::take(&mut cloud.gap_forces);
         forces.clear();
-        if !cloud.pairs.gaps.particles.is_empty() && self.measure(&cloud) {
-            forces.resize(cloud.records.len() - cloud.fluid, DVec3::ZERO);
-            self.press(&cloud, &mut forces);
+        if !cloud.pairs.gaps.particles.is_empty() {
+            self.look_at_motion(&cloud, step)?;
+            if self.measure(&cloud) {
+                forces.resize(cloud.records.len() - cloud.fluid, DVec3::ZERO);
+                self.press(&cloud, &mut forces);
+                let power = forces.iter().zip(&self.velocities).map(|(force, velocity)| force.dot(*velocity));
+                cloud.gap_work += step.clock.dt * power.sum::<f64>();
+            }
         }
         cloud.gap_forces = forces;
         Ok(())
