@@ -136,12 +136,12 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
 
     fn wall_frame(&self, spacing: f64) -> Option<Aabb> {
         let mut faces = [Vec::new(), Vec::new(), Vec::new()];
-        let is_box = self.hole.box_faces(&mut faces) && faces[0].len() == 2;
-        if is_box {
-            cavity::frame(&self.whole.frame(), &self.hole.bounds(), spacing, self.axes)
-        } else {
-            None
-        }
+        let are_boxes = self.cavity_faces(&mut faces);
+        are_boxes.then(|| cavity::frame(&self.whole.frame(), &faces, spacing, self.axes)).flatten()
+    }
+
+    fn cavity_faces(&self, faces: &mut [Vec<f64>; 3]) -> bool {
+        self.whole.cavity_faces(faces) && self.hole.box_faces(faces)
     }
 
     fn box_faces(&self, faces: &mut [Vec<f64>; 3]) -> bool {

@@ -10,26 +10,34 @@ const SAME: f64 = 1e-6;
 /// Part of a cell by which cells that divide the wall may miss the cavity: it makes 2 % of the pressure on a floor.
 const MISFIT: f64 = 0.03;
 
-/// The box that cells of a wall divide evenly: along each axis the cavity, where both of its ends are inside of the wall; from its end on in whole spacings \[m\], where one is; and the wall, where
-/// none is. Nothing, where cells that divide the wall end near the cavity anyway.
-pub(super) fn frame(wall: &Aabb, cavity: &Aabb, spacing: f64, axes: usize) -> Option<Aabb> {
+/// The box that cells of a wall divide evenly, where the cavities that are cut out of it have these `faces` \[m\]: along each axis that between the outermost faces inside of the wall; from the one
+/// that there is on in whole spacings; and the wall, where there is none. Nothing, where cells that divide the wall end near the cavities anyway, or where no cells end at all of them.
+pub(super) fn frame(wall: &Aabb, faces: &[Vec<f64>; 3], spacing: f64, axes: usize) -> Option<Aabb> {
     let mut frame = *wall;
     let mut fits = true;
     for k in 0..axes {
-        let is_inside = |x: f64| x > wall.min[k] + SAME * spacing && x < wall.max[k] - SAME * spacing;
+        let (min, max) = (wall.min[k], wall.max[k]);
+        let inside = |x: &f64| *x > min + SAME * spacing && *x < max - SAME * spacing;
+        let inside: Vec<f64> = faces[k].iter().copied().filter(inside).collect();
         let whole = |length: f64| (length / spacing).round().max(1.0) * spacing;
-        let side = wall.max[k] - wall.min[k];
-        let cell = side / (side / spacing).round().max(1.0);
-        for x in [cavity.min[k], cavity.max[k]].into_iter().filter(|x| is_inside(*x)) {
-            let cells = (x - wall.min[k]) / cell;
-            fits &= (cells - cells.round()).abs() < MISFIT;
-        }
-        (frame.min[k], frame.max[k]) = match (is_inside(cavity.min[k]), is_inside(cavity.max[k])) {
-            (true, true) => (cavity.min[k], cavity.max[k]),
-            (true, false) => (cavity.min[k], cavity.min[k] + whole(wall.max[k] - cavity.min[k])),
-            (false, true) => (cavity.max[k] - whole(cavity.max[k] - wall.min[k]), cavity.max[k]),
-            (false, false) => (wall.min[k], wall.max[k]),
+        let ends_at_all = |low: f64, high: f64| {
+            let cell = (high - low) / ((high - low) / spacing).round().max(1.0);
+            let cells = |x: &f64| (x - low) / cell;
+            inside.iter().map(cells).all(|cells| (cells - cells.round()).abs() < MISFIT)
         };
+        fits &= ends_at_all(min, max);
+        let low = inside.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = inside.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (frame.min[k], frame.max[k]) = if low < high {
+            (low, high)
+        } else if low == high {
+            (low, low + whole(max - low))
+        } else {
+            (min, max)
+        };
+        if !ends_at_all(frame.min[k], frame.max[k]) {
+            return None;
+        }
     }
     (!fits).then_some(frame)
 }

@@ -112,7 +112,7 @@ pub trait Region: Send + Sync {
         self.bounds()
     }
 
-    /// The box that the cells of a wall of this region divide evenly, if a box is cut out of it and [`Region::frame`] does not fit that.
+    /// The box that the cells of a wall of this region divide evenly, if boxes are cut out of it and [`Region::frame`] does not fit that.
     fn wall_frame(&self, _spacing: f64) -> Option<Aabb> {
         None
     }
@@ -125,6 +125,11 @@ pub trait Region: Send + Sync {
     /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes alone.
     fn box_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
         false
+    }
+
+    /// Appends the coordinates of the faces of what is cut out of this region, and returns true if all of it is made of boxes along the axes.
+    fn cavity_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
+        true
     }
 
     /// The rings or shells of a concentric lattice, for shapes that have them.

@@ -67,3 +67,35 @@ fn a_cavity_that_fits_the_outer_box_changes_nothing() {
     .unwrap();
     assert_eq!(wall(text, Dimension::Two), as_any_shape);
 }
+
+/// Two vessels joined by a pipe, as one hole of three boxes and cut out one after the other.
+#[test]
+fn cells_end_at_all_cavities_that_have_one_lattice() {
+    let outer = "Box(min: (-0.07, -0.07), max: (1.07, 0.7))";
+    let [left, pipe, right] = [
+        "Box(min: (0, 0), max: (0.3, 2))",
+        "Box(min: (0.3, 0), max: (0.7, 0.1))",
+        "Box(min: (0.7, 0), max: (1, 2))",
+    ];
+    for text in [
+        format!("Difference({outer}, Union([{left}, {pipe}, {right}]))"),
+        format!("Difference(Difference(Difference({outer}, {left}), {right}), {pipe})"),
+    ] {
+        let sites = wall(&text, Dimension::Two);
+        for (at, axis) in [
+            ((0.15, 0.0), 1),
+            ((0.0, 0.2), 0),
+            ((0.3, 0.3), 0),
+            ((0.5, 0.1), 1),
+            ((0.7, 0.4), 0),
+            ((1.0, 0.2), 0),
+        ] {
+            let distance = first(&sites, DVec3::new(at.0, at.1, 0.0), axis);
+            assert!((distance - 0.01).abs() < 1e-9, "{text} {at:?}: {distance}");
+        }
+    }
+    // No lattice ends at both: it stays that of the outer box.
+    let slit = "Box(min: (0.111, -1), max: (0.2, 0))";
+    let sites = wall(&format!("Difference({outer}, Union([{left}, {slit}]))"), Dimension::Two);
+    assert!((first(&sites, DVec3::new(-0.07, 0.2, 0.0), 0) - 0.01).abs() < 1e-9);
+}
