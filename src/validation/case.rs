@@ -108,6 +108,7 @@ macro_rules! for_each_case {
             F13 fluids::vortices::CASE;
             F14 fluids::wedge_entry::CASE;
             F15 fluids::level_at_rest::CASE;
+            F16 fluids::cylinder_array::CASE;
             X1 coupled::water_on_plate::CASE;
             X2 coupled::dam_break_obstacle::CASE;
             X4 coupled::abrasive_flow::CASE;

@@ -36,6 +36,10 @@ pub struct Probe {
     /// No error where nothing is at the point at the start: the probe shows NaN until something is.
     #[serde(default)]
     pub may_be_empty: bool,
+    /// Whether each sample is the mean over the time since the last one, in the place of the value at its end: measured in every step. Forces of fluids ring with their sound, which samples
+    /// at intervals catch by chance. `stop_when` compares the values all the same.
+    #[serde(default)]
+    pub mean: bool,
     /// What is measured.
     pub quantity: Quantity,
     /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken at the end of the first

@@ -2,7 +2,7 @@
 
 use meshless_engine::notation::{count, number};
 use meshless_engine::plugin::BodyKind;
-use meshless_engine::scene::Scene;
+use meshless_engine::scene::{Probe, Quantity, Scene};
 use meshless_engine::simulation::Simulation;
 
 use super::body::BodyReport;
@@ -13,11 +13,14 @@ use super::trial::Trial;
 const ACROSS: f64 = 4.0;
 /// Sub-steps of solids in a step of the fluid whose cost dominates.
 const MANY_SUB_STEPS: u32 = 50;
+/// Steps in which sound passes a few particles.
+const STEPS_OF_SOUND: f64 = 4.0;
 
 /// Notes on the scene; they do not keep it from running.
 pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &Trial) -> Vec<String> {
     let mut notes: Vec<String> = bodies.iter().flat_map(of_body).collect();
     notes.extend(support::notes(scene, sim));
+    notes.extend(scene.probes.iter().filter_map(|probe| of_probe(probe, scene, sim)));
     if let Some((sub_steps, _)) = sim.sub_steps().filter(|(sub_steps, _)| *sub_steps > 1) {
         let limit = sim.short_limit().map(|limit| format!(", limited by {}", limit.by)).unwrap_or_default();
         let costly = match sub_steps >= MANY_SUB_STEPS {
@@ -36,6 +39,19 @@ pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &Tri
         ));
     }
     notes
+}
+
+/// What a probe misses that samples the force of a fluid more seldom than its sound changes it.
+fn of_probe(probe: &Probe, scene: &Scene, sim: &Simulation) -> Option<String> {
+    let is_force = matches!(probe.quantity, Quantity::FluidForce | Quantity::FluidTorque { .. });
+    let seldom = scene.probe_interval(probe) > STEPS_OF_SOUND * sim.clock().dt;
+    (is_force && seldom && !probe.mean).then(|| {
+        format!(
+            "probe `{}` catches the force of a flow at single times; where the flow hits something this rings with its sound, and the samples have another mean: \
+             `mean: true` makes each of them the mean since the last one",
+            probe.name
+        )
+    })
 }
 
 fn of_body(body: &BodyReport) -> Vec<String> {

@@ -18,10 +18,10 @@ pub(crate) const CASE: Case = Case {
 };
 
 const SLAB: &str = include_str!("../../../tests/validation/viscous_layers/reference.csv");
-/// Speed of the walls, m/s, their angular frequency, 1/s, and the time that is looked at: the last four seconds are two periods.
+/// Speed of the walls, m/s, their angular frequency, 1/s, and the time that is looked at: the last four seconds are two periods. At 12 s what is left of the start still makes 2 %.
 const SPEED: f64 = 0.4;
 const OMEGA: f64 = std::f64::consts::PI;
-const FROM: f64 = 12.0;
+const FROM: f64 = 22.0;
 
 fn viscous_layers(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let spacing = 0.2 / across as f64;
@@ -68,14 +68,13 @@ fn viscous_layers(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let rows = Record::read(SLAB, "y", name)?.0;
         Ok(rows.iter().find(|row| (row.0 - 0.2).abs() < 1e-9).context("the reference lacks the interface")?.1)
     };
-    let most = if across >= 40 { 0.03 } else { 0.08 };
     let source = "closed form, Parthasarathy, Bhosale, Gazzola 2022";
     Ok(vec![
         Check::new(
             "speed of the interface over that of the walls",
             amplitude,
             of("abs/V")?,
-            Tolerance::Relative(most),
+            Tolerance::Relative(0.03),
             "1",
             source,
         )

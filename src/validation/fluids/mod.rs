@@ -1,5 +1,6 @@
 //! Cases F: flows.
 
+pub mod cylinder_array;
 pub mod dam_break;
 pub mod dam_break_box;
 pub mod dam_front;

@@ -6,6 +6,7 @@
 mod due;
 mod folder;
 mod frames;
+mod mean;
 mod options;
 mod plan;
 mod present;

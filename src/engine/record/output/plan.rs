@@ -105,6 +105,7 @@ impl OutputPlan {
             name: "energy".to_owned(),
             interval: scene.record_interval() / 10.0,
             may_be_empty: false,
+            mean: false,
             gauge: Arc::new(Gauge::Energies(EnergyColumns::detailed(bodies))),
         };
         let mut tracks = vec![Track::new("energy".to_owned(), ledger, folder.file(ENERGY))];

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
+use super::mean::Mean;
 use super::table::{SeriesFile, TableState};
 use crate::record::RecordError;
 use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
@@ -23,6 +24,8 @@ pub(super) struct Track {
     may_be_empty: bool,
     gauge: Arc<Gauge>,
     trigger: Trigger,
+    /// What its samples are means of, if they are.
+    mean: Option<Mean>,
     pub table: SeriesFile,
     /// Time of the last sample, s.
     last: Option<f64>,
@@ -36,6 +39,7 @@ pub(super) struct Track {
 #[derive(Serialize, Deserialize)]
 pub(super) struct TrackState {
     trigger: Trigger,
+    mean: Option<Mean>,
     last: Option<f64>,
     accounts: Option<Vec<String>>,
     held: Option<(f64, Ledger)>,
@@ -57,6 +61,7 @@ impl Track {
             may_be_empty: probe.may_be_empty,
             gauge: probe.gauge,
             trigger: Trigger::new(probe.interval),
+            mean: probe.mean.then(Mean::default),
             table: SeriesFile::new(file),
             last: None,
             accounts: None,
@@ -82,6 +87,9 @@ impl Track {
             return if matches!(*self.gauge, Gauge::Energies(_)) { Ok(()) } else { self.create(folder) };
         };
         self.trigger.resume(state.trigger);
+        if self.mean.is_some() {
+            self.mean = state.mean;
+        }
         self.last = state.last;
         self.accounts = state.accounts;
         self.held = state.held;
@@ -97,6 +105,7 @@ impl Track {
     pub fn state(&self) -> TrackState {
         TrackState {
             trigger: self.trigger,
+            mean: self.mean.clone(),
             last: self.last,
             accounts: self.accounts.clone(),
             held: self.held.clone(),
@@ -143,6 +152,9 @@ impl Track {
             self.open_accounts(step.ledger, folder)?;
         }
         let due = self.trigger.is_due(time) || (at_end && self.last != Some(time));
+        if let Some(mean) = &mut self.mean {
+            mean.add(time, &self.gauge.read(step.world, step.resources)?);
+        }
         if !due {
             return Ok(());
         }
@@ -160,7 +172,11 @@ impl Track {
                 energies.values(accounts, step.ledger)
             }
             gauge => {
-                let values = gauge.read(step.world, step.resources)?;
+                let now = gauge.read(step.world, step.resources)?;
+                let values = match &mut self.mean {
+                    Some(mean) => mean.take(now),
+                    None => now,
+                };
                 let series = self.series(step.ledger).into_iter().zip(&values);
                 samples.extend(series.map(|((path, unit), value)| (path, unit, *value)));
                 values

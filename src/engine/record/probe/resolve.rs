@@ -41,6 +41,8 @@ pub struct ResolvedProbe {
     pub interval: f64,
     /// Whether the user knows that it may find nothing.
     pub may_be_empty: bool,
+    /// Whether samples are means over the time since the last one.
+    pub mean: bool,
     /// What it measures with.
     pub gauge: Arc<Gauge>,
 }
@@ -116,6 +118,11 @@ impl ResolvedProbe {
                 Gauge::Torque(TorqueGauge { selection: on()?, about: Some(about.0) })
             }
             Some(name) => field_gauge(k, probe, name, sim, table)?,
+            None if probe.mean => {
+                let message = "energies have no mean over time: their accounts are sums over the run";
+                let problem = Problem::at_path(format!("probes[{k}].mean"), message);
+                return Err(vec![problem.help("leave `mean` out")]);
+            }
             None => Gauge::Energies(energies(k, probe.on.as_ref(), sim)?),
         };
         Ok(Self::new(probe, gauge, sim))
@@ -124,8 +131,8 @@ impl ResolvedProbe {
     fn new(probe: &scene::Probe, gauge: Gauge, sim: &SimBuilder<'_>) -> Self {
         let interval = sim.scene().probe_interval(probe);
         let gauge = if sim.dimension() == Dimension::Two { Planar::of(gauge) } else { gauge };
-        let may_be_empty = probe.may_be_empty;
-        Self { name: probe.name.clone(), interval, may_be_empty, gauge: Arc::new(gauge) }
+        let scene::Probe { may_be_empty, mean, .. } = *probe;
+        Self { name: probe.name.clone(), interval, may_be_empty, mean, gauge: Arc::new(gauge) }
     }
 }
 

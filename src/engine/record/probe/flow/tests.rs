@@ -3,6 +3,7 @@
 use crate::assembly::{BuildOptions, build, build_with};
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
+use crate::world::{BodyId, Mass, Velocity};
 
 fn text(bodies: &str, velocity: &str, gravity: &str, probes: &str) -> String {
     format!(
@@ -158,4 +159,31 @@ fn a_sensor_that_a_drop_hits_has_no_pressure_where_it_is_dry() {
     near(&scene(0.225), &[("pressure", 1000.0)], 30.0);
     // 0.4 spacings beside the drop its four particles have W V = .109, .025, .013 and .002, and 0.8 / 2 would be a full face.
     near(&scene(0.26), &[("pressure", 1000.0 * 0.149 / 0.4)], 15.0);
+}
+
+#[test]
+fn means_of_the_force_on_a_floor_are_the_momentum_that_falling_water_loses() {
+    let scene = r#"(dimension: Two, precision: Double, domain: (min: (0, -1), max: (0.5, 1), periodic: [X]),
+        materials: {"water": Fluid(density: 1000.0, sound_speed: 20.0)},
+        bodies: [
+            (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.5, 0.25)), spacing: 0.025, formulation: Fluid, velocity: (0, -1)),
+            (name: "floor", material: "wall", shape: Box(min: (0, -0.1), max: (0.5, 0)), spacing: 0.025, formulation: Wall()),
+        ],
+        probes: [Probe(name: "p", on: Select(body: "floor"), mean: true, every: 0.02, quantity: FluidForce)], time: (end: 0.1))"#;
+    let (scene, source) = parse(Source::new("test.ron", scene.to_owned())).unwrap_or_else(|e| panic!("{e}"));
+    let folder = tempfile::tempdir().unwrap();
+    let options = BuildOptions::into_folder(folder.path());
+    let mut sim =
+        build_with(&scene, &source, &Registry::standard(), &options).unwrap_or_else(|e| panic!("{e}"));
+    sim.run(|_| true).unwrap();
+    sim.finish().unwrap();
+    let csv = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
+    let rows = csv.lines().skip(1).map(|line| line.split(',').map(|value| value.parse::<f64>().unwrap()));
+    let rows: Vec<Vec<f64>> = rows.map(Iterator::collect).collect();
+    assert_eq!(rows.len(), 6);
+    let impulse: f64 = rows.windows(2).map(|pair| pair[1][2] * (pair[1][0] - pair[0][0])).sum();
+    let (view, water) = sim.world().body_view(BodyId(0));
+    let (mass, velocity) = (view.read::<Mass>().unwrap(), view.read::<Velocity>().unwrap());
+    let gained: f64 = water.map(|row| mass[row].0 * (velocity[row].0.y + 1.0)).sum();
+    assert!(gained > 50.0 && (gained + impulse).abs() < 1e-9 * gained, "{gained} {impulse}");
 }
