@@ -109,11 +109,14 @@ impl<R: Region + ?Sized> Region for DifferenceRegion<R> {
     fn clearance(&self, point: DVec3) -> f64 {
         let (whole, hole) = (self.whole.clearance(point), self.hole.distance(point));
         let distance = whole.max(-hole);
-        if distance > 0.0 {
-            openings::through(self, point, whole, hole).unwrap_or(distance)
-        } else {
-            distance
+        if distance <= 0.0 {
+            return distance;
         }
+        let edge = || {
+            let is_before_both = whole.min(-hole) > 0.0;
+            is_before_both.then(|| openings::from_edge(self, point, whole, -hole)).flatten()
+        };
+        openings::through(self, point, whole, hole).or_else(edge).unwrap_or(distance)
     }
 
     fn bounds(&self) -> Aabb {

@@ -1,5 +1,5 @@
 //! Distances through the openings of holes: where the face of a hole is one of the body it is cut out of, as at the ends of a pipe or where a second hole begins, nothing is
-//! between the two, but what is beside the opening, on either side, is near.
+//! between the two, but what is beside the opening, on either side, is near. From the edge of a hole the distance is that from the edge, not from the nearer one of its two faces.
 
 use glam::DVec3;
 
@@ -9,6 +9,9 @@ use super::shape::Shape;
 
 /// Distance of two faces up to which they are one, over the extent of the hole.
 const COMMON: f64 = 1e-9;
+
+/// Least cosine of the angle between the normals of two faces that meet in an edge: opposite ones are those of a thin part.
+const SHARP: f64 = -0.9;
 
 /// Step away from a face that is seen as on its other side, over the extent of the hole.
 const BESIDE: f64 = 1e-6;
@@ -24,12 +27,7 @@ pub(super) fn through<R: Region + ?Sized>(
     if (of_whole - of_hole).abs() > COMMON * extent {
         return None;
     }
-    let axes = &DVec3::AXES[..cut.axes];
-    let slope = |axis: DVec3| {
-        let step = BESIDE * extent * axis;
-        cut.whole.distance(point + step) - cut.whole.distance(point - step)
-    };
-    let out = axes.iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero();
+    let out = normal(|x| cut.whole.distance(x), point, BESIDE * extent, cut.axes);
     let (foot, depth) = (point - of_whole * out, of_whole.abs());
     let in_hole = |x: DVec3| -cut.hole.distance(x);
     let outside = |x: DVec3| cut.whole.clearance(x);
@@ -44,6 +42,30 @@ pub(super) fn through<R: Region + ?Sized>(
         [sideways(outside, point, out, depth, reach), sideways(in_hole, foot, -out, 0.0, reach)]
     };
     Some(of_sides.min(depth.hypot(beyond)))
+}
+
+/// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where the nearest is the edge between the two faces; none where it is one of the faces.
+pub(super) fn from_edge<R: Region + ?Sized>(
+    cut: &DifferenceRegion<R>,
+    point: DVec3,
+    of_whole: f64,
+    in_hole: f64,
+) -> Option<f64> {
+    let step = BESIDE * cut.hole.bounds().extent().max_element();
+    let faces = [
+        normal(|x| cut.whole.distance(x), point, step, cut.axes),
+        normal(|x| -cut.hole.distance(x), point, step, cut.axes),
+    ];
+    let cos = faces[0].dot(faces[1]);
+    let is_edge = cos > SHARP && in_hole > of_whole * cos && of_whole > in_hole * cos && cos < 1.0;
+    let square = of_whole * of_whole + in_hole * in_hole - 2.0 * of_whole * in_hole * cos;
+    is_edge.then(|| (square / (1.0 - cos * cos)).sqrt())
+}
+
+/// Direction in which a distance grows.
+fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize) -> DVec3 {
+    let slope = |axis: DVec3| distance(point + step * axis) - distance(point - step * axis);
+    DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
 
 /// Distance from what is beside the way from `start` along `out`, away from an opening `behind` it: that at which the distance no longer grows as that from the opening \[m\].

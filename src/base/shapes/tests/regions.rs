@@ -174,6 +174,8 @@ fn a_slit_in_a_floor_is_open_and_has_no_sides_above_it() {
         format!("Difference(Difference({outer}, {slit}), {tank})"),
         format!("Difference({outer}, Union([{tank}, {slit}]))"),
         format!("Difference({outer}, Translate(shape: Union([{slit}, {tank}]), by: (0, 0)))"),
+        // Holes that overlap.
+        format!("Difference({outer}, Union([{tank}, Box(min: (0.4, -0.3), max: (0.6, 0.7))]))"),
     ];
     // Distance from a box of the floor beside the slit.
     let beside = |x: f64, y: f64, from: f64, to: f64| {
