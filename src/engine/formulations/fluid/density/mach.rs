@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FluidState, Group};
+use crate::formulations::fluid::cloud::{FluidState, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
 use crate::schedule::{Step, StepError, warn_anew};
@@ -15,34 +15,54 @@ const FAST: f64 = 0.2;
 /// Growth of the largest Mach number for which the warning is written anew.
 const GROWTH: f64 = 1.05;
 
-/// Largest speed in a frame that moves, over that at rest, for which the frame is taken.
+/// Largest speed in a frame, over that in the first one, for which the frame is taken.
 const SLOWER: f64 = 0.9;
 
-/// Largest speed of a fluid against the frame of its flow, m/s; `at_rest` is the one against rest. At the speeds of fluids that are no warning
+/// The frame that speeds are measured in at first: the mean velocity of the largest wall, m/s, or rest.
+pub fn wall_frame(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
+    let is_wall = |group: &&Group| matches!(&group.role, Role::Boundary(surface) if !surface.moved);
+    let largest = groups.iter().filter(is_wall).max_by_key(|group| group.rows.len());
+    largest.map_or(DVec3::ZERO, |group| mean_velocity(std::slice::from_ref(group), records))
+}
+
+fn rows<'a>(group: &Group, records: &'a [FlowParticle]) -> impl Iterator<Item = &'a FlowParticle> {
+    records[group.cloud.clone()].iter().filter(|record| record.volume() > 0.0)
+}
+
+fn mean_velocity(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
+    let all = || groups.iter().flat_map(|group| rows(group, records));
+    all().map(FlowParticle::velocity).sum::<DVec3>() / all().count().max(1) as f64
+}
+
+/// Largest speed of a fluid against the frame of its flow, m/s; `at_first` is the one against `base`, the [`wall_frame`]. At the speeds of fluids that are no warning
 /// nothing is looked for.
-pub fn relative_speed(at_rest: f64, group: &Group, groups: &[Group], records: &[FlowParticle]) -> f64 {
-    if group.fluid().is_none_or(|state| at_rest <= FAST * state.sound_speed) {
-        return at_rest;
+pub fn relative_speed(
+    at_first: f64,
+    base: DVec3,
+    group: &Group,
+    groups: &[Group],
+    records: &[FlowParticle],
+) -> f64 {
+    if group.fluid().is_none_or(|state| at_first <= FAST * state.sound_speed) {
+        return at_first;
     }
-    let rows = |group: &Group| records[group.cloud.clone()].iter().filter(|record| record.volume() > 0.0);
     let fastest = |group: &Group, frame: DVec3| {
-        rows(group).map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max).sqrt()
+        rows(group, records)
+            .map(|record| record.velocity().distance_squared(frame))
+            .fold(0.0, f64::max)
+            .sqrt()
     };
     let bounds = || groups.iter().filter(|group| group.fluid().is_none());
-    let mean = |groups: &[Group]| {
-        let sum: DVec3 = groups.iter().flat_map(rows).map(FlowParticle::velocity).sum();
-        sum / groups.iter().flat_map(rows).count().max(1) as f64
-    };
-    let of_bounds = bounds().map(|group| mean(std::slice::from_ref(group)));
-    let of_all = bounds().next().is_none().then(|| mean(groups));
+    let of_bounds = bounds().map(|group| mean_velocity(std::slice::from_ref(group), records));
+    let of_all = bounds().next().is_none().then(|| mean_velocity(groups, records));
     let in_frame = |frame| groups.iter().map(|group| fastest(group, frame)).fold(0.0, f64::max);
-    let mut least = in_frame(DVec3::ZERO);
-    let mut speed = at_rest;
-    // A frame that is slow beside the flow is as good as rest.
-    for frame in of_bounds.chain(of_all).filter(|frame| frame.length() > (1.0 - SLOWER) * at_rest) {
+    let mut least = in_frame(base);
+    let mut speed = at_first;
+    // A frame that is slow beside the flow is as good as the first one.
+    for frame in of_bounds.chain(of_all).filter(|frame| frame.distance(base) > (1.0 - SLOWER) * at_first) {
         let largest = in_frame(frame);
         if largest < SLOWER * least {
-            (least, speed) = (largest, fastest(group, frame).min(at_rest));
+            (least, speed) = (largest, fastest(group, frame).min(at_first));
         }
     }
     speed

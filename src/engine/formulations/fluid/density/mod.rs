@@ -7,5 +7,5 @@ mod mach;
 mod state;
 
 pub use continuity::{Continuity, DensityShift, SHIFTING_ENERGY};
-pub use mach::relative_speed;
+pub use mach::{relative_speed, wall_frame};
 pub use state::ApplyState;

@@ -1,6 +1,8 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
-use super::mach::{Mach, relative_speed};
+use glam::DVec3;
+
+use super::mach::{Mach, relative_speed, wall_frame};
 use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
@@ -29,7 +31,7 @@ pub struct ApplyState {
 pub struct StateSum {
     /// Energy of compression, J.
     energy: f64,
-    /// Largest squared speed, m2/s2.
+    /// Largest squared speed against the frame of the walls, m2/s2.
     speed_squared: f64,
 }
 
@@ -52,6 +54,7 @@ impl Run for ApplyState {
         self.mach.resize(groups.len(), Mach::default());
         let fluids = groups.iter().filter_map(Group::fluid);
         let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
+        let frame = wall_frame(groups, records);
         for (group, mach) in groups.iter().zip(&mut self.mach) {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
@@ -66,10 +69,11 @@ impl Run for ApplyState {
                 &mass[rows.clone()],
                 &removed[rows],
             );
-            let sum =
-                for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| run_hot(Apply { state, rows }));
+            let sum = for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| {
+                run_hot(Apply { state, frame, rows })
+            });
             step.ledger.set(account, group.body, sum.energy);
-            let speed = relative_speed(sum.speed_squared.sqrt(), group, groups, records);
+            let speed = relative_speed(sum.speed_squared.sqrt(), frame, group, groups, records);
             let sound = state.sound_speed;
             let name = &step.world.body(group.body).name;
             mach.look(speed, state, name, step)?;
@@ -100,6 +104,8 @@ impl Run for ApplyState {
 /// The states of a block.
 struct Apply<'a> {
     state: &'a FluidState,
+    /// Velocity that speeds are measured against, m/s.
+    frame: DVec3,
     rows: Rows<'a>,
 }
 
@@ -122,6 +128,7 @@ impl HotLoop for Apply<'_> {
             let volume = mass[k].0 / rho;
             record.place.0[3] = if removed[k] == Removed::NO { volume } else { 0.0 };
             let [x, y, z, _] = record.motion.0;
+            let (x, y, z) = (x - self.frame.x, y - self.frame.y, z - self.frame.z);
             record.motion.0[3] = p;
             sum.energy = a.mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
             let square = a.mul_add(x, x, a.mul_add(y, y, z * z));

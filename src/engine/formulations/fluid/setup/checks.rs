@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FlowCloud, Group};
-use crate::formulations::fluid::density::relative_speed;
+use crate::formulations::fluid::density::{relative_speed, wall_frame};
 use crate::formulations::fluid::lists::{Thickness, Thin};
 use crate::formulations::fluid::walls::WallBody;
 use crate::neighbors::Periodic;
@@ -118,10 +118,13 @@ pub fn wall_is_thick(
 /// An error where a fluid starts faster than its sound, relative to its boundaries.
 pub fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
     cloud.pack(world).map_err(|error| SetupError::internal(&error))?;
+    let frame = wall_frame(&cloud.groups, &cloud.records);
     for group in &cloud.groups {
         let Some(state) = group.fluid() else { break };
-        let speeds = cloud.records[group.cloud.clone()].iter().map(|record| record.velocity().length());
-        let fastest = relative_speed(speeds.fold(0.0, f64::max), group, &cloud.groups, &cloud.records);
+        let records = &cloud.records[group.cloud.clone()];
+        let speeds = records.iter().map(|record| record.velocity().distance(frame));
+        let fastest = speeds.fold(0.0, f64::max);
+        let fastest = relative_speed(fastest, frame, group, &cloud.groups, &cloud.records);
         if fastest >= state.sound_speed {
             let body = world.body(group.body);
             let message = format!(

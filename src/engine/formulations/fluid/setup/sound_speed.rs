@@ -10,7 +10,7 @@ use crate::scene::{Problem, Scene};
 const RATIO: f64 = 10.0;
 
 /// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start, against rest or against the one that
-/// bounds the flow and beside which the fastest is slowest, and of a fall through the height of all fluid bodies.
+/// bounds the flow, or, where nothing does, the fluid beside which the fastest is slowest, and of a fall through the height of all fluid bodies.
 ///
 /// # Errors
 /// Nothing moves, so that there is nothing to estimate from.
@@ -22,9 +22,10 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
     let fall = if high > low { (2.0 * (high - low)).sqrt() } else { 0.0 };
     let velocity = |body: &BodyPlan| body.velocity.map_or(DVec3::ZERO, |v| v.0);
     let fastest = |frame: DVec3| bodies.iter().map(|body| velocity(body).distance(frame)).fold(0.0, f64::max);
-    let bounds = bodies.iter().filter(|body| body.kind != BodyKind::Fluid);
+    let is_bounded = bodies.iter().any(|body| body.kind != BodyKind::Fluid);
+    let frames = bodies.iter().filter(|body| !is_bounded || body.kind != BodyKind::Fluid);
     let at_rest = fastest(DVec3::ZERO);
-    let slowest = bounds.map(|body| fastest(velocity(body))).fold(at_rest, f64::min);
+    let slowest = frames.map(|body| fastest(velocity(body))).fold(at_rest, f64::min);
     let fastest = if fall.max(slowest) > 0.0 { fall.max(slowest) } else { at_rest };
     let mut problems = Vec::new();
     for body in bodies {

@@ -313,3 +313,40 @@ fn the_sound_speed_is_ten_times_that_of_a_fall_through_the_water() {
     let height = heights.clone().fold(0.0, f64::max) - heights.fold(1.0, f64::min);
     assert!((found - 10.0 * (2.0 * 9.81 * height).sqrt()).abs() < 1e-9, "{found}");
 }
+
+#[test]
+fn drops_that_fly_together_have_the_sound_of_their_meeting() {
+    let sound = |common: f64| {
+        let (left, right) = (common + 2.0, common - 2.0);
+        let sim = simulation(&format!(
+            r#"(dimension: Two, materials: {{"water": Fluid(density: 1000.0)}},
+                bodies: [
+                    (name: "one", material: "water", shape: Sphere(center: (0, 0), radius: 0.1), spacing: 0.02, formulation: Fluid, velocity: ({left}, 0)),
+                    (name: "other", material: "water", shape: Sphere(center: (0.5, 0), radius: 0.1), spacing: 0.02, formulation: Fluid, velocity: ({right}, 0)),
+                ], time: (end: 0.01))"#
+        ));
+        let cloud = sim.resources().get::<FlowCloud>();
+        cloud.groups[0].fluid().expect("a fluid").sound_speed
+    };
+    assert_eq!(sound(0.0), 20.0);
+    // They meet at 4 m/s.
+    assert_eq!(sound(300.0), 40.0);
+}
+
+#[test]
+fn a_tank_that_moves_with_its_water_takes_the_steps_of_a_tank_at_rest() {
+    let steps = |common: f64| {
+        let mut sim = simulation(&format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 20.0)}},
+                bodies: [
+                    (name: "water", material: "water", shape: Box(min: (0, 0), max: (0.4, 0.2)), spacing: 0.02, formulation: Fluid, velocity: ({common}, 0)),
+                    (name: "tank", material: "wall", spacing: 0.02, formulation: Wall(), velocity: ({common}, 0),
+                     shape: Difference(Box(min: (-0.06, -0.06), max: (0.46, 0.4)), Box(min: (0, 0), max: (0.4, 1)))),
+                ], time: (end: 0.1))"#
+        ));
+        sim.run(|_| true).expect("a run");
+        sim.clock().step
+    };
+    // At 3.8 m/s, 0.19 of the speed of sound, there was a sixth more.
+    assert_eq!(steps(3.8), steps(0.0));
+}
