@@ -29,8 +29,8 @@ pub(super) struct HourglassShare {
     largest: Vec<f64>,
     /// Volume of each body, m3.
     volumes: Vec<f64>,
-    /// Bodies that the user has been warned of.
-    warned: Vec<bool>,
+    /// Largest hourglass energy of each body after the first load, J, and when it was, s.
+    most: Vec<(f64, f64)>,
 }
 
 impl HourglassShare {
@@ -44,7 +44,7 @@ impl HourglassShare {
     pub fn look(&mut self, ledger: &Ledger, bodies: usize) {
         self.largest_internal.resize(bodies, 0.0);
         self.largest.resize(bodies, 0.0);
-        self.warned.resize(bodies, false);
+        self.most.resize(bodies, (0.0, 0.0));
         for (k, largest) in self.largest_internal.iter_mut().enumerate() {
             *largest = largest.max(energy(ledger, "strain", k) + energy(ledger, "plastic_work", k));
         }
@@ -55,24 +55,34 @@ impl HourglassShare {
         }
     }
 
-    /// Warns once of every body whose share is too large now.
-    pub fn warn(&mut self, step: &mut Step<'_>) {
+    /// Takes in the hourglass energies of a step that is judged.
+    pub fn judge(&mut self, ledger: &Ledger, time: f64) {
+        for (k, most) in self.most.iter_mut().enumerate() {
+            let hourglass = energy(ledger, "hourglass", k);
+            if hourglass > most.0 {
+                *most = (hourglass, time);
+            }
+        }
+    }
+
+    /// Warns of every body whose share has been too large. What it is a share of is only known at the end: of a small load that comes first the control carries more than of
+    /// the large one that follows.
+    pub fn warn(&self, step: &mut Step<'_>) {
         let per_volume =
             self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume);
         let densest = per_volume.fold(0.0, f64::max);
         for (k, body) in step.world.bodies().iter().enumerate() {
-            let (hourglass, internal) = (energy(step.ledger, "hourglass", k), self.largest_internal[k]);
+            let ((hourglass, time), internal) = (self.most[k], self.largest_internal[k]);
             let small = hourglass <= SHARE * internal || hourglass <= LEAST * self.largest[k];
-            if self.warned[k] || internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] || small {
+            if internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] || small {
                 continue;
             }
-            self.warned[k] = true;
             step.warnings.push(format!(
-                "the hourglass energy of body `{}` is {:.0} % of its largest strain energy plus plastic work, first seen at \
+                "the hourglass energy of body `{}` is {:.0} % of its largest strain energy plus plastic work, at \
                  {}: more particles across the body or a smaller coefficient of the hourglass control would help",
                 body.name,
                 100.0 * hourglass / internal,
-                quantity(step.clock.time, "s")
+                quantity(time, "s")
             ));
         }
     }

@@ -63,6 +63,9 @@ impl Run for Watchdog {
         if self.frames.is_due(step.clock.time) || at_end {
             // Waves of the first load have the control carry a part of them that the result has not.
             if at_end || step.clock.time > START * self.end {
+                self.hourglass.judge(step.ledger, step.clock.time);
+            }
+            if at_end {
                 self.hourglass.warn(step);
             }
             self.passing.look(step)?;

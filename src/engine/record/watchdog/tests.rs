@@ -46,6 +46,9 @@ struct Book {
     energy: f64,
     #[serde(default)]
     dissipated: bool,
+    /// `energy` times t squared.
+    #[serde(default)]
+    squared: bool,
 }
 
 impl Plugin for Book {
@@ -60,7 +63,8 @@ impl Plugin for Book {
                 return Ok(());
             }
             let account = step.ledger.account(&self.account, AccountKind::Stored);
-            step.ledger.set(account, BodyId(1), self.energy * step.clock.end());
+            let time = step.clock.end();
+            step.ledger.set(account, BodyId(1), self.energy * if self.squared { time * time } else { time });
             Ok(())
         }));
         Ok(())
@@ -140,16 +144,13 @@ fn a_body_without_any_energy_is_left_alone() {
 
 #[test]
 fn hourglass_energy_is_warned_of_once_for_each_body() {
-    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2)],
+    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 10.0, squared: true)],
                  record: (every: 0.001), time: (end: 0.01),";
     let mut sim = blocks(scene);
     sim.run(|_| true).unwrap();
     let hourglass: Vec<&String> = sim.warnings().iter().filter(|w| w.contains("hourglass energy")).collect();
     assert_eq!(hourglass.len(), 1, "{:?}", sim.warnings());
-    assert!(
-        hourglass[0].contains("of body `right`") && hourglass[0].contains("first seen at"),
-        "{hourglass:?}"
-    );
+    assert!(hourglass[0].contains("of body `right`") && hourglass[0].contains(", at 10 ms"), "{hourglass:?}");
 }
 
 #[test]
@@ -159,6 +160,25 @@ fn hourglass_energy_that_is_small_beside_plastic_work_is_not_warned_of() {
                  record: (every: 0.001), time: (end: 0.01),";
     let mut sim = blocks(scene);
     sim.run(|_| true).unwrap();
+    assert!(!sim.warnings().iter().any(|w| w.contains("hourglass energy")), "{:?}", sim.warnings());
+}
+
+#[test]
+fn hourglass_energy_is_judged_beside_all_that_the_run_has_brought() {
+    // It grows with t and the strain energy with its square: its share is large at first, where it was warned of, and 5 % at the end.
+    let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2)],
+                 record: (every: 0.001), time: (end: 0.01),";
+    let mut sim = blocks(scene);
+    let mut largest = 0.0_f64;
+    sim.run(|sim| {
+        let of = |name: &str| sim.ledger().total_named(name);
+        if sim.clock().time > 0.001 {
+            largest = largest.max(of("hourglass") / of("strain"));
+        }
+        true
+    })
+    .unwrap();
+    assert!(largest > 0.2, "{largest}");
     assert!(!sim.warnings().iter().any(|w| w.contains("hourglass energy")), "{:?}", sim.warnings());
 }
 
