@@ -320,3 +320,67 @@ fn what_contacts_of_removed_particles_held_is_booked() {
         assert!(largest < 1.5e-3 && last.abs() < 2e-3, "{anvil}: {largest} in a step, {last} in the end");
     }
 }
+
+/// A block that slides without friction on another one, flat on flat, under its weight, and can fail at that strain; in steps of that share of the usual ones.
+fn sliding(contact: &str, limit: f64, factor: f64) -> Simulation {
+    let end = if limit < 0.01 { 0.004 } else { 0.06 };
+    let text = format!(
+        r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "base", material: "soft", shape: Box(min: (0, 0), max: (0.15, 0.03)), spacing: 0.005, formulation: TotalLagrangian,
+                      plugins: [hourglass_control()]),
+                     (name: "block", material: "soft", shape: Box(min: (0.0413, 0.03), max: (0.0713, 0.06)), spacing: 0.005, formulation: TotalLagrangian,
+                      velocity: (0.5, 0), plugins: [hourglass_control(), failure(criterion: MaximumPrincipalStrain(limit: {limit:?}))])],
+            contacts: [(between: ("block", "base"), law: Penalty(){contact})],
+            conditions: [Fix(on: Select(body: "base", face: MinY)), BodyForce(on: Select(body: "block"), value: (0, -200))],
+            time: (end: {end:?}, step: Adaptive(factor: {factor:?})))"#
+    );
+    let (scene, source) = parse(Source::new("sliding.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Mean velocity of the sliding block along the face, m/s.
+fn speed(sim: &Simulation) -> f64 {
+    let (view, rows) = sim.world().body_view(BodyId(1));
+    let velocity = view.read::<Velocity>().expect("velocities");
+    rows.clone().map(|row| velocity[row].0.x).sum::<f64>() / rows.len() as f64
+}
+
+#[test]
+fn a_body_that_can_fail_slides_on_its_surface_until_it_does() {
+    let mut sim = sliding("", 0.5, 1.0);
+    sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+    // Its particles would have stopped it: without friction it keeps 0.5 m/s.
+    assert!((speed(&sim) - 0.5).abs() < 2e-3, "{}", speed(&sim));
+    assert!(sim.ledger().relative_error().abs() < 1e-3, "{}", sim.ledger().relative_error());
+    assert!(sim.warnings().is_empty(), "{:?}", sim.warnings());
+}
+
+#[test]
+fn a_skin_whose_particle_fails_hands_its_energy_over_to_particles() {
+    // The step in which it does closes to the square of its length.
+    let jump = |factor: f64| {
+        let mut sim = sliding(", friction: 0.3", 0.006, factor);
+        let total = |sim: &Simulation, name: &str| sim.ledger().total_named(name);
+        let (mut contact, mut error, mut jump) = (0.0, 0.0, None);
+        sim.run(|sim| {
+            let changed = total(sim, "contact_surface");
+            if changed != 0.0 && jump.is_none() {
+                // What the skin held is held by particles, or stands in an account of its own.
+                let after = total(sim, "contact");
+                assert!(
+                    (after + changed - contact).abs() < 0.1 * contact,
+                    "{contact} J, {after} and {changed} J"
+                );
+                jump = Some(sim.ledger().balance_error() - error);
+            }
+            (contact, error) = (total(sim, "contact"), sim.ledger().balance_error());
+            true
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+        let told = |text: &&String| text.contains("no longer with its surface from 3.4");
+        assert_eq!(sim.warnings().iter().filter(told).count(), 1, "{:?}", sim.warnings());
+        jump.expect("a particle of the skin fails")
+    };
+    let (coarse, fine) = (jump(0.4), jump(0.2));
+    assert!(coarse.abs() < 2e-4 && fine.abs() < 0.3 * coarse.abs(), "{coarse} {fine}");
+}

@@ -35,8 +35,8 @@ pub struct Contact {
 /// With what deformable bodies touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ContactSurface {
-    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, bodies that may fail, those of
-    /// periodic domains, contact of a body with itself and with a `Wall` fall back to `Particles`.
+    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, those of periodic domains, contact of a body with itself
+    /// and with a `Wall` fall back to `Particles`; so do bodies that can fail as soon as a particle of that surface has failed.
     #[default]
     Skin,
     /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.

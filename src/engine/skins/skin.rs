@@ -110,6 +110,14 @@ impl Skin {
         &self.maps[carrier.map as usize]
     }
 
+    /// The particles that carry it, ascending.
+    pub fn particles(&self) -> Vec<u32> {
+        let mut particles: Vec<u32> = self.carriers.iter().map(|carrier| carrier.particle).collect();
+        particles.sort_unstable();
+        particles.dedup();
+        particles
+    }
+
     /// Number of all carriers of all vertices.
     pub(super) fn carrier_count(&self) -> usize {
         self.carriers.len()

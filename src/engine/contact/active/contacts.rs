@@ -122,6 +122,11 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         &self.pushes
     }
 
+    /// Has all contacts of the step begin with what `begun` makes of them.
+    pub fn begin(&mut self, begun: impl Fn(PairKey, &T) -> History) {
+        self.histories.set(self.met.iter().map(|(key, met)| (*key, begun(*key, met))).collect());
+    }
+
     /// Works out what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
     /// lose, added by the `nodes` of the first body.
     pub fn respond(

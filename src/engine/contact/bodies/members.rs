@@ -16,6 +16,9 @@ use crate::world::{
     Velocity, World,
 };
 
+/// What a contact of particles means for a body that slides.
+pub(in crate::contact) const BUMPS: &str = "what slides on particles meets bumps: tangential forces of up to a third of the normal force, with and without friction";
+
 /// What the particles of a body bring into contact.
 #[derive(Clone)]
 pub(in crate::contact) struct MemberParticles {
@@ -34,11 +37,7 @@ impl MemberParticles {
     pub fn of(body: &BodyPlan, dimension: Dimension) -> Self {
         let root = |volume: f64| if dimension == Dimension::Two { volume.sqrt() } else { volume.cbrt() };
         let radius: Vec<f64> = body.sites.iter().map(|site| 0.5 * root(site.volume)).collect();
-        let mut state = ColumnSet::default();
-        if let Ok(law) = body.solid_law() {
-            law.state(&mut state);
-        }
-        let deform = body.offers(Offer::DeformedContact) && state.get(Damage::NAME).is_none();
+        let deform = body.offers(Offer::DeformedContact) && !can_fail(body);
         let on_a_side = on_a_side(body.sites.iter().map(|site| site.position), &radius, dimension);
         Self { body: body.id, radius, deform, on_a_side }
     }
@@ -52,6 +51,15 @@ impl MemberParticles {
     pub fn least(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Whether particles of a body can fail.
+pub(in crate::contact) fn can_fail(body: &BodyPlan) -> bool {
+    let mut state = ColumnSet::default();
+    if let Ok(law) = body.solid_law() {
+        law.state(&mut state);
+    }
+    state.get(Damage::NAME).is_some()
 }
 
 fn on_a_side(places: impl Iterator<Item = DVec3>, radius: &[f64], dimension: Dimension) -> usize {

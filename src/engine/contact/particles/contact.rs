@@ -5,7 +5,7 @@ use super::search::{Crowd, Search};
 use crate::contact::active::{ActiveContacts, ContactEnd, ContactNodes, Least};
 use crate::contact::bodies::{MemberColumns, MemberParticles, MotionBounds, Nearness, failed};
 use crate::contact::response::time_step::{self, Touches};
-use crate::contact::response::{ContactEnergy, Interaction, PairKey};
+use crate::contact::response::{ContactEnergy, History, Interaction, PairKey};
 use crate::neighbors::Periodic;
 use crate::parallel::{Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
@@ -83,6 +83,27 @@ impl ParticleContact {
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
     ) -> Result<ContactEnergy, StepError> {
+        let (speed, stretch) = self.search_anew(step, motion)?;
+        let (energies, least) = self.evaluate(step, stretch)?;
+        let bodies = (self.first.body, self.second.body);
+        let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
+        time_step::propose(step, bodies, &touches)?;
+        Ok(energies)
+    }
+
+    /// What the springs of all pairs hold that touch, J.
+    pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
+        let (_, stretch) = self.search_anew(step, motion)?;
+        Ok(self.evaluate(step, stretch)?.0.stored)
+    }
+
+    /// Has the pairs that touch begin with that part of their overlaps.
+    pub fn begin(&mut self, part: f64) {
+        self.contacts.begin(|_, near| History::begun(near.overlap, part));
+    }
+
+    /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a bound of all stretches.
+    fn search_anew(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
         let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
         if self.search.moved(speed * step.clock.dt, stretch) {
@@ -96,11 +117,7 @@ impl ParticleContact {
                 self.contact_nodes[1].renew(pairs, &[ContactEnd::Second]);
             }
         }
-        let (energies, least) = self.evaluate(step, stretch)?;
-        let bodies = (self.first.body, self.second.body);
-        let touches = Touches { squared: self.stiffest(), stored: energies.stored, speed, reach: least };
-        time_step::propose(step, bodies, &touches)?;
-        Ok(energies)
+        Ok((speed, stretch))
     }
 
     /// The force of every pair that touches; returns the energies, and the least distance of two that are near and just touch, m.

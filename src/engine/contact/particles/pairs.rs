@@ -98,6 +98,7 @@ impl ContactPairs<'_> {
         losses.keep(share, before, &response.history);
         energies.losses.add(&losses);
         energies.stored += share * (response.spring.energy + response.history.energy());
+        energies.ahead += 0.5 * dt * share * response.force.dot(state.velocity);
         let across = near.normal * near.normal;
         let stiffness = mobility.map(|mobility| response.spring.stiffness * mobility.dot(across));
         let force = share * response.force;

@@ -6,12 +6,12 @@ use super::body::{elastic_of, find, is_rigid};
 use super::checks::Named;
 use super::images::mirrors;
 use super::skins_of::BodySkins;
-use crate::contact::bodies::{ContactSides, MemberParticles, NodeTurn, SideNodes};
+use crate::contact::bodies::{BUMPS, ContactSides, MemberParticles, NodeTurn, SideNodes, can_fail};
 use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
 use crate::contact::skins::{SkinOnTool, SkinPair};
-use crate::contact::system::Touching;
+use crate::contact::system::{Acts, Fragile, Touching};
 use crate::contact::tools::SurfaceContact;
 use crate::plugin::{BodyPlan, SimBuilder};
 use crate::rigid::sphere_of;
@@ -29,8 +29,14 @@ pub(super) struct Planner<'a> {
     pub planes: &'a [MirrorPlane],
     /// The skins that bodies touch with.
     pub skins: BodySkins,
+    /// Pairs that touch with skins until a particle of these fails.
+    pub fragile: Vec<Fragile>,
     /// What is reported of bodies that have none.
     pub warnings: Vec<String>,
+}
+
+fn always(touching: Vec<Touching>) -> Vec<(Touching, Acts)> {
+    touching.into_iter().map(|touching| (touching, Acts::Always)).collect()
 }
 
 impl Planner<'_> {
@@ -38,14 +44,14 @@ impl Planner<'_> {
     ///
     /// # Errors
     /// The parameters of the law are wrong, or the domain is too short for the particles.
-    pub fn pairs_of(&mut self, named: &Named<'_>) -> Result<Vec<Touching>, Vec<Problem>> {
+    pub fn pairs_of(&mut self, named: &Named<'_>) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
         let (a, b) = &named.contact.between;
         let (first, second) = (find(self.sim, a), find(self.sim, b));
         match (is_rigid(first), is_rigid(second)) {
             (false, false) => self.deformable(named, [first, second]),
-            (false, true) => Ok(vec![self.on_tool(named, first, second)?]),
-            (true, false) => Ok(vec![self.on_tool(named, second, first)?]),
-            (true, true) => self.rigid(named, [first, second]),
+            (false, true) => self.on_tool(named, first, second),
+            (true, false) => self.on_tool(named, second, first),
+            (true, true) => Ok(always(self.rigid(named, [first, second])?)),
         }
     }
 
@@ -54,17 +60,32 @@ impl Planner<'_> {
         &mut self,
         named: &Named<'_>,
         [first, second]: [&BodyPlan; 2],
-    ) -> Result<Vec<Touching>, Vec<Problem>> {
+    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
         if first.id != second.id {
             if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
                 let interaction = self.interaction(named, ContactSurface::Skin)?;
-                return Ok(vec![Touching::Skins(Box::new(SkinPair::new(interaction, [one, other])))]);
+                let skins =
+                    Touching::Skins(Box::new(SkinPair::new(interaction, [one.clone(), other.clone()])));
+                return self.until_failure(skins, &[(first, one), (second, other)], &|planner| {
+                    planner.of_particles(named, [first, second])
+                });
             }
         } else if named.contact.surface == ContactSurface::Skin {
-            let warning =
-                format!("body `{}` touches itself with its particles, not with its surface", first.name);
+            let warning = format!(
+                "body `{}` touches itself with its particles, not with its surface; {BUMPS}",
+                first.name
+            );
             self.warnings.push(warning);
         }
+        Ok(always(self.of_particles(named, [first, second])?))
+    }
+
+    /// The particles of two deformable bodies, or of one with itself.
+    fn of_particles(
+        &self,
+        named: &Named<'_>,
+        [first, second]: [&BodyPlan; 2],
+    ) -> Result<Vec<Touching>, Vec<Problem>> {
         let mut pairs = Vec::new();
         for mirror in mirrors(self.planes, first.id, second.id) {
             let mut bodies = [first, second].map(|body| self.particles(body));
@@ -85,14 +106,34 @@ impl Planner<'_> {
         named: &Named<'_>,
         soft: &BodyPlan,
         tool: &BodyPlan,
-    ) -> Result<Touching, Vec<Problem>> {
-        let nodes = SideNodes::Particles(self.particles(soft));
+    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+        let sides = self.sides(SideNodes::Particles(self.particles(soft)), [soft, tool]);
         let Some(skin) = self.skin(soft, named) else {
-            return self.on_surface(named, self.sides(nodes, [soft, tool]));
+            return Ok(always(vec![self.on_surface(named, sides)?]));
         };
         let interaction = self.interaction(named, ContactSurface::Skin)?;
-        let sides = self.sides(nodes, [soft, tool]);
-        Ok(Touching::SkinOnTool(Box::new(SkinOnTool::new(interaction, skin, sides))))
+        let on_tool = SkinOnTool::new(interaction, Arc::clone(&skin), sides.clone());
+        self.until_failure(Touching::SkinOnTool(Box::new(on_tool)), &[(soft, skin)], &|planner| {
+            Ok(vec![planner.on_surface(named, sides.clone())?])
+        })
+    }
+
+    /// A contact of skins, which ends where a body can fail and does so; `particles` are what touches from then on.
+    fn until_failure(
+        &mut self,
+        skins: Touching,
+        of: &[(&BodyPlan, Arc<Skin>)],
+        particles: &dyn Fn(&Self) -> Result<Vec<Touching>, Vec<Problem>>,
+    ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
+        let fragile = of.iter().filter(|(body, _)| can_fail(body)).map(|(_, skin)| Arc::clone(skin));
+        let fragile: Vec<Arc<Skin>> = fragile.collect();
+        if fragile.is_empty() {
+            return Ok(always(vec![skins]));
+        }
+        let number = self.fragile.len();
+        self.fragile.push(Fragile::new(&fragile));
+        let particles = particles(self)?.into_iter().map(|pair| (pair, Acts::OnceBroken(number)));
+        Ok(std::iter::once((skins, Acts::WhileWhole(number))).chain(particles).collect())
     }
 
     /// Two rigid bodies.
@@ -174,8 +215,9 @@ impl Planner<'_> {
             Err(reason) => reason?,
         };
         let (name, (a, b)) = (&body.name, &self.sim.scene().contacts[named.number].between);
-        let warning =
-            format!("body `{name}` touches with its particles in the contact of `{a}` and `{b}`: {reason}");
+        let warning = format!(
+            "body `{name}` touches with its particles in the contact of `{a}` and `{b}`: {reason}; {BUMPS}"
+        );
         // Once for all pairs of a contact.
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);

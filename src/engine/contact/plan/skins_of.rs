@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::contact::bodies::MemberParticles;
 use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::ContactSurface;
 use crate::skins::Skin;
@@ -37,9 +36,6 @@ impl BodySkins {
         }
         if !body.offers(Offer::DeformedContact) {
             return Err(Some("its formulation carries no surface"));
-        }
-        if !MemberParticles::of(body, sim.dimension()).deform {
-            return Err(Some("its material may fail, and cracks have no surface of their own"));
         }
         if sim.periodic().any() {
             return Err(Some("the domain is periodic"));

@@ -5,7 +5,7 @@ use super::pairs::{MakeLaw, Planner};
 use super::skins_of::BodySkins;
 use super::start::refuse_bodies_within_others;
 use crate::contact::system;
-use crate::contact::system::Touching;
+use crate::contact::system::{Planned, Touching};
 use crate::plugin::SimBuilder;
 use crate::scene::{Contact, Problem};
 use crate::symmetry::MirrorPlane;
@@ -18,9 +18,15 @@ use crate::world::BodySet;
 pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Vec<Problem>> {
     let planes: Vec<MirrorPlane> = sim.take_extensions();
     let contacts: Vec<(usize, Contact)> = sim.scene().contact_pairs().collect();
-    let mut planner =
-        Planner { sim, make, planes: &planes, skins: BodySkins::default(), warnings: Vec::new() };
-    let (mut touching, mut problems) = (Vec::new(), Vec::new());
+    let mut planner = Planner {
+        sim,
+        make,
+        planes: &planes,
+        skins: BodySkins::default(),
+        fragile: Vec::new(),
+        warnings: Vec::new(),
+    };
+    let (mut planned, mut problems) = (Planned::default(), Vec::new());
     // The contact of the scene that each pair belongs to.
     let mut numbers = Vec::new();
     for (n, (number, contact)) in contacts.iter().enumerate() {
@@ -32,7 +38,10 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
         match planner.pairs_of(&named) {
             Ok(pairs) => {
                 numbers.resize(numbers.len() + pairs.len(), *number);
-                touching.extend(pairs);
+                for (touching, acts) in pairs {
+                    planned.touching.push(touching);
+                    planned.acts.push(acts);
+                }
             }
             Err(found) => problems.extend(found),
         }
@@ -40,12 +49,13 @@ pub fn add_systems(sim: &mut SimBuilder<'_>, make: MakeLaw<'_>) -> Result<(), Ve
     if !problems.is_empty() {
         return Err(problems);
     }
-    let Planner { warnings, .. } = planner;
+    let Planner { warnings, fragile, .. } = planner;
+    planned.fragile = fragile;
     warnings.into_iter().for_each(|warning| sim.warn(warning));
-    if !touching.is_empty() {
-        let bodies = BodySet::new(touching.iter().flat_map(Touching::bodies));
-        refuse_bodies_within_others(sim, &touching, numbers);
-        system::add(sim, touching, &bodies);
+    if !planned.touching.is_empty() {
+        let bodies = BodySet::new(planned.touching.iter().flat_map(Touching::bodies));
+        refuse_bodies_within_others(sim, &planned.touching, numbers);
+        system::add(sim, planned, &bodies);
     }
     Ok(())
 }

@@ -6,6 +6,9 @@ use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step};
 use crate::world::BodyId;
 
+/// Account of what springs of skins held beyond those of the particles that touch in their place.
+pub(in crate::contact) const CHANGE_OF_SURFACE: &str = "contact_surface";
+
 /// What the contacts of two bodies hold and have lost in a step, J.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::contact) struct ContactEnergy {
@@ -13,6 +16,23 @@ pub(in crate::contact) struct ContactEnergy {
     pub losses: Losses,
     /// What contacts of particles held that have been taken out.
     pub removed: f64,
+    /// What the forces do in the kick that ends the step.
+    pub ahead: f64,
+    /// What springs held that others have taken over from, less what these hold.
+    pub changed: f64,
+}
+
+impl ContactEnergy {
+    /// Of springs in the last step of a contact that others take over from: they hold nothing more, and do not act in the kick that follows.
+    pub fn given_up(self) -> Self {
+        Self { stored: 0.0, changed: self.stored + self.ahead, ..self }
+    }
+
+    /// Of springs in their first step, which have taken over: they act in the kick that follows, and have not in the one before.
+    pub fn taken_over(self) -> Self {
+        let Losses { damping, friction } = self.losses;
+        Self { changed: -(self.stored + self.ahead + damping + friction), ..self }
+    }
 }
 
 impl BlockSum for ContactEnergy {
@@ -20,6 +40,8 @@ impl BlockSum for ContactEnergy {
         self.stored += next.stored;
         self.losses.add(&next.losses);
         self.removed += next.removed;
+        self.ahead += next.ahead;
+        self.changed += next.changed;
     }
 }
 
@@ -47,6 +69,10 @@ pub(in crate::contact) fn book(
         if energies.removed != 0.0 {
             let removed = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
             step.ledger.add(removed, body, 0.5 * energies.removed);
+        }
+        if energies.changed != 0.0 {
+            let changed = step.ledger.account(CHANGE_OF_SURFACE, AccountKind::Dissipated);
+            step.ledger.add(changed, body, 0.5 * energies.changed);
         }
     }
 }

@@ -17,6 +17,8 @@ pub(in crate::contact) struct History {
     pub dashpot: DVec3,
     /// Depth of the overlap, m; zero where there was none.
     pub overlap: f64,
+    /// How much deeper the sides overlap, m: what took over from other springs begins with the energy of these.
+    pub offset: f64,
     /// From the particles of both sides to where the forces act, in the reference configuration, m.
     pub arms: [DVec3; 2],
     /// Force along the normal, N.
@@ -27,6 +29,11 @@ impl History {
     /// Energy in the tangential spring, J.
     pub fn energy(&self) -> f64 {
         if self.stiffness > 0.0 { 0.5 * self.spring.length_squared() / self.stiffness } else { 0.0 }
+    }
+
+    /// A contact of that overlap, m, that takes over from other springs with a part of it.
+    pub fn begun(overlap: f64, part: f64) -> Self {
+        Self { offset: (1.0 - part) * overlap, ..Self::default() }
     }
 
     /// Whether the contact was not there.

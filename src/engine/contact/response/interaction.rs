@@ -25,6 +25,7 @@ pub(in crate::contact) struct Interaction {
 }
 
 /// A contact as it is now.
+#[derive(Clone, Copy)]
 pub(in crate::contact) struct ContactState {
     pub touch: Touch,
     /// Unit vector from the second side to the first.
@@ -79,11 +80,12 @@ impl Interaction {
         dt: f64,
         before: &History,
     ) -> Response {
-        let ContactState { touch, normal, velocity, scale, area, .. } = state;
-        let mut spring = self.law.at(touch).along(*scale).over(*area);
-        let approach = -velocity.dot(*normal);
-        spring.force *= share_of_step(touch, scale * approach * dt, before);
-        self.beside(spring, state, inverse_mass, dt, before)
+        let ContactState { touch, normal, velocity, scale, area, .. } = *state;
+        let touch = Touch { overlap: (touch.overlap - before.offset).max(0.0), ..touch };
+        let mut spring = self.law.at(&touch).along(scale).over(area);
+        let approach = -velocity.dot(normal);
+        spring.force *= share_of_step(&touch, scale * approach * dt, before);
+        self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
     }
 
     /// What a contact held at the end of the last step that ends because a particle is taken out, and what its force there would have taken from the motion in the last
@@ -131,7 +133,15 @@ impl Interaction {
         Response {
             force: pressure * *normal + tangential + drag,
             spring,
-            history: History { spring: tangential, stiffness, dashpot, overlap, arms, pressure },
+            history: History {
+                spring: tangential,
+                stiffness,
+                dashpot,
+                overlap,
+                offset: before.offset,
+                arms,
+                pressure,
+            },
         }
     }
 

@@ -8,6 +8,6 @@ pub(super) mod energy;
 
 pub(super) mod time_step;
 
-pub(super) use energy::ContactEnergy;
+pub(super) use energy::{CHANGE_OF_SURFACE, ContactEnergy};
 pub(super) use history::{Histories, History, PairKey};
 pub(super) use interaction::{ContactState, Interaction, Losses};

@@ -49,6 +49,7 @@ struct ToolSums {
     on_tool: Wrench,
     of_tool: f64,
     stored: f64,
+    power: f64,
 }
 
 impl BlockSum for ToolSums {
@@ -56,6 +57,7 @@ impl BlockSum for ToolSums {
         self.on_tool.add(&next.on_tool);
         self.of_tool += next.of_tool;
         self.stored += next.stored;
+        self.power += next.power;
     }
 }
 
@@ -90,10 +92,23 @@ impl SkinOnTool {
         step: &mut Step<'_>,
         motion: [MotionBounds; 2],
     ) -> Result<ContactEnergy, StepError> {
+        let (energies, on_tool) = self.evaluate(step, motion)?;
+        let mut bodies = step.resources.get_mut::<RigidBodies>();
+        let tool = bodies.iter_mut().find(|body| body.id == self.tool);
+        tool.into_iter().for_each(|tool| tool.push(&on_tool));
+        Ok(energies)
+    }
+
+    /// Works out the forces of all points that touch, and what is on the rigid body about its centre.
+    pub fn evaluate(
+        &mut self,
+        step: &mut Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<(ContactEnergy, Wrench), StepError> {
         let resources = step.resources;
-        let mut bodies = resources.get_mut::<RigidBodies>();
+        let bodies = resources.get::<RigidBodies>();
         let missing = || failed("no rigid body");
-        let tool = bodies.iter_mut().find(|body| body.id == self.tool).ok_or_else(missing)?;
+        let tool = bodies.iter().find(|body| body.id == self.tool).ok_or_else(missing)?;
         let dt = step.clock.dt;
         let skin = Arc::clone(&self.patch.skin);
         let columns = SkinColumns::new(&skin, step.world)?;
@@ -108,9 +123,9 @@ impl SkinOnTool {
         let Extremes { gap, stiffest } = self.press(tool, dt);
         let mut energies =
             if self.interaction.is_elastic() { ContactEnergy::default() } else { self.rub(tool, dt) };
-        let ToolSums { on_tool, of_tool, stored } = self.push(tool);
+        let ToolSums { on_tool, of_tool, stored, power } = self.push(tool);
         energies.stored += stored;
-        tool.push(&on_tool);
+        energies.ahead += 0.5 * dt * power;
         self.patch.hand_on();
         let (touch, usual) = touch_of(&skin, tool);
         let (law, speed) = (&*self.interaction.law, speeds[0] + speeds[1]);
@@ -120,7 +135,7 @@ impl SkinOnTool {
         let squared = stiffness * skin.lightness + of_tool;
         let touches = Touches { squared, stored: energies.stored, speed, reach: skin.spacing };
         time_step::propose(step, (skin.body, self.tool), &touches)?;
-        Ok(energies)
+        Ok((energies, on_tool))
     }
 
     /// Works out what presses on the vertices.
@@ -276,6 +291,7 @@ impl SkinOnTool {
                 sums.of_tool =
                     spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
                 sums.stored = spring.energy;
+                sums.power = force.dot(vertex.velocity - tool.velocity_at(vertex.place));
             }
             sums
         };

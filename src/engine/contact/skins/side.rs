@@ -113,6 +113,7 @@ impl SkinSide<'_> {
         energies.losses.add_work(1.0, &response.history, velocity, dt);
         energies.losses.keep(1.0, before, &response.history);
         energies.stored += response.spring.energy + response.history.energy();
+        energies.ahead += 0.5 * dt * response.force.dot(velocity);
         let across = response.force - response.force.dot(foot.normal) * foot.normal;
         let stiffness = response.spring.stiffness / area;
         let energy = response.spring.energy / weight;

@@ -1,21 +1,31 @@
 //! The system of all contacts of a scene.
 
+use super::fragile::{Acts, Fragile, break_skins};
 use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
-use crate::contact::response::{ContactEnergy, energy};
+use crate::contact::response::{CHANGE_OF_SURFACE, ContactEnergy, energy};
 use crate::plugin::SimBuilder;
 use crate::rigid::{RigidBodies, Wrench};
-use crate::schedule::{Mode, Resources, Run, Shared, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::world::{
-    Body, BodyId, BodySet, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition, Removed,
-    Temperature, Velocity,
+    Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition,
+    Removed, Temperature, Velocity,
 };
 
 /// Label of the system that adds them to the particles.
 const CONTACT_FORCE: &str = "contact_force";
 
+/// The contacts of a scene: what touches, with while what it acts, and the bodies that can fail among them.
+#[derive(Default)]
+pub(in crate::contact) struct Planned {
+    pub touching: Vec<Touching>,
+    pub acts: Vec<Acts>,
+    pub fragile: Vec<Fragile>,
+}
+
 /// Adds the system of the pairs.
-pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>, bodies: &BodySet) {
+pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies: &BodySet) {
+    let Planned { touching, acts, fragile } = planned;
     let phases = sim.phases_of(bodies);
     // Where no contact heats anything, temperatures are left alone.
     let heats = sim.scene().contacts.iter().any(|contact| contact.friction_heat.is_some());
@@ -26,12 +36,18 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, touching: Vec<Touching>,
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
         energies: Vec::with_capacity(touching.len()),
         touching,
+        acts,
+        fragile,
     };
+    let can_break = !contacts.fragile.is_empty();
     let deforms = contacts.touching.iter().any(Touching::deforms);
     let contacts = sim.share(contacts);
     let mut system = System::new(Stage::Boundary, CONTACT, ContactSystem(contacts));
     if deforms {
         system = system.reads_near::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
+    }
+    if can_break {
+        system = system.reads_near::<Damage>();
     }
     sim.add_system(
         system
@@ -57,6 +73,10 @@ struct Contacts {
     /// Bodies that friction may warm, with their specific heat, J/(kg K).
     specific_heats: Vec<(BodyId, f64)>,
     touching: Vec<Touching>,
+    /// While what each of them acts.
+    acts: Vec<Acts>,
+    /// The bodies that can fail and touch with their skins until then.
+    fragile: Vec<Fragile>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
 }
 
@@ -88,11 +108,28 @@ impl Contacts {
         if let Some(mut bodies) = step.resources.try_get_mut::<RigidBodies>() {
             bodies.iter_mut().for_each(|body| body.contact_stiffness = Wrench::default());
         }
-        for pair in &mut self.touching {
-            pair.find(step, pair.bodies().map(motion_of))?;
+        if !self.fragile.is_empty() {
+            // From the first step on, so that the tables of energies have a column for it.
+            step.ledger.account(CHANGE_OF_SURFACE, AccountKind::Dissipated);
+        }
+        for fragile in &mut self.fragile {
+            fragile.look(step)?;
+        }
+        for (pair, acts) in self.touching.iter_mut().zip(&self.acts) {
+            if acts.now(&self.fragile) {
+                pair.find(step, pair.bodies().map(motion_of))?;
+            }
         }
         self.energies.clear();
+        for number in 0..self.fragile.len() {
+            if self.fragile[number].is_breaking() {
+                self.energies.push(break_skins(number, &mut self.touching, &self.acts, step, &motion_of)?);
+            }
+        }
         for k in 0..self.touching.len() {
+            if !self.acts[k].now(&self.fragile) {
+                continue;
+            }
             let other = match self.touching[k].turn() {
                 NodeTurn::Alone => None,
                 NodeTurn::First => Some(k + 1),
@@ -101,7 +138,10 @@ impl Contacts {
             let beside = other.and_then(|other| self.touching[other].beside_the_other());
             let pair = &mut self.touching[k];
             let [first, second] = pair.bodies();
-            let energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
+            let mut energies = pair.run(step, [motion_of(first), motion_of(second)], beside)?;
+            if self.acts[k].begins(&self.fragile) {
+                energies = energies.taken_over();
+            }
             self.energies.push(((first, second), energies));
         }
         energy::book(step, &self.energies, &mut self.stored);
@@ -109,9 +149,15 @@ impl Contacts {
         Ok(())
     }
 
+    /// What acts in this step.
+    fn acting(&self) -> impl Iterator<Item = &Touching> {
+        let all = self.touching.iter().zip(&self.acts);
+        all.filter(|(_, acts)| acts.now(&self.fragile)).map(|(touching, _)| touching)
+    }
+
     /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.
     fn add_couples(&self, step: &Step<'_>) {
-        let mut deforming = self.touching.iter().filter(|touching| touching.deforms()).peekable();
+        let mut deforming = self.acting().filter(|touching| touching.deforms()).peekable();
         if deforming.peek().is_none() {
             return;
         }
@@ -138,7 +184,7 @@ impl Contacts {
 
     /// Adds the forces on particles.
     fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
-        for (body, contact_nodes) in self.touching.iter().flat_map(Touching::contact_nodes) {
+        for (body, contact_nodes) in self.acting().flat_map(Touching::contact_nodes) {
             let (view, rows) = step.world.body_view(body);
             contact_nodes.add_forces(&mut view.write::<Force>()?[rows.clone()]);
             if let Some((_, specific_heat)) = self.specific_heats.iter().find(|(id, _)| *id == body) {
@@ -146,7 +192,7 @@ impl Contacts {
                 contact_nodes.warm(*specific_heat, &mass[rows.clone()], &mut temperature[rows]);
             }
         }
-        for patch in self.touching.iter().flat_map(Touching::patches) {
+        for patch in self.acting().flat_map(Touching::patches) {
             let (view, rows) = step.world.body_view(patch.skin.body);
             patch.add_forces(&mut view.write::<Force>()?[rows]);
         }
@@ -166,13 +212,16 @@ impl Run for ContactSystem {
     fn save_with(&self, resources: &Resources) -> Vec<u8> {
         let contacts = resources.of(self.0);
         let saved: Vec<Saved> = contacts.touching.iter().map(Touching::saved).collect();
-        postcard::to_stdvec(&saved).unwrap_or_default()
+        let whole: Vec<bool> = contacts.fragile.iter().map(Fragile::is_whole).collect();
+        postcard::to_stdvec(&(saved, whole)).unwrap_or_default()
     }
 
     fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
-        let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
+        let Ok((saved, whole)) = postcard::from_bytes::<(Vec<Saved>, Vec<bool>)>(state) else { return false };
         let mut contacts = resources.of_mut(self.0);
-        saved.len() == contacts.touching.len()
+        contacts.fragile.iter_mut().zip(&whole).for_each(|(fragile, &whole)| fragile.restore(whole));
+        whole.len() == contacts.fragile.len()
+            && saved.len() == contacts.touching.len()
             && contacts.touching.iter_mut().zip(saved).all(|(pair, saved)| pair.restore(saved))
     }
 }

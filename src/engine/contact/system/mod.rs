@@ -1,8 +1,11 @@
 //! The systems of all contacts of a scene: one computes their forces, one adds them to the particles.
 
+mod fragile;
+
 mod touching;
 
 mod contacts;
 
-pub(super) use contacts::add;
+pub(super) use contacts::{Planned, add};
+pub(super) use fragile::{Acts, Fragile};
 pub(super) use touching::Touching;

@@ -62,6 +62,37 @@ impl Touching {
         }
     }
 
+    /// Works out the energies of skins, and nothing else: their forces do not act.
+    pub fn held(
+        &mut self,
+        step: &mut Step<'_>,
+        motion: [MotionBounds; 2],
+    ) -> Result<ContactEnergy, StepError> {
+        match self {
+            Self::SkinOnTool(contact) => Ok(contact.evaluate(step, motion)?.0),
+            Self::Skins(contact) => contact.run(step, motion),
+            Self::Particles(_) | Self::Surface(_) => Ok(ContactEnergy::default()),
+        }
+    }
+
+    /// What the springs of particles hold that touch, J.
+    pub fn pressed(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<f64, StepError> {
+        match self {
+            Self::Particles(contact) => contact.pressed(step, motion),
+            Self::Surface(contact) => contact.pressed(step),
+            Self::SkinOnTool(_) | Self::Skins(_) => Ok(0.0),
+        }
+    }
+
+    /// Has particles that touch begin with that part of their overlaps.
+    pub fn begin(&mut self, part: f64) {
+        match self {
+            Self::Particles(contact) => contact.begin(part),
+            Self::Surface(contact) => contact.begin(part),
+            Self::SkinOnTool(_) | Self::Skins(_) => {}
+        }
+    }
+
     /// The particles of both.
     pub fn particles(&self) -> impl Iterator<Item = &MemberParticles> {
         let (first, second) = match self {

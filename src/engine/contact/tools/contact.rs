@@ -33,6 +33,17 @@ pub(in crate::contact) struct SurfaceContact {
     pub together: Option<Together>,
 }
 
+/// What the nodes that touch have answered in a step.
+struct Responses {
+    energies: ContactEnergy,
+    /// Squared frequency of an impact that may come, 1/s2.
+    expected: f64,
+    /// Number of all nodes.
+    nodes: usize,
+    /// Between the two bodies, m.
+    gap: f64,
+}
+
 impl SurfaceContact {
     /// Contact of the nodes of a body with the surface of another.
     pub fn new(interaction: Interaction, sides: ContactSides, gravity: f64) -> Self {
@@ -77,6 +88,39 @@ impl SurfaceContact {
         Ok(())
     }
 
+    /// What the springs of all nodes hold that touch, J.
+    pub fn pressed(&mut self, step: &Step<'_>) -> Result<f64, StepError> {
+        Ok(self.respond(step, 0.0, None)?.energies.stored)
+    }
+
+    /// Has the nodes that touch begin with that part of their overlaps.
+    pub fn begin(&mut self, part: f64) {
+        self.contacts.begin(|_, touch| touch.begun(part));
+    }
+
+    /// Works out the forces of all nodes that touch, where the bodies approach at `speed`, m/s.
+    fn respond(
+        &mut self,
+        step: &Step<'_>,
+        speed: f64,
+        beside: Option<Together>,
+    ) -> Result<Responses, StepError> {
+        let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
+        let Self { interaction, sides, contacts, gravity, near, together, .. } = self;
+        sides.with(step.world, step.resources, &bodies, |nodes, tool| {
+            let together = together.map(|own| own.with_others(beside, nodes, tool));
+            let together = together.as_ref().map_or(&[][..], |both| &both[..]);
+            let on = OnSurface { interaction, sides, nodes, tool, dt, together };
+            let energies = contacts.respond(
+                nodes.len(),
+                |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
+                |(node, _), history, energies| on.end(node, history, energies),
+            );
+            let (expected, gap) = (on.expected(near, speed, *gravity), sides.gap(nodes, tool));
+            Responses { energies, expected, nodes: nodes.len(), gap }
+        })
+    }
+
     /// Works out the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of the points of the other body on the surface of this one.
     pub fn run(
         &mut self,
@@ -84,24 +128,12 @@ impl SurfaceContact {
         motion: [MotionBounds; 2],
         beside: Option<Together>,
     ) -> Result<ContactEnergy, StepError> {
+        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
+        let Responses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
-        let speed = MotionBounds::approach(motion, &Map::IDENTITY);
-        let dt = step.clock.dt;
-        let Self { interaction, sides, contacts, gravity, contact_nodes, near, together, .. } = self;
+        let Self { interaction, sides, contacts, contact_nodes, near, .. } = self;
         let of_particles = sides.nodes.particles();
-        let (energies, expected, count, gap) =
-            sides.with(step.world, step.resources, &bodies, |nodes, tool| {
-                let together = together.map(|own| own.with_others(beside, nodes, tool));
-                let together = together.as_ref().map_or(&[][..], |both| &both[..]);
-                let on = OnSurface { interaction, sides, nodes, tool, dt, together };
-                let energies = contacts.respond(
-                    nodes.len(),
-                    |(node, _), touch, before, energies| on.respond(node, touch, before, energies),
-                    |(node, _), history, energies| on.end(node, history, energies),
-                );
-                (energies, on.expected(near, speed, *gravity), nodes.len(), sides.gap(nodes, tool))
-            })?;
         let pushes = contacts.pushes();
         contact_nodes.add_up(contacts.numbers(), &|number, _| {
             let NodePush { force, arm, turning, stiffness, heat, .. } = pushes[number];
@@ -113,7 +145,7 @@ impl SurfaceContact {
                 heat: interaction.heat[0] * heat,
             }
         });
-        let [particle, rigid] = push(sides, contacts.met(), pushes, count, &mut bodies);
+        let [particle, rigid] = push(sides, contacts.met(), pushes, nodes, &mut bodies);
         let squared = rigid + if of_particles.is_some() { contact_nodes.stiffest() } else { particle };
         let pair = (sides.first, sides.second);
         match of_particles {

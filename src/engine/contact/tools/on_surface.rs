@@ -26,6 +26,13 @@ pub(in crate::contact) struct NodeTouch {
     share: FaceShare,
 }
 
+impl NodeTouch {
+    /// It begins with that part of its overlap.
+    pub fn begun(&self, part: f64) -> History {
+        History::begun(self.near.overlap, part)
+    }
+}
+
 /// What the nodes near the surface say of the time step.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct NearNodes {
@@ -128,6 +135,7 @@ impl OnSurface<'_> {
         losses.keep(1.0, before, &response.history);
         energies.losses.add(&losses);
         energies.stored += response.spring.energy + response.history.energy();
+        energies.ahead += 0.5 * dt * response.force.dot(state.velocity);
         let turning = if arm == DVec3::ZERO {
             DVec3::ZERO
         } else {

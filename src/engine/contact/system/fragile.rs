@@ -1,0 +1,151 @@
+//! Bodies that can fail touch with their skins for as long as all that carries these is whole, and with their particles from then on.
+//!
+//! The step in which a first particle of a skin fails computes both, for the same places. Particles stick out of a body that is squeezed along its surface, because those of a
+//! body that can fail stay spheres: with all of their overlaps they would hold more than the skin did, and make motion out of nothing. They therefore begin with a part of
+//! their overlaps, the one for which they hold what the skin held. The forces are theirs, and what is left of the difference goes to the account `contact_surface`.
+
+use std::sync::Arc;
+
+use super::touching::Touching;
+use crate::contact::bodies::{BUMPS, MotionBounds};
+use crate::contact::response::ContactEnergy;
+use crate::notation::quantity;
+use crate::schedule::{Step, StepError};
+use crate::skins::Skin;
+use crate::world::{BodyId, Damage};
+
+/// While what a contact acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::contact) enum Acts {
+    Always,
+    /// For as long as the skins of these fragile bodies are whole.
+    WhileWhole(usize),
+    /// From when on they are not.
+    OnceBroken(usize),
+}
+
+/// The state of the skins of two bodies.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Whole,
+    /// Broken in this step.
+    Breaking,
+    Broken,
+}
+
+/// The skins of two bodies in contact, of which one or both can fail.
+pub(in crate::contact) struct Fragile {
+    carriers: Vec<Carriers>,
+    state: State,
+}
+
+/// The particles that carry the skin of a body that can fail.
+struct Carriers {
+    body: BodyId,
+    particles: Vec<u32>,
+}
+
+impl Carriers {
+    fn of(skin: &Skin) -> Self {
+        Self { body: skin.body, particles: skin.particles() }
+    }
+
+    /// Whether one of them has failed.
+    fn have_failed(&self, step: &Step<'_>) -> Result<bool, StepError> {
+        let (view, rows) = step.world.body_view(self.body);
+        let damage = view.read_near::<Damage>()?;
+        Ok(self.particles.iter().any(|&particle| damage[rows.start + particle as usize].0 >= 1.0))
+    }
+}
+
+impl Fragile {
+    /// Of the skins of bodies that can fail.
+    pub fn new(skins: &[Arc<Skin>]) -> Self {
+        Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: State::Whole }
+    }
+
+    /// Looks whether a particle of a whole skin has failed in this step, and tells the user.
+    pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        if self.state != State::Whole {
+            self.state = State::Broken;
+            return Ok(());
+        }
+        for carriers in &self.carriers {
+            if !carriers.have_failed(step)? {
+                continue;
+            }
+            self.state = State::Breaking;
+            let told = format!(
+                "body `{}` touches with its particles and no longer with its surface from {} on, because particles of that surface have failed; {BUMPS}",
+                step.world.body(carriers.body).name,
+                quantity(step.clock.end(), "s")
+            );
+            // Once for all contacts of the body.
+            if !step.warnings.contains(&told) {
+                step.warnings.push(told);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the skins are whole.
+    pub fn is_whole(&self) -> bool {
+        self.state == State::Whole
+    }
+
+    /// Whether they break in this step: the first in which the particles act.
+    pub fn is_breaking(&self) -> bool {
+        self.state == State::Breaking
+    }
+
+    /// Whether they are not whole any more.
+    pub fn restore(&mut self, is_whole: bool) {
+        self.state = if is_whole { State::Whole } else { State::Broken };
+    }
+}
+
+impl Acts {
+    /// Whether a contact that acts so does it in this step.
+    pub fn now(self, fragile: &[Fragile]) -> bool {
+        match self {
+            Self::Always => true,
+            Self::WhileWhole(k) => fragile[k].is_whole(),
+            Self::OnceBroken(k) => !fragile[k].is_whole(),
+        }
+    }
+
+    /// Whether this is the first step in which a contact acts.
+    pub fn begins(self, fragile: &[Fragile]) -> bool {
+        matches!(self, Self::OnceBroken(k) if fragile[k].is_breaking())
+    }
+}
+
+/// Has the particles that touch in the place of the skins of that number begin with what these hold; returns the two bodies, and the energies that these give up.
+pub(super) fn break_skins(
+    number: usize,
+    touching: &mut [Touching],
+    acts: &[Acts],
+    step: &mut Step<'_>,
+    motion_of: &dyn Fn(BodyId) -> MotionBounds,
+) -> Result<((BodyId, BodyId), ContactEnergy), StepError> {
+    let mut bodies = (BodyId(0), BodyId(0));
+    let (mut held, mut pressed) = (ContactEnergy::default(), 0.0);
+    for (pair, acts) in touching.iter_mut().zip(acts) {
+        let [first, second] = pair.bodies();
+        let motion = [motion_of(first), motion_of(second)];
+        if *acts == Acts::WhileWhole(number) {
+            bodies = (first, second);
+            held = pair.held(step, motion)?;
+        } else if *acts == Acts::OnceBroken(number) {
+            pressed += pair.pressed(step, motion)?;
+        }
+    }
+    // The energy of a spring goes with the square of its overlap, and faster where it hardens.
+    let part = if pressed > held.stored { (held.stored / pressed).sqrt() } else { 1.0 };
+    for (pair, acts) in touching.iter_mut().zip(acts) {
+        if *acts == Acts::OnceBroken(number) {
+            pair.begin(part);
+        }
+    }
+    Ok((bodies, held.given_up()))
+}
