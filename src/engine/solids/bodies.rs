@@ -211,6 +211,14 @@ impl SolidBodies {
         self.found[k].control = energy;
     }
 
+    /// Forgets what terms have released in the last pass.
+    pub(super) fn forget_released(&mut self) {
+        for sum in &mut self.found {
+            let energies = sum.terms.iter_mut().chain([&mut sum.hessian, &mut sum.control]);
+            energies.for_each(|energy| energy.released = 0.0);
+        }
+    }
+
     /// Whether there are folded terms.
     pub fn has_terms(&self) -> bool {
         !self.terms.is_empty()

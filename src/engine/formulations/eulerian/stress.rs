@@ -188,7 +188,7 @@ impl Stress {
         self.pack(step.world, packed)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
-        self.solids.book(step)?;
+        self.solids.book_repeated(step)?;
         let after = self.forces(step.world, packed)?;
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         self.solids.book_change(step, account, &held, &before, &after)

@@ -65,7 +65,7 @@ impl Deformation {
         packed.has_places = false;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
-        self.solids.book(step)?;
+        self.solids.book_repeated(step)?;
         let after = self.forces(step, packed)?;
         let account = step.ledger.account(REMOVED_ENERGY, AccountKind::Dissipated);
         self.solids.book_change(step, account, &held, &before, &after)?;

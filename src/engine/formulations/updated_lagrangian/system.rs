@@ -246,7 +246,7 @@ impl UpdatedSolids {
         self.move_reference(step.world, packed, is_due, &mut kept)?;
         // States of laws have advanced by this step already.
         self.pass(step.world, packed, SolidPart::REPEATED)?;
-        self.solids.book(step)?;
+        self.solids.book_repeated(step)?;
         packed.warn_of_released(step);
         let mut after = std::mem::take(&mut packed.force);
         self.write_forces(step.world, packed, &mut after)?;
