@@ -69,9 +69,9 @@ fn counts_of(source: impl FnOnce() -> Source, threads: usize, steps: usize) -> V
 fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
     for dimension in [2, 3] {
         let counts = counts(&all_plugins(dimension), 1, 100);
-        // Skins of two bodies that come near each other for the first time ask for memory, in one step.
+        // The grid of the search of a body that touches itself has more cells as the body grows, which some of its searches see.
         let some = counts.iter().filter(|&&count| count > 0).count();
-        assert!(some <= 1, "{dimension} dimensions: {counts:?}");
+        assert!(some <= 2, "{dimension} dimensions: {counts:?}");
     }
     // The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies.
     let counts = counts(&all_plugins(3), 2, 100);
