@@ -13,7 +13,7 @@ pub enum Stage {
     Gradients,
     /// Stress or pressure of every particle; plasticity, damage, temperature.
     Constitutive,
-    /// Wall particles take pressure and velocity from the fluid beside them; forces of contact are worked out.
+    /// Wall particles take pressure and velocity from the fluid beside them; forces of contact are computed.
     Boundary,
     /// Rates by a pass over pairs: force, density rate, heating, from every pair term at once.
     Rates,

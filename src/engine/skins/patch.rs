@@ -41,7 +41,7 @@ pub(crate) struct Vertex {
     pub is_there: bool,
 }
 
-/// What is to be worked out beside places and velocities.
+/// What is to be computed beside places and velocities.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub mobility: bool,
@@ -237,7 +237,7 @@ impl Patch {
         self.couples_on_particles.resize(self.particles.len(), DMat3::ZERO);
     }
 
-    /// Works out where the vertices are and how they move, and takes the forces off them. `dt` is the length of the step, s.
+    /// Computes where the vertices are and how they move, and takes the forces off them. `dt` is the length of the step, s.
     pub fn update(&mut self, view: &SkinView<'_>, dt: f64, wanted: Wanted) {
         self.forces.fill(DVec3::ZERO);
         if std::mem::take(&mut self.has_couples) {

@@ -127,7 +127,7 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         self.histories.set(self.met.iter().map(|(key, met)| (*key, begun(*key, met))).collect());
     }
 
-    /// Works out what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
+    /// Computes what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
     /// lose, added by the `nodes` of the first body.
     pub fn respond(
         &mut self,

@@ -77,7 +77,7 @@ impl ParticleContact {
         found.map_err(failed)
     }
 
-    /// Works out the forces of all pairs that touch.
+    /// Computes the forces of all pairs that touch.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,

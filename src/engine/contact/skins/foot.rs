@@ -20,7 +20,7 @@ pub(super) struct Foot {
 /// Centre of a facet, m, and how far it reaches from there, with something for round-off, m.
 pub(super) type Ball = (DVec3, f64);
 
-/// Works out the balls around the facets of a patch; `balls` has one for every facet of the skin.
+/// Computes the balls around the facets of a patch; `balls` has one for every facet of the skin.
 pub(super) fn enclose(patch: &Patch, facets: &[u32], balls: &mut Vec<Ball>) {
     let axes = patch.skin.facets.axes;
     balls.resize(patch.skin.facets.corners.len(), (DVec3::ZERO, 0.0));

@@ -86,7 +86,7 @@ impl SkinOnTool {
         }
     }
 
-    /// Works out the forces of all points that touch, and pushes the rigid body.
+    /// Computes the forces of all points that touch, and pushes the rigid body.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,
@@ -99,7 +99,7 @@ impl SkinOnTool {
         Ok(energies)
     }
 
-    /// Works out the forces of all points that touch, and what is on the rigid body about its centre.
+    /// Computes the forces of all points that touch, and what is on the rigid body about its centre.
     pub fn evaluate(
         &mut self,
         step: &mut Step<'_>,
@@ -138,7 +138,7 @@ impl SkinOnTool {
         Ok((energies, on_tool))
     }
 
-    /// Works out what presses on the vertices.
+    /// Computes what presses on the vertices.
     fn press(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         self.look(tool, dt);
         let mut extremes = self.press_facets(tool, dt);
@@ -147,7 +147,7 @@ impl SkinOnTool {
         extremes
     }
 
-    /// Works out what the vertices see of the tool.
+    /// Computes what the vertices see of the tool.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
         let Self { interaction, patch, seen, .. } = self;
         let (on, vertices) = (Pressing::new(interaction, patch, tool, dt), patch.vertices());
@@ -160,7 +160,7 @@ impl SkinOnTool {
         });
     }
 
-    /// Works out what the points of every facet near the tool press on its vertices.
+    /// Computes what the points of every facet near the tool press on its vertices.
     fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
         let Self { interaction, patch, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
@@ -227,7 +227,7 @@ impl SkinOnTool {
         })
     }
 
-    /// Works out dashpot and friction at the vertices that are pressed.
+    /// Computes dashpot and friction at the vertices that are pressed.
     fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
         let (usual, _) = touch_of(&self.patch.skin, tool);
         let Self { interaction, patch, pressed, touching, contacts, .. } = self;

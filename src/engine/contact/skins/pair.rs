@@ -61,7 +61,7 @@ impl SkinPair {
         Self { interaction, patches, keeps_reference: false, rule, near, balls, passes }
     }
 
-    /// Works out the forces of all points that touch.
+    /// Computes the forces of all points that touch.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,

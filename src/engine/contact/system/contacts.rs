@@ -15,7 +15,7 @@ use crate::world::{
 /// Label of the system that adds them to the particles.
 const CONTACT_FORCE: &str = "contact_force";
 
-/// The contacts of a scene: what touches, with while what it acts, and the bodies that can fail among them.
+/// The contacts of a scene, when each of them acts, and the bodies that can fail among them.
 #[derive(Default)]
 pub(in crate::contact) struct Planned {
     pub touching: Vec<Touching>,
@@ -73,7 +73,7 @@ struct Contacts {
     /// Bodies that friction may warm, with their specific heat, J/(kg K).
     specific_heats: Vec<(BodyId, f64)>,
     touching: Vec<Touching>,
-    /// While what each of them acts.
+    /// When each of them acts.
     acts: Vec<Acts>,
     /// The bodies that can fail and touch with their skins until then.
     fragile: Vec<Fragile>,

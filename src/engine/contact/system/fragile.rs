@@ -14,13 +14,13 @@ use crate::schedule::{Step, StepError};
 use crate::skins::Skin;
 use crate::world::{BodyId, Damage};
 
-/// While what a contact acts.
+/// When a contact acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::contact) enum Acts {
     Always,
     /// For as long as the skins of these fragile bodies are whole.
     WhileWhole(usize),
-    /// From when on they are not.
+    /// As soon as one of them is broken.
     OnceBroken(usize),
 }
 

@@ -47,7 +47,7 @@ impl Touching {
         if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
     }
 
-    /// Works out the forces; `beside` are the contacts of the points of the second of two rigid bodies on the surface of the first.
+    /// Computes the forces; `beside` are the contacts of the points of the second of two rigid bodies on the surface of the first.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,
@@ -62,7 +62,7 @@ impl Touching {
         }
     }
 
-    /// Works out the energies of skins, and nothing else: their forces do not act.
+    /// Computes the energies of skins, and nothing else: their forces do not act.
     pub fn held(
         &mut self,
         step: &mut Step<'_>,

@@ -98,7 +98,7 @@ impl SurfaceContact {
         self.contacts.begin(|_, touch| touch.begun(part));
     }
 
-    /// Works out the forces of all nodes that touch, where the bodies approach at `speed`, m/s.
+    /// Computes the forces of all nodes that touch, where the bodies approach at `speed`, m/s.
     fn respond(
         &mut self,
         step: &Step<'_>,
@@ -121,7 +121,7 @@ impl SurfaceContact {
         })
     }
 
-    /// Works out the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of the points of the other body on the surface of this one.
+    /// Computes the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of the points of the other body on the surface of this one.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,
