@@ -22,6 +22,8 @@ pub struct GapPressure {
     across: Vec<GapPair>,
     /// Velocity of every boundary particle, m/s; that in the cloud is the one that friction sees.
     velocities: Vec<DVec3>,
+    /// Work of the forces since the start of the run, J.
+    work: f64,
 }
 
 type Rows<'a> = (&'a mut [Gap], &'a [[u32; 2]]);
@@ -102,11 +104,20 @@ impl Run for GapPressure {
                 forces.resize(cloud.records.len() - cloud.fluid, DVec3::ZERO);
                 self.press(&cloud, &mut forces);
                 let power = forces.iter().zip(&self.velocities).map(|(force, velocity)| force.dot(*velocity));
-                cloud.gap_work += step.clock.dt * power.sum::<f64>();
+                self.work += step.clock.dt * power.sum::<f64>();
             }
         }
-        cloud.gap_forces = forces;
+        (cloud.gap_forces, cloud.gap_work) = (forces, self.work);
         Ok(())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.work.to_le_bytes().to_vec()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> bool {
+        let work = state.try_into().map(f64::from_le_bytes);
+        work.map(|work| self.work = work).is_ok()
     }
 }
 
