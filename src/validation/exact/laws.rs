@@ -32,7 +32,7 @@ pub(crate) const CONSISTENCY: Case = Case {
 
 pub(crate) const OF_BODIES: Case = Case {
     id: "M5U",
-    title: "with updated-Lagrangian bodies: stress after updates is that of the law, and turns with the body",
+    title: "stress after updates is that of the law, and turns with the body, updated-Lagrangian",
     resolutions: &[5],
     ci_resolution: 5,
     run: of_bodies,
