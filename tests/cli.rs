@@ -317,20 +317,20 @@ fn an_interrupted_run_can_go_on() {
 }
 
 #[test]
-fn a_benchmark_measures_a_work_and_names_the_works_there_are() {
+fn a_benchmark_measures_a_case_and_names_the_cases_there_are() {
     let folder = folder();
     let list = meshless(&folder, &["bench", "--list"]);
     assert_success(&list);
-    let works: Vec<String> =
+    let cases: Vec<String> =
         out(&list).lines().filter_map(|line| Some(line.split_whitespace().next()?.to_owned())).collect();
-    assert!(works.len() > 4, "{works:?}");
-    for work in &works {
-        let output = meshless(&folder, &["bench", work, "--particles", "1k", "--seconds", "0", "--json"]);
+    assert!(cases.len() > 4, "{cases:?}");
+    for case in &cases {
+        let output = meshless(&folder, &["bench", case, "--particles", "1k", "--seconds", "0", "--json"]);
         assert_success(&output);
         let record: serde_json::Value = serde_json::from_str(&out(&output)).expect("a record in JSON");
         let number = |name: &str| record[name].as_f64().expect("a number");
         // Grains of abrasive flow need eight spacings.
-        let most = if work == "abrasive" { 8000.0 } else { 2000.0 };
+        let most = if case == "abrasive" { 8000.0 } else { 2000.0 };
         assert!((500.0..most).contains(&number("particles")), "{record}");
         assert!(number("particle_steps_per_second") > 0.0 && number("neighbors") > 10.0, "{record}");
     }

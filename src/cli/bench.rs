@@ -1,14 +1,14 @@
 //! `meshless bench`: how fast the program is on the benchmark cases, with everything on and output off.
 //!
-//! A work is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
+//! A case is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
 //! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of benchmarks
 //! measured in one call count.
 
 mod apart;
+mod bench_case;
 mod machine;
 mod measure;
 mod report;
-mod work;
 
 use std::time::Duration;
 
@@ -19,15 +19,15 @@ use super::execution::take_instructions;
 use super::failure::Failure;
 use super::text::say;
 use super::values::{duration, particles, whole};
+use bench_case::{BENCH_CASES, BenchCase};
 use measure::{Measurement, SetUp};
-use work::{WORKS, Work};
 
 /// Measure the speed on benchmark cases: particle-steps/s, pairs/s, memory, share of each system
 #[derive(Args)]
 pub struct Arguments {
     /// Benchmarks to run; all if none is given
     #[arg(value_name = "CASE")]
-    works: Vec<String>,
+    cases: Vec<String>,
     /// Approximate numbers of particles; k and M stand for thousands and millions
     #[arg(long, value_delimiter = ',', default_value = "262k", value_parser = particles, value_name = "N")]
     particles: Vec<usize>,
@@ -64,9 +64,9 @@ fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
 
 /// Measures the benchmarks that were asked for.
 pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
-    let works = chosen(&arguments.works)?;
+    let cases = chosen(&arguments.cases)?;
     if arguments.list {
-        say(&report::list(&works));
+        say(&report::list(&cases));
         return Ok(());
     }
     let instructions = arguments.instructions.as_deref();
@@ -76,9 +76,9 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     }
     let least = Duration::from_secs_f64(arguments.seconds);
     for &particles in &arguments.particles {
-        for work in &works {
+        for case in &cases {
             for (ranks, threads) in pairs(&arguments.ranks, &arguments.threads) {
-                let set_up = SetUp { work, particles, ranks, threads, least };
+                let set_up = SetUp { case, particles, ranks, threads, least };
                 let measurement = match arguments.here {
                     true => Measurement::take(&set_up, registry)?,
                     false => apart::take(&set_up, instructions)?,
@@ -94,13 +94,13 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     Ok(())
 }
 
-fn chosen(names: &[String]) -> Result<Vec<&'static Work>, Failure> {
+fn chosen(names: &[String]) -> Result<Vec<&'static BenchCase>, Failure> {
     if names.is_empty() {
-        return Ok(WORKS.iter().collect());
+        return Ok(BENCH_CASES.iter().collect());
     }
     let find = |name: &String| {
-        WORKS.iter().find(|work| work.name == name).ok_or_else(|| {
-            let known: Vec<&str> = WORKS.iter().map(|work| work.name).collect();
+        BENCH_CASES.iter().find(|case| case.name == name).ok_or_else(|| {
+            let known: Vec<&str> = BENCH_CASES.iter().map(|case| case.name).collect();
             Failure::Usage(format!("unknown benchmark `{name}`; the benchmarks are {}", known.join(", ")))
         })
     };

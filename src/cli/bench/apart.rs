@@ -1,4 +1,4 @@
-//! A measurement in a process of its own: its memory is its own, and no earlier work has shaped the heap.
+//! A measurement in a process of its own: its memory is its own, and no earlier case has shaped the heap.
 
 use std::process::{Command, Stdio};
 
@@ -7,8 +7,8 @@ use super::measure::{Measurement, SetUp};
 
 /// Calls this program with the one set-up and reads what it measures.
 pub fn take(set_up: &SetUp<'_>, instructions: Option<&str>) -> Result<Measurement, Failure> {
-    let SetUp { work, particles, ranks, threads, least } = *set_up;
-    let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
+    let SetUp { case, particles, ranks, threads, least } = *set_up;
+    let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(&error))?;
     let mut command = match ranks {
         1 => Command::new(program),
@@ -19,7 +19,7 @@ pub fn take(set_up: &SetUp<'_>, instructions: Option<&str>) -> Result<Measuremen
         }
     };
     let output = command
-        .args(["bench", work.name, "--json", "--here"])
+        .args(["bench", case.name, "--json", "--here"])
         .args(["--particles", &particles.to_string()])
         .args(["--ranks", &ranks.to_string()])
         .args(["--threads", &threads.to_string()])

@@ -1,4 +1,4 @@
-//! One measurement: a work at a number of particles on a number of threads.
+//! One measurement: a case at a number of particles on a number of threads.
 
 use std::time::{Duration, Instant};
 
@@ -12,8 +12,8 @@ use super::super::failure::Failure;
 use super::super::memory::{processor_seconds, resident_bytes};
 use super::super::neighbors::Neighbors;
 use super::super::ranks::together;
+use super::bench_case::BenchCase;
 use super::machine;
-use super::work::Work;
 
 /// Steps before the clock starts: lists and buffers have their size then.
 const WARM_UP: u64 = 3;
@@ -21,8 +21,8 @@ const WARM_UP: u64 = 3;
 /// What is to be measured.
 #[derive(Clone, Copy)]
 pub struct SetUp<'a> {
-    /// The work.
-    pub work: &'a Work,
+    /// The case.
+    pub case: &'a BenchCase,
     /// Number of particles, approximately.
     pub particles: usize,
     /// Ranks.
@@ -36,8 +36,8 @@ pub struct SetUp<'a> {
 /// What was measured.
 #[derive(Serialize, Deserialize)]
 pub struct Measurement {
-    /// Name of the work.
-    pub work: String,
+    /// Name of the case.
+    pub case: String,
     /// Number of particles, without those of walls.
     pub particles: usize,
     /// Mean number of neighbours.
@@ -81,7 +81,7 @@ pub struct System {
 }
 
 impl Measurement {
-    /// Builds the work and times its steps.
+    /// Builds the case and times its steps.
     pub fn take(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
         let threads = set_up.threads;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
@@ -90,11 +90,11 @@ impl Measurement {
     }
 
     fn take_here(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
-        let SetUp { work, particles, ranks, threads, least } = *set_up;
-        let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", work.name));
+        let SetUp { case, particles, ranks, threads, least } = *set_up;
+        let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", case.name));
         let before = resident_bytes();
         let begun = Instant::now();
-        let scene = work.scene(particles).map_err(|error| failed(&error))?;
+        let scene = case.scene(particles).map_err(|error| failed(&error))?;
         let mut sim = scene.build(registry)?;
         sim.step().map_err(|error| failed(&error))?;
         let first_step_after = begun.elapsed().as_secs_f64();
@@ -117,7 +117,7 @@ impl Measurement {
         let rate = particles as f64 * steps as f64 / seconds;
         let grown = before.zip(after).map(|(before, after)| after.saturating_sub(before) as f64);
         Ok(Self {
-            work: work.name.to_owned(),
+            case: case.name.to_owned(),
             particles,
             neighbors,
             ranks,

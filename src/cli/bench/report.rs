@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use super::super::failure::Failure;
 use super::super::text::{Table, counted};
+use super::bench_case::BenchCase;
 use super::machine::Machine;
 use super::measure::Measurement;
-use super::work::Work;
 
 /// The benchmarks, one a line.
-pub fn list(works: &[&Work]) -> String {
-    works.iter().map(|work| format!("{:<14} {}\n", work.name, work.title)).collect()
+pub fn list(cases: &[&BenchCase]) -> String {
+    cases.iter().map(|case| format!("{:<14} {}\n", case.name, case.title)).collect()
 }
 
 /// What is measured, and on what.
@@ -21,7 +21,7 @@ pub fn heading(machine: &Machine) -> String {
         machine.processor,
         machine.instruction_path,
         machine.version,
-        "work",
+        "case",
         "particles",
         "ranks",
         "threads",
@@ -46,7 +46,7 @@ pub fn text(measured: &Measurement, profile: bool) -> String {
     };
     let mut text = format!(
         "{:<14} {:>10} {:>5} {:>7} {:>8.1} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2} {:>14}",
-        measured.work,
+        measured.case,
         counted(measured.particles as f64, "").trim_end(),
         measured.ranks,
         measured.threads,
@@ -59,13 +59,13 @@ pub fn text(measured: &Measurement, profile: bool) -> String {
         exchanged,
     );
     if profile {
-        let work = measured.steps as f64 * measured.particles as f64;
+        let particle_steps = measured.steps as f64 * measured.particles as f64;
         let mut table = Table::new(&["system", "share", "ns/particle-step"], 2);
         for system in measured.systems.iter().filter(|system| system.seconds > 0.0) {
             table.row([
                 system.label.clone(),
                 format!("{:.1} %", 100.0 * system.seconds / measured.seconds),
-                format!("{:.1}", 1e9 * system.seconds / work),
+                format!("{:.1}", 1e9 * system.seconds / particle_steps),
             ]);
         }
         let _ = write!(text, "\n{}", table.render());

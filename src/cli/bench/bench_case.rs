@@ -3,8 +3,8 @@
 use anyhow::Result;
 use meshless_validation::Template;
 
-/// A standard work.
-pub struct Work {
+/// A benchmark case.
+pub struct BenchCase {
     /// Name on the command line.
     pub name: &'static str,
     /// What it is, in one line.
@@ -12,7 +12,7 @@ pub struct Work {
     scene: (&'static str, &'static str),
     /// The spacing for a number of particles, m.
     spacing: fn(f64) -> f64,
-    /// Values of the scene that make this work out of it.
+    /// Values of the scene that make this case out of it.
     set: &'static [(&'static str, Value)],
 }
 
@@ -49,7 +49,7 @@ impl Value {
     }
 }
 
-impl Work {
+impl BenchCase {
     /// The scene with about that many particles that move.
     pub fn scene(&self, particles: usize) -> Result<Template> {
         let (path, text) = self.scene;
@@ -89,9 +89,9 @@ fn channel(particles: f64) -> f64 {
     usual / (usual / (area / particles).sqrt()).round().max(1.0)
 }
 
-/// All works.
-pub const WORKS: &[Work] = &[
-    Work {
+/// All cases.
+pub const BENCH_CASES: &[BenchCase] = &[
+    BenchCase {
         name: "solid-31",
         title: "solid in three dimensions, total-Lagrangian, 32 neighbours inside",
         scene: BLOCK,
@@ -101,9 +101,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.formulation", Text("TotalLagrangian(support: 2.2)")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-31-free",
-        title: "the same without hourglass control",
+        title: "solid-31 without hourglass control",
         scene: BLOCK,
         spacing: cube,
         set: &[
@@ -112,9 +112,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.plugins", Text("[]")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-31-term",
-        title: "the same with a pair term of a plugin, artificial viscosity",
+        title: "solid-31 with a pair term of a plugin, artificial viscosity",
         scene: BLOCK,
         spacing: cube,
         set: &[
@@ -123,9 +123,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.plugins", Text("[hourglass_control(), artificial_viscosity()]")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-updated",
-        title: "the same with updated-Lagrangian bodies, cubic spline",
+        title: "solid-31 with updated-Lagrangian bodies, cubic spline",
         scene: BLOCK,
         spacing: cube,
         set: &[
@@ -133,9 +133,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2)")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-updated-3",
-        title: "updated-Lagrangian bodies whose reference is updated every three steps",
+        title: "solid-updated, its reference updated every three steps",
         scene: BLOCK,
         spacing: cube,
         set: &[
@@ -143,9 +143,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.formulation", Text("UpdatedLagrangian(support: 2.2, update: Every(3))")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-updated-hessian",
-        title: "the same with differences of second derivatives in the place of hourglass control",
+        title: "solid-updated with differences of second derivatives in the place of hourglass control",
         scene: BLOCK,
         spacing: cube,
         set: &[
@@ -154,35 +154,35 @@ pub const WORKS: &[Work] = &[
             ("bodies.block.plugins", Text("[hessian_stabilization()]")),
         ],
     },
-    Work {
+    BenchCase {
         name: "solid-54",
         title: "solid in three dimensions, total-Lagrangian, 56 neighbours inside",
         scene: BLOCK,
         spacing: cube,
         set: &[("bodies.block.spacing", Spacing)],
     },
-    Work {
+    BenchCase {
         name: "solid-2d",
         title: "solid in plane strain, total-Lagrangian",
         scene: STRIP,
         spacing: square,
         set: &[("bodies.strip.spacing", Spacing)],
     },
-    Work {
+    BenchCase {
         name: "eulerian",
         title: "solid in three dimensions, Eulerian",
         scene: BLOCK,
         spacing: cube,
         set: &[("bodies.block.spacing", Spacing), ("bodies.block.formulation", Text("Eulerian()"))],
     },
-    Work {
+    BenchCase {
         name: "eulerian-2d",
         title: "solid in plane strain, Eulerian",
         scene: STRIP,
         spacing: square,
         set: &[("bodies.strip.spacing", Spacing), ("bodies.strip.formulation", Text("Eulerian()"))],
     },
-    Work {
+    BenchCase {
         name: "dam-80",
         title: "dam break in three dimensions, 80 neighbours inside",
         scene: DAM,
@@ -193,9 +193,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.tank.shape", Tank(3)),
         ],
     },
-    Work {
+    BenchCase {
         name: "dam-80-double",
-        title: "the same with sums in double precision",
+        title: "dam-80 with sums in double precision",
         scene: DAM,
         spacing: cube,
         set: &[
@@ -205,9 +205,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.tank.shape", Tank(3)),
         ],
     },
-    Work {
+    BenchCase {
         name: "dam-170",
-        title: "the same with 170 neighbours inside",
+        title: "dam-80 with 170 neighbours inside",
         scene: DAM,
         spacing: cube,
         set: &[
@@ -217,7 +217,7 @@ pub const WORKS: &[Work] = &[
             ("bodies.water.formulation", Text("Fluid(support: 3.4)")),
         ],
     },
-    Work {
+    BenchCase {
         name: "dam-2d",
         title: "dam break in a plane, 20 neighbours inside",
         scene: DAM_PLANE,
@@ -228,9 +228,9 @@ pub const WORKS: &[Work] = &[
             ("bodies.tank.shape", Tank(2)),
         ],
     },
-    Work {
+    BenchCase {
         name: "dam-2d-delta",
-        title: "the same as scenes have it without settings: 28 neighbours, renormalised density diffusion",
+        title: "dam-2d as scenes have it without settings: 28 neighbours, renormalised density diffusion",
         scene: DAM_PLANE,
         spacing: square,
         set: &[
@@ -241,7 +241,7 @@ pub const WORKS: &[Work] = &[
             ("bodies.water.plugins", Text("[density_diffusion()]")),
         ],
     },
-    Work {
+    BenchCase {
         name: "dam-plate",
         title: "dam break in a plane with a plate of rubber in its way",
         scene: DAM_PLATE,
@@ -253,7 +253,7 @@ pub const WORKS: &[Work] = &[
             ("bodies.tank.shape", Tank(2)),
         ],
     },
-    Work {
+    BenchCase {
         name: "abrasive",
         title: "abrasive flow in a plane: fluid, grains, a wearing Eulerian solid, as the shipped scene has them",
         scene: ABRASIVE,
