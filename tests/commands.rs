@@ -83,7 +83,7 @@ fn a_check_reviews_bodies_by_what_they_are() {
     assert!(!notes.contains("hourglass_control") && !notes.contains("plastic flow"), "{notes}");
 }
 
-/// What `check` says of water in a tank, with another fluid beside it where `other` has the text of one.
+/// Notes and warnings of `check` on water in a tank, with another fluid beside it where `other` has the text of one.
 fn notes_on_water(axes: &str, water: &str, other: &str, set: &str) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (dimension, gravity, [low, high, top, outer]) = match axes {
@@ -106,7 +106,7 @@ fn notes_on_water(axes: &str, water: &str, other: &str, set: &str) -> String {
     std::fs::write(folder.path().join("tank.ron"), text).expect("a scene");
     let output = meshless(folder.path(), &["check", "tank.ron", "--set", set]);
     assert!(output.status.success(), "{}", err(&output));
-    String::from_utf8_lossy(&output.stdout).into_owned()
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), err(&output))
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn a_check_proposes_a_wider_support_where_a_flow_needs_one() {
     let column = "Box(min: (0, 0, 0), max: (0.1, 0.2, 0.2))";
     assert!(!notes_on_water("three", column, "", nothing).contains(still));
 
-    let two = "waves on their interface";
+    let two = "waves on the interface of `water` and `oil`";
     let square = "Box(min: (0, 0), max: (0.2, 0.2))";
     let oil = |support: &str| {
         format!(
