@@ -26,7 +26,7 @@ pub(in crate::contact) enum Acts {
 
 /// The state of the skins of two bodies.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
+enum SkinState {
     Whole,
     /// Broken in this step.
     Breaking,
@@ -36,7 +36,7 @@ enum State {
 /// The skins of two bodies in contact, of which one or both can fail.
 pub(in crate::contact) struct Fragile {
     carriers: Vec<Carriers>,
-    state: State,
+    state: SkinState,
 }
 
 /// The particles that carry the skin of a body that can fail.
@@ -61,20 +61,20 @@ impl Carriers {
 impl Fragile {
     /// Of the skins of bodies that can fail.
     pub fn new(skins: &[Arc<Skin>]) -> Self {
-        Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: State::Whole }
+        Self { carriers: skins.iter().map(|skin| Carriers::of(skin)).collect(), state: SkinState::Whole }
     }
 
     /// Looks whether a particle of a whole skin has failed in this step, and tells the user.
     pub fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        if self.state != State::Whole {
-            self.state = State::Broken;
+        if self.state != SkinState::Whole {
+            self.state = SkinState::Broken;
             return Ok(());
         }
         for carriers in &self.carriers {
             if !carriers.have_failed(step)? {
                 continue;
             }
-            self.state = State::Breaking;
+            self.state = SkinState::Breaking;
             let told = format!(
                 "body `{}` touches with its particles and no longer with its surface from {} on, because particles of that surface have failed; {BUMPS}",
                 step.world.body(carriers.body).name,
@@ -90,17 +90,17 @@ impl Fragile {
 
     /// Whether the skins are whole.
     pub fn is_whole(&self) -> bool {
-        self.state == State::Whole
+        self.state == SkinState::Whole
     }
 
     /// Whether they break in this step: the first in which the particles act.
     pub fn is_breaking(&self) -> bool {
-        self.state == State::Breaking
+        self.state == SkinState::Breaking
     }
 
     /// Whether they are not whole any more.
     pub fn restore(&mut self, is_whole: bool) {
-        self.state = if is_whole { State::Whole } else { State::Broken };
+        self.state = if is_whole { SkinState::Whole } else { SkinState::Broken };
     }
 }
 

@@ -34,7 +34,7 @@ pub(in crate::contact) struct SurfaceContact {
 }
 
 /// What the nodes that touch have answered in a step.
-struct Responses {
+struct ToolResponses {
     energies: ContactEnergy,
     /// Squared frequency of an impact that may come, 1/s2.
     expected: f64,
@@ -104,7 +104,7 @@ impl SurfaceContact {
         step: &Step<'_>,
         speed: f64,
         beside: Option<Together>,
-    ) -> Result<Responses, StepError> {
+    ) -> Result<ToolResponses, StepError> {
         let (bodies, dt) = (step.resources.get::<RigidBodies>(), step.clock.dt);
         let Self { interaction, sides, contacts, gravity, near, together, .. } = self;
         sides.with(step.world, step.resources, &bodies, |nodes, tool| {
@@ -117,7 +117,7 @@ impl SurfaceContact {
                 |(node, _), history, energies| on.end(node, history, energies),
             );
             let (expected, gap) = (on.expected(near, speed, *gravity), sides.gap(nodes, tool));
-            Responses { energies, expected, nodes: nodes.len(), gap }
+            ToolResponses { energies, expected, nodes: nodes.len(), gap }
         })
     }
 
@@ -129,7 +129,7 @@ impl SurfaceContact {
         beside: Option<Together>,
     ) -> Result<ContactEnergy, StepError> {
         let speed = MotionBounds::approach(motion, &Map::IDENTITY);
-        let Responses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;
+        let ToolResponses { energies, expected, nodes, gap } = self.respond(step, speed, beside)?;
         let resources = step.resources;
         let mut bodies = resources.get_mut::<RigidBodies>();
         let Self { interaction, sides, contacts, contact_nodes, near, .. } = self;

@@ -7,7 +7,7 @@ use crate::formulations::fluid::cloud::{
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
-use crate::formulations::fluid::rotation::{Moments, Spin};
+use crate::formulations::fluid::rotation::{FrictionMoments, Spin};
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
     GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallState,
@@ -193,7 +193,7 @@ fn add_force(
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
     let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
-    let force = FlowForce { phase, gravity, parts, moments: Moments::default(), terms };
+    let force = FlowForce { phase, gravity, parts, moments: FrictionMoments::default(), terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
     let system = reads_flow(system).reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });

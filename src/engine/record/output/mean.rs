@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Integrates what a gauge reads by the trapezoidal rule, step by step: of the force on a body this is the momentum that the leapfrog gives it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Mean {
+pub(super) struct TimeMean {
     /// Integral since the last sample, and its length, s.
     integral: Vec<f64>,
     length: f64,
@@ -12,7 +12,7 @@ pub(super) struct Mean {
     last: Option<(f64, Vec<f64>)>,
 }
 
-impl Mean {
+impl TimeMean {
     /// Takes in what is read at a time, s.
     pub fn add(&mut self, time: f64, values: &[f64]) {
         if let Some((before, earlier)) = &self.last {
@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn the_mean_is_over_the_time_since_the_last_sample_whatever_the_steps() {
-        let mut mean = Mean::default();
+        let mut mean = TimeMean::default();
         mean.add(0.0, &[1.0, 0.0]);
         assert_eq!(mean.take(vec![1.0, 0.0]), [1.0, 0.0]);
         for t in [0.5, 0.75, 2.0] {

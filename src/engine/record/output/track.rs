@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::folder::OutputFolder;
-use super::mean::Mean;
+use super::mean::TimeMean;
 use super::table::{SeriesFile, TableState};
 use crate::record::RecordError;
 use crate::record::probe::{EnergyColumns, Gauge, ResolvedProbe};
@@ -25,7 +25,7 @@ pub(super) struct Track {
     gauge: Arc<Gauge>,
     trigger: Trigger,
     /// What its samples are means of, if they are.
-    mean: Option<Mean>,
+    mean: Option<TimeMean>,
     pub table: SeriesFile,
     /// Time of the last sample, s.
     last: Option<f64>,
@@ -39,7 +39,7 @@ pub(super) struct Track {
 #[derive(Serialize, Deserialize)]
 pub(super) struct TrackState {
     trigger: Trigger,
-    mean: Option<Mean>,
+    mean: Option<TimeMean>,
     last: Option<f64>,
     accounts: Option<Vec<String>>,
     held: Option<(f64, Ledger)>,
@@ -61,7 +61,7 @@ impl Track {
             may_be_empty: probe.may_be_empty,
             gauge: probe.gauge,
             trigger: Trigger::new(probe.interval),
-            mean: probe.mean.then(Mean::default),
+            mean: probe.mean.then(TimeMean::default),
             table: SeriesFile::new(file),
             last: None,
             accounts: None,

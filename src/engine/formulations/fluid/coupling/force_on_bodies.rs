@@ -14,7 +14,7 @@ use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchang
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
-use crate::formulations::fluid::rotation::Moments;
+use crate::formulations::fluid::rotation::FrictionMoments;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -61,7 +61,7 @@ pub fn add_force_on_bodies(
         parts: Vec::new(),
         other_total: Vec::new(),
         other_parts: Vec::new(),
-        moments: Moments::default(),
+        moments: FrictionMoments::default(),
         drag: Vec::new(),
         sums: Vec::new(),
     };
@@ -120,7 +120,7 @@ struct Coupling {
     /// The same from the other side of a thin body.
     other_total: Vec<Force>,
     other_parts: Vec<DVec3>,
-    moments: Moments,
+    moments: FrictionMoments,
     /// How fast friction grows with the velocity of each particle, kg/s.
     drag: Vec<f64>,
     sums: Vec<Exchange>,

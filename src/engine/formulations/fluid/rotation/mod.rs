@@ -8,5 +8,5 @@ mod body_gradient;
 
 mod moments;
 
-pub use moments::Moments;
+pub use moments::FrictionMoments;
 pub use spin::Spin;

@@ -23,9 +23,9 @@ use crate::world::Force;
 
 /// Finds the moments of friction on the particles of a boundary, and the forces that make them.
 #[derive(Debug, Default)]
-pub struct Moments {
+pub struct FrictionMoments {
     moments: Vec<Moment>,
-    shifts: Vec<Shift>,
+    shifts: Vec<MomentShift>,
     sums: RowSums,
 }
 
@@ -44,35 +44,35 @@ impl Moment {
 
 /// How the moment of a particle acts on its cluster: mean place of that, and B_w.
 #[derive(Clone, Copy, Debug)]
-struct Shift {
+struct MomentShift {
     mean: DVec3,
     map: DMat3,
 }
 
-impl Shift {
+impl MomentShift {
     const NONE: Self = Self { mean: DVec3::ZERO, map: DMat3::ZERO };
 }
 
 type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
 
-impl Moments {
+impl FrictionMoments {
     /// Adds the forces to the whole and to its viscous part.
     pub fn add(&mut self, cloud: &FlowCloud, group: &Group, total: &mut [Force], parts: &mut [DVec3]) {
         self.moments.clear();
         let Some(near) = cloud.neighborhood(group) else { return };
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
         self.moments.resize(records.len(), Moment::NONE);
-        self.shifts.resize(records.len(), Shift::NONE);
+        self.shifts.resize(records.len(), MomentShift::NONE);
         let pass = MomentOn { cloud, viscosities: cloud.viscosities.of(group) };
         cloud.for_each_row(group.cloud.start, &mut self.moments, &mut self.sums, &pass);
         let moments = &self.moments;
-        for_each_block(&mut self.shifts[..], &mut Vec::new(), &|begin, shifts: &mut [Shift]| {
+        for_each_block(&mut self.shifts[..], &mut Vec::new(), &|begin, shifts: &mut [MomentShift]| {
             for (k, shift) in (begin..).zip(shifts) {
-                *shift = Shift::NONE;
+                *shift = MomentShift::NONE;
                 let first = moments[k].first;
                 if first != DMat3::ZERO {
                     let Cluster { mean, moment, .. } = near.cluster(records, k, periodic);
-                    *shift = Shift { mean, map: affine(&moment, first, cloud.plane) };
+                    *shift = MomentShift { mean, map: affine(&moment, first, cloud.plane) };
                 }
             }
         });
@@ -88,7 +88,7 @@ impl Moments {
     }
 }
 
-impl Moments {
+impl FrictionMoments {
     /// Adds to `drag` how fast the friction on each particle grows with its velocity, kg/s: the fluid sees twice the velocity of a boundary, less its own.
     pub fn add_drag(&self, drag: &mut [f64]) {
         drag.iter_mut().zip(&self.moments).for_each(|(drag, moment)| *drag += moment.drag);
@@ -99,14 +99,14 @@ impl Moments {
 fn force_on(
     near: &Neighborhood,
     records: &[FlowParticle],
-    shifts: &[Shift],
+    shifts: &[MomentShift],
     k: usize,
     periodic: &Periodic,
 ) -> DVec3 {
     let own = &records[k];
     let mut force = shifts[k].map * -shifts[k].mean;
     for &w in near.list.row(k) {
-        let Shift { mean, map } = shifts[w as usize];
+        let MomentShift { mean, map } = shifts[w as usize];
         if map != DMat3::ZERO {
             let x = periodic.minimal_image(own.position() - records[w as usize].position());
             force += map * (x - mean);

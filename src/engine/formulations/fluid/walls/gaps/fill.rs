@@ -66,7 +66,7 @@ pub struct Gap {
 }
 
 /// How the boundaries move.
-pub struct Motion<'a> {
+pub struct BoundaryMotion<'a> {
     /// Velocity of every boundary particle, m/s.
     pub velocities: &'a [DVec3],
     /// Spacing of the fluid, m.
@@ -81,7 +81,7 @@ impl Gap {
     }
 
     /// Bernoulli: what flows into a gap as wide as the spacing that opens comes along the way from where the fluid is, the faster the longer that is.
-    fn open(&mut self, cloud: &FlowCloud, motion: &Motion<'_>) {
+    fn open(&mut self, cloud: &FlowCloud, motion: &BoundaryMotion<'_>) {
         let velocity = |row: usize| motion.velocities[row - cloud.fluid];
         let Some(RestOfGap { density, way, .. }) = self.fluid else { return };
         let (mut total, mut mean) = (0.0, DVec3::ZERO);
@@ -109,7 +109,7 @@ pub struct Fill {
 
 impl Fill {
     /// Continues what is known of the gaps to the others, and to their other sides.
-    pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap], motion: &Motion<'_>) {
+    pub fn run(&mut self, cloud: &FlowCloud, gaps: &mut [Gap], motion: &BoundaryMotion<'_>) {
         self.numbers.clear();
         self.numbers.resize(cloud.records.len() - cloud.fluid, u32::MAX);
         for (k, gap) in (0..).zip(gaps.iter_mut()) {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::fill::{Fill, Gap, Motion, RestOfGap};
+use super::fill::{BoundaryMotion, Fill, Gap, RestOfGap};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
@@ -56,7 +56,7 @@ impl GapPressure {
                 gap.closed = gap.around.closed(surface);
             }
         });
-        let motion = Motion { velocities, spacing: *spacing };
+        let motion = BoundaryMotion { velocities, spacing: *spacing };
         fill.run(cloud, gaps, &motion);
         true
     }
