@@ -8,7 +8,7 @@ pub(super) struct TimeMean {
     /// Integral since the last sample, and its length, s.
     integral: Vec<f64>,
     length: f64,
-    /// When was read last, s, and what.
+    /// Time of the last reading, s, and its values.
     last: Option<(f64, Vec<f64>)>,
 }
 
@@ -25,10 +25,10 @@ impl TimeMean {
         self.last = Some((time, values.to_vec()));
     }
 
-    /// The mean since it was asked for last; at the start, `now`.
-    pub fn take(&mut self, now: Vec<f64>) -> Vec<f64> {
+    /// The mean since it was asked for last; at the start, the last values.
+    pub fn take(&mut self) -> Vec<f64> {
         if self.length <= 0.0 {
-            return now;
+            return self.last.as_ref().map_or_else(Vec::new, |(_, values)| values.clone());
         }
         let mean = self.integral.iter().map(|sum| sum / self.length).collect();
         self.integral.fill(0.0);
@@ -45,12 +45,12 @@ mod tests {
     fn the_mean_is_over_the_time_since_the_last_sample_whatever_the_steps() {
         let mut mean = TimeMean::default();
         mean.add(0.0, &[1.0, 0.0]);
-        assert_eq!(mean.take(vec![1.0, 0.0]), [1.0, 0.0]);
+        assert_eq!(mean.take(), [1.0, 0.0]);
         for t in [0.5, 0.75, 2.0] {
             mean.add(t, &[1.0, 4.0 * t]);
         }
-        assert_eq!(mean.take(vec![1.0, 8.0]), [1.0, 4.0]);
+        assert_eq!(mean.take(), [1.0, 4.0]);
         mean.add(3.0, &[3.0, 12.0]);
-        assert_eq!(mean.take(vec![3.0, 12.0]), [2.0, 10.0]);
+        assert_eq!(mean.take(), [2.0, 10.0]);
     }
 }

@@ -172,10 +172,9 @@ impl Track {
                 energies.values(accounts, step.ledger)
             }
             gauge => {
-                let now = gauge.read(step.world, step.resources)?;
                 let values = match &mut self.mean {
-                    Some(mean) => mean.take(now),
-                    None => now,
+                    Some(mean) => mean.take(),
+                    None => gauge.read(step.world, step.resources)?,
                 };
                 let series = self.series(step.ledger).into_iter().zip(&values);
                 samples.extend(series.map(|((path, unit), value)| (path, unit, *value)));
