@@ -241,6 +241,13 @@ fn a_run_is_resumed_with_its_scene_elsewhere_and_with_other_values() {
     assert!(!lost.status.success() && err(&lost).contains("box.obj"), "{}", err(&lost));
     let found = meshless(folder.path(), &["resume", "o", "--steps", "1", "--scene", "new/b.ron"]);
     assert!(found.status.success(), "{}", err(&found));
+    let is_another = "is not the scene file that the run began with";
+    assert!(!err(&found).contains(is_another), "{}", err(&found));
+    std::fs::write(folder.path().join("new/c.ron"), scene.replace("1e5", "1e4")).expect("a scene");
+    for _ in 0..2 {
+        let other = meshless(folder.path(), &["resume", "o", "--steps", "1", "--scene", "new/c.ron"]);
+        assert!(other.status.success() && err(&other).contains(is_another), "{}", err(&other));
+    }
     let set = ["resume", "o", "--scene", "new/b.ron", "--set", "time.end=1e-9"];
     let ended = meshless(folder.path(), &set);
     assert!(err(&ended).contains("extend it with `--until TIME`"), "{}", err(&ended));
@@ -264,6 +271,12 @@ fn slips_of_units_are_warned_of() {
     let fast = "conditions=[Velocity(on: Select(face: MinX), value: (\"200*smoothstep(t/10)\", None))]";
     let output = meshless(folder.path(), &["check", "beam.ron", "--set", fast]);
     assert!(err(&output).contains("17.2 times the speed of sound in body `beam`"), "{}", err(&output));
+    let thrown = fast.replace("Velocity", "InitialVelocity").replace("200*smoothstep(t/10)", "2000*x");
+    let output = meshless(
+        folder.path(),
+        &["check", "beam.ron", "--set", &thrown.replace("face: MinX", "body: \"beam\"")],
+    );
+    assert!(err(&output).contains("times the speed of sound in it"), "{}", err(&output));
     let plain = meshless(folder.path(), &["check", "beam.ron"]);
     assert!(!err(&plain).contains("warning"), "{}", err(&plain));
 }

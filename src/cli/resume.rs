@@ -71,7 +71,8 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
             "the run is complete: the checkpoint is at {reached}, the scene ends at {end}; extend it with `--until TIME`"
         )));
     }
-    if let Some(warning) = checkpoint.path_warning() {
+    let scene_file = Path::new(&source.name);
+    for warning in checkpoint.scene_warning(scene_file).into_iter().chain(checkpoint.path_warning()) {
         complain(&format!("warning: {warning}"));
     }
     let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();

@@ -48,7 +48,20 @@ pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str>
     }
     let contains = |candidate: &&str| wanted.len() > 3 && candidate.to_lowercase().contains(&wanted);
     let longer = || known.iter().map(AsRef::as_ref).filter(contains).min_by_key(|candidate| candidate.len());
-    best.map(|(_, candidate)| candidate).or_else(longer)
+    best.map(|(_, candidate)| candidate).or_else(longer).or_else(|| of_like_words(&wanted, known))
+}
+
+/// The known name all of whose words are in the wanted one, in any order, with the most words.
+fn of_like_words<'a, S: AsRef<str>>(wanted: &str, known: &'a [S]) -> Option<&'a str> {
+    let words: Vec<&str> = wanted.split('_').collect();
+    let count = |candidate: &str| {
+        let of_candidate = candidate.split('_').filter(|word| word.len() > 2);
+        of_candidate
+            .map(|word| usize::from(words.contains(&word)))
+            .try_fold(0, |n, has| (has > 0).then_some(n + has))
+    };
+    let counted = known.iter().filter_map(|name| Some((count(name.as_ref())?, name.as_ref())));
+    counted.filter(|(words, _)| *words > 0).max_by_key(|(words, _)| *words).map(|(_, name)| name)
 }
 
 #[cfg(test)]
@@ -64,6 +77,8 @@ mod tests {
         assert_eq!(nearest("spam", &known), None);
         assert_eq!(nearest("mises", &["von_mises", "max_von_mises", "mass"]), Some("von_mises"));
         assert_eq!(nearest("Level", &["Energy", "WaterLevel"]), Some("WaterLevel"));
+        assert_eq!(nearest("speed_of_sound", &["density", "sound_speed", "speed"]), Some("sound_speed"));
+        assert_eq!(nearest("modulus_young_of_steel", &["density", "young"]), Some("young"));
         assert_eq!(nearest("colour", &["color", "count"]), Some("color"));
     }
 }

@@ -38,7 +38,7 @@ const UNITS: [(&str, i32); 33] = [
 ];
 
 /// Everyday names and what scenes call the thing.
-const SYNONYMS: [(&str, &str); 17] = [
+const SYNONYMS: [(&str, &str); 20] = [
     ("disk", "Sphere"),
     ("disc", "Sphere"),
     ("circle", "Sphere"),
@@ -56,6 +56,9 @@ const SYNONYMS: [(&str, &str); 17] = [
     ("support", "Fix"),
     ("clamp", "Fix"),
     ("linearelastic", "StVenantKirchhoff"),
+    ("elastic", "StVenantKirchhoff"),
+    ("water", "Fluid"),
+    ("liquid", "Fluid"),
 ];
 
 /// The known name for an everyday one.

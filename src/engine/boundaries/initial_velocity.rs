@@ -8,7 +8,8 @@ use serde::Deserialize;
 
 use super::field::VectorField;
 use super::part::{Part, parts_of};
-use crate::notation::place;
+use super::velocity::LARGEST_MACH;
+use crate::notation::{place, quantity, quantity_to};
 use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::{BodyId, Mobility, Velocity};
@@ -44,6 +45,7 @@ impl Plugin for InitialVelocity {
         }
         field.require_finite(&parts, "velocity")?;
         only_once(&parts, field.axes(), sim)?;
+        warn_of_fast_start(&field, &parts, sim);
         sim.add_setup(move |setup| {
             let axes = field.axes();
             for part in &parts {
@@ -61,6 +63,22 @@ impl Plugin for InitialVelocity {
             Ok(())
         });
         Ok(())
+    }
+}
+
+/// Warns of a speed in a solid that is most likely a slip of units.
+fn warn_of_fast_start(field: &VectorField, parts: &[Part], sim: &mut SimBuilder<'_>) {
+    for part in parts {
+        let body = sim.body(part.body);
+        let sound = body.material.sound_speed().filter(|_| body.kind == BodyKind::Solid);
+        let speed = part.points.iter().map(|&point| field.at(point, 0.0).length()).fold(0.0, f64::max);
+        if let Some(sound) = sound.filter(|sound| speed > LARGEST_MACH * sound) {
+            let (name, factor) = (&body.name, quantity_to(speed / sound, "1", 3));
+            let (speed, sound) = (quantity(speed, "m/s"), quantity(sound, "m/s"));
+            sim.warn(format!(
+                "`InitialVelocity` starts body `{name}` at up to {speed}, {factor} times the speed of sound in it ({sound}): check its unit"
+            ));
+        }
     }
 }
 

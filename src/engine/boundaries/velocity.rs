@@ -44,8 +44,8 @@ impl Plugin for PrescribedVelocity {
     }
 }
 
-/// Largest prescribed speed, in speeds of sound of the softest solid.
-const LARGEST_MACH: f64 = 10.0;
+/// Largest speed of solids that is no slip of units, in speeds of sound.
+pub(super) const LARGEST_MACH: f64 = 10.0;
 /// Times of a run at which it is looked at.
 const TIMES: u32 = 64;
 

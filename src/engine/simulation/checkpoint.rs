@@ -98,6 +98,16 @@ impl Checkpoint {
         self.header.clock
     }
 
+    /// A warning where the scene file, which now lies at `path`, is not the one that the run began with.
+    pub fn scene_warning(&self, path: &Path) -> Option<String> {
+        self.inputs.is_another_scene(path).then(|| {
+            format!(
+                "`{}` is not the scene file that the run began with: the run goes on with the scene in the checkpoint; replace values with `--set`",
+                path.display()
+            )
+        })
+    }
+
     /// A warning where the run was carried out on another instruction path, so that the last bits will differ.
     pub fn path_warning(&self) -> Option<String> {
         let (then, now) = (self.header.instruction_path.as_str(), instruction_path());
@@ -186,6 +196,7 @@ impl Simulation {
                 return Err(content(format!("the state of system `{label}` does not fit")));
             }
         }
+        self.inputs.begin_like(&checkpoint.inputs);
         self.clock = *clock;
         self.ledger = ledger.clone();
         self.next_limit = next_limit.clone();

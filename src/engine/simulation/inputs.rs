@@ -15,6 +15,8 @@ pub(super) struct Inputs {
     /// Values of the parameters, by name.
     parameters: Vec<(String, f64)>,
     files: Vec<InputFile>,
+    /// The file of the scene as it was when the run began; none where the scene did not come from a file.
+    scene_file: Option<InputFile>,
 }
 
 /// A file that the scene names, as it was when the run began.
@@ -25,15 +27,21 @@ struct InputFile {
     hash: u128,
 }
 
+impl InputFile {
+    /// The present content of the file at `path`, under that name.
+    fn read(path: &Path, name: String) -> Option<Self> {
+        let (length, hash) = fingerprint(path)?;
+        Some(Self { name, length, hash })
+    }
+}
+
 impl Inputs {
     /// The files of the scene as they are now. Those that cannot be read are left out: the scene cannot be built without them.
     pub fn of(source: &Source, parameters: impl IntoIterator<Item = (String, f64)>) -> Self {
-        let file = |name: String| {
-            let (length, hash) = fingerprint(&source.folder().join(&name))?;
-            Some(InputFile { name, length, hash })
-        };
+        let file = |name: String| InputFile::read(&source.folder().join(&name), name);
         let files = source.files().into_iter().filter_map(file).collect();
-        Self { scene_from_here: None, parameters: parameters.into_iter().collect(), files }
+        let scene_file = InputFile::read(Path::new(&source.name), String::new());
+        Self { scene_from_here: None, parameters: parameters.into_iter().collect(), files, scene_file }
     }
 
     /// The same in a checkpoint `file` of the scene `scene`.
@@ -48,6 +56,17 @@ impl Inputs {
     pub fn scene_in(&self, folder: &Path) -> Option<PathBuf> {
         let path = folder.join(self.scene_from_here.as_ref()?);
         path.is_file().then_some(path)
+    }
+
+    /// Whether the file at `path` is not the scene file that the run began with.
+    pub fn is_another_scene(&self, path: &Path) -> bool {
+        let now = InputFile::read(path, String::new());
+        now.is_some() && self.scene_file.is_some() && now != self.scene_file
+    }
+
+    /// Keeps the scene file of the beginning of the run, which is that of `saved`.
+    pub fn begin_like(&mut self, saved: &Self) {
+        self.scene_file.clone_from(&saved.scene_file);
     }
 
     /// The first file that is no longer what it was in `saved`.
