@@ -81,7 +81,7 @@ pub enum Form {
     Stiffness,
     /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
     Viscous,
-    /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016), in Eulerian bodies without the errors across the bonds.
+    /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016).
     Combined,
     /// chi times `Viscous` and 1 - chi times `Stiffness` (Mohseni-Mofidi and Bierwisch 2020, eq. 34). Of Eulerian bodies.
     MohseniMofidi2020,
@@ -92,7 +92,8 @@ const WORK: &str = "hourglass_work";
 /// Account of what the viscous form takes.
 const VISCOSITY: &str = "hourglass_viscosity";
 /// Resistance of `Variational` to the error across a pair, over that to the error along it. Where a body is twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar of 8 particles across is
-/// twisted by 11 % too small a torque, and a plate of 8 bends by 5 % too much. In metal that flows, neighbours slide past each other, which is no error of theirs.
+/// twisted by 11 % too small a torque, and a plate of 8 bends by 5 % too much. It goes with the lesser E_i of the pair over Young's modulus: in metal
+/// that flows, neighbours slide past each other, which is no error of theirs.
 const ACROSS: f64 = 0.1;
 /// Coefficient xi where the scene gives none: of `Variational` alone, and of all other forms, before the share of the viscous part is taken off.
 const USUAL_XI: [f64; 2] = [7.0, 10.0];
@@ -193,9 +194,12 @@ impl HourglassControl {
             Form::Viscous => (0.0, 1.0, 0.0),
             _ => (1.0 - self.chi, self.chi, 2.0 * other),
         };
+        // With Young's modulus after yield, neighbours that slide past each other would be resisted.
+        let slides = flows && self.after_yield == AfterYield::Young;
+        let resists_across = form == Form::Variational || form == Form::Combined && !slides;
         let elastic = Elastic {
             xi: share * self.xi.unwrap_or(usual),
-            across: if form == Form::Variational { ACROSS } else { 0.0 },
+            across: if resists_across { ACROSS } else { 0.0 },
             after_yield: self.after_yield,
             has_energy: !matches!(form, Form::Stiffness | Form::MohseniMofidi2020),
         };

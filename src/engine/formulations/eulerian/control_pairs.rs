@@ -15,7 +15,7 @@ pub(super) struct ControlPairs<'a> {
     pub near: &'a EulerianNeighbors,
     pub points: &'a [EulerianParticle],
     pub carried: &'a [Carried],
-    /// Resistance to the error across a pair, over that to the error along it.
+    /// Resistance to the error across a pair, over that to the error along it, for each Pa of the lesser modulus of the pair, 1/Pa.
     pub across: f64,
 }
 
@@ -170,19 +170,23 @@ impl ControlPairs<'_> {
         let other_modulus = if own.modulus > 0.0 { modulus } else { Number::zero(a) };
         let own_before = (-before).if_below(0.0, Number::splat(a, own.modulus_before));
         let (own_pull, other_pull) = (volume * own_modulus * own_share, volume * other_modulus * other_share);
-        let errors = own_pull * own_share + other_pull * other_share;
         // The whole errors, of which a part is resisted, and the rest of the error along the pair.
         let (own_error, other_error) = (own_guess - arm, other_guess - arm);
-        let (half, part, rest) = (0.5 * weight, self.across, 1.0 - self.across);
+        let (half, one) = (0.5 * weight, Number::splat(a, 1.0));
+        // Neighbours slide past each other where either of them flows.
+        let part = modulus.min(own.modulus) * self.across;
+        let rest = one - part;
         let (own_square, other_square) =
             (own_error.length_squared() * over, other_error.length_squared() * over);
         let (own_whole, other_whole) = (volume * own_modulus * part, volume * other_modulus * part);
-        let all_errors = rest * errors + own_whole * own_square + other_whole * other_square;
+        let (own_along, other_along) = (rest * own_pull, rest * other_pull);
+        let errors = own_along * own_share + other_along * other_share;
+        let all_errors = errors + own_whole * own_square + other_whole * other_square;
         // From w = -W' / r the slope of the weight is -(W'' + w) / r.
         let slope =
-            rest * half * (2.0 * (own_pull + other_pull) + errors) + 0.25 * (curvature + weight) * all_errors;
-        let own_force = rest * half * own_pull;
-        let guess = own_guess.mul_add(own_force, other_guess * (rest * half * other_pull));
+            half * (2.0 * (own_along + other_along) + errors) + 0.25 * (curvature + weight) * all_errors;
+        let own_force = half * own_along;
+        let guess = own_guess.mul_add(own_force, other_guess * (half * other_along));
         let own_push = own_error * (half * own_whole);
         sums.force += guess - arm * slope - own_push - other_error * (half * other_whole);
         let couple = arm.mul_add(own_force, own_push);
@@ -191,9 +195,12 @@ impl ControlPairs<'_> {
         if A::AXES == 3 {
             sums.couple[2] = couple.mul_add(original.z, sums.couple[2]);
         }
-        let error = weight * volume * (rest * own_share.squared() + part * own_square) * square;
+        let along = own_share.squared();
+        let before_part = before.min(own.modulus_before) * self.across;
+        let error = weight * volume * square;
         sums.stiffness += half * volume * (own_modulus + other_modulus);
-        sums.energy = error.mul_add(own_modulus, sums.energy);
-        sums.energy_before = error.mul_add(own_before, sums.energy_before);
+        sums.energy = (error * (rest * along + part * own_square)).mul_add(own_modulus, sums.energy);
+        let with_before = error * ((one - before_part) * along + before_part * own_square);
+        sums.energy_before = with_before.mul_add(own_before, sums.energy_before);
     }
 }

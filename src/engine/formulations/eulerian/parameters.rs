@@ -125,10 +125,10 @@ impl Formulation for Eulerian {
         let solids = SolidBodies::new(&ids, sim)?;
         solids.require_terms_that_look(sim)?;
         for (own, of) in solids.iter().zip(&mut kernels) {
-            let density = sim.body(own.id).material.density;
+            let (density, young) = (sim.body(own.id).material.density, own.law.elastic().young);
             of.control = own.control.map(|control| BodyControl {
                 xi: control.xi,
-                across: control.across / control.xi,
+                across: control.across / control.xi / young,
                 density,
             });
             if of.control.is_some() {
