@@ -17,11 +17,15 @@ use crate::ranks::{self, Halo};
 
 /// Which columns of a phase are there for the rows of this rank alone, in the order of the columns.
 #[derive(Debug, Default)]
-pub(super) struct OwnOnly(Vec<AtomicBool>);
+pub(super) struct OwnOnly {
+    flags: Vec<AtomicBool>,
+    /// Whether any has ever been: on one rank none is, and every access asks.
+    any: AtomicBool,
+}
 
 impl OwnOnly {
     pub fn of(columns: &ColumnSet) -> Self {
-        Self(columns.iter().map(|_| AtomicBool::new(false)).collect())
+        Self { flags: columns.iter().map(|_| AtomicBool::new(false)).collect(), any: AtomicBool::new(false) }
     }
 
     /// The column and its flag.
@@ -30,11 +34,13 @@ impl OwnOnly {
         columns: &'s ColumnSet,
         column: TypeId,
     ) -> Option<(&'s ColumnInfo, &'s AtomicBool)> {
-        columns.iter().zip(&self.0).find(|(own, _)| own.type_id == column)
+        columns.iter().zip(&self.flags).find(|(own, _)| own.type_id == column)
     }
 
+    /// The flag of a column, if there is one and any is set.
     fn flag<'s>(&'s self, columns: &'s ColumnSet, column: TypeId) -> Option<&'s AtomicBool> {
-        self.of_column(columns, column).map(|(_, flag)| flag)
+        let any = self.any.load(Ordering::Relaxed);
+        any.then(|| self.of_column(columns, column))?.map(|(_, flag)| flag)
     }
 }
 
@@ -66,6 +72,7 @@ impl<'a> PhaseView<'a> {
             && let Some((column, flag)) = self.own_only().of_column(self.columns(), column)
         {
             flag.store(true, Ordering::Relaxed);
+            self.own_only().any.store(true, Ordering::Relaxed);
             let bodies = self.body_rows().iter().cloned();
             self.write_own_bytes(column, &mut |bytes| {
                 ranks::spoil_others(bytes, column.element_size, BLOCK, bodies.clone());
