@@ -10,7 +10,7 @@ use super::placement;
 use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
-use super::{clamps, drawn_sides, lattice_edges, supports};
+use super::{clamps, drawn_sides, face_on, lattice_edges, supports};
 use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, OutputPlan, Recorder};
@@ -67,6 +67,7 @@ fn build_in(
     supports::place(scene, registry, &mut sim);
     drawn_sides::warn(scene, registry, &mut sim);
     plausibility::warn(&mut sim);
+    face_on::warn(&mut sim);
     let recorder_items = build_plugins(scene, registry, &mut sim)?;
     crate::formulations::fluid::damp_sub_cycled_bodies(&mut sim);
     with_neighbours().for_each(|field| sim.add_field(field));

@@ -3,6 +3,7 @@
 mod build;
 mod clamps;
 mod drawn_sides;
+mod face_on;
 #[cfg(test)]
 mod handed_tests;
 mod lattice_edges;

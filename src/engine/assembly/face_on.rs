@@ -1,0 +1,170 @@
+//! Bodies that hit each other face to face and stay elastic, without artificial viscosity.
+//!
+//! The whole face touches within one step, so that the front behind it is as steep as the lattice allows, however slow the impact: the velocities of particles oscillate behind it and overshoot by a
+//! fifth, with nothing that takes this energy. Round bodies touch little by little, and plastic flow takes the oscillations of harder impacts.
+
+use glam::DVec3;
+
+use crate::materials::Law;
+use crate::notation::quantity;
+use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
+use crate::scene::{Item, Scene};
+
+/// The plugin that takes the oscillations.
+const REMEDY: &str = "artificial_viscosity";
+/// Part of a mean layer that the foremost one has to have to be a face: that of a disc of eight particles across has a half.
+const FULL: f64 = 0.75;
+/// Least spacings that two faces have in common along each of their axes.
+const LEAST_COMMON: f64 = 4.0;
+
+/// Warns of every pair of bodies that have a contact and will meet face to face.
+pub(super) fn warn(sim: &mut SimBuilder<'_>) {
+    let scene = sim.scene();
+    let body = |name: &str| sim.bodies().iter().find(|body| body.name == name);
+    let pairs = scene.contact_pairs().filter_map(|(_, contact)| {
+        let (a, b) = &contact.between;
+        Some([body(a)?, body(b)?])
+    });
+    let texts: Vec<String> = pairs.filter_map(|pair| text(pair, scene)).collect();
+    texts.into_iter().for_each(|text| sim.warn(text));
+}
+
+fn text([a, b]: [&BodyPlan; 2], scene: &Scene) -> Option<String> {
+    let solid = |body: &&BodyPlan| body.kind == BodyKind::Solid;
+    let is_known = |body: &BodyPlan| matches!(body.kind, BodyKind::Solid | BodyKind::Rigid);
+    let without: Vec<&BodyPlan> =
+        [a, b].into_iter().filter(|body| solid(body) && !has_remedy(body, scene)).collect();
+    if a.id == b.id || without.is_empty() || !is_known(a) || !is_known(b) {
+        return None;
+    }
+    let velocity = |body: &BodyPlan| body.velocity.map_or(DVec3::ZERO, |velocity| velocity.0);
+    let relative = velocity(a) - velocity(b);
+    let (speed, along) = (relative.length(), relative.normalize_or_zero());
+    if speed == 0.0
+        || !meet(a, b, along, scene)
+        || [a, b].into_iter().filter(solid).any(|own| yields(own, [a, b], speed))
+    {
+        return None;
+    }
+    let names: Vec<String> = without.iter().map(|body| format!("`{}`", body.name)).collect();
+    Some(format!(
+        "`{}` and `{}` meet face to face, at {}, and stay elastic: behind so steep a front velocities and stresses oscillate and overshoot by a fifth; `{REMEDY}()` in the plugins of {} takes this",
+        a.name,
+        b.name,
+        quantity(speed, "m/s"),
+        names.join(" and ")
+    ))
+}
+
+fn has_remedy(body: &BodyPlan, scene: &Scene) -> bool {
+    let mut all = scene.plugins.iter().chain(&scene.bodies[body.id.0].plugins);
+    all.any(|item: &Item| item.name() == REMEDY)
+}
+
+/// Whether a body yields by the plane wave that the impact sends into it: its stress is that of the impedances, and the elastic limit under uniaxial strain is Y (lambda + 2 mu) / 2 mu.
+fn yields(own: &BodyPlan, pair: [&BodyPlan; 2], speed: f64) -> bool {
+    let Law::Solid(law) = &own.material.law else { return false };
+    let Some(yield_stress) = law.initial_yield_stress() else { return false };
+    // A rigid body has no end of impedance.
+    let compliance = |body: &BodyPlan| match body.kind {
+        BodyKind::Solid => {
+            body.material.sound_speed().map_or(0.0, |sound| 1.0 / (sound * body.material.density))
+        }
+        _ => 0.0,
+    };
+    let elastic = law.elastic();
+    let limit = yield_stress * elastic.longitudinal_modulus() / (2.0 * elastic.shear);
+    speed > limit * pair.map(compliance).iter().sum::<f64>()
+}
+
+/// Whether the foremost layers of two bodies, of which the first one comes along that direction, are faces that meet.
+fn meet(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> bool {
+    let (Some(of_a), Some(of_b)) = (Foremost::of(a, along), Foremost::of(b, -along)) else { return false };
+    let spacing = a.spacing.max(b.spacing);
+    let axes = along.any_orthonormal_pair();
+    let across = [axes.0, axes.1].map(|axis| {
+        let (a, b) = (of_a.extent(axis), of_b.extent(axis));
+        a.1.min(b.1) - a.0.max(b.0)
+    });
+    // The first layer of the other one lies ahead.
+    let ahead = -of_b.at - of_a.at > 0.0;
+    let plane = scene.dimension == crate::scene::Dimension::Two;
+    let is_wide =
+        |(common, axis): (&f64, DVec3)| (plane && axis.z.abs() > 0.5) || *common >= LEAST_COMMON * spacing;
+    ahead && across.iter().zip([axes.0, axes.1]).all(is_wide)
+}
+
+/// The foremost layer of a body.
+struct Foremost {
+    /// How far along the direction it lies, m.
+    at: f64,
+    places: Vec<DVec3>,
+    spacing: f64,
+}
+
+impl Foremost {
+    /// The layer that is foremost along a direction, if it is a face.
+    fn of(body: &BodyPlan, along: DVec3) -> Option<Self> {
+        let places = || body.sites.iter().map(|site| site.position);
+        let far = |sign: f64| places().map(|x| sign * x.dot(along)).fold(f64::NEG_INFINITY, f64::max);
+        let (at, spacing) = (far(1.0), body.spacing);
+        let front: Vec<DVec3> = places().filter(|x| x.dot(along) > at - 0.5 * spacing).collect();
+        let layers = ((at + far(-1.0)) / spacing).round() + 1.0;
+        let is_full = front.len() as f64 >= FULL * body.sites.len() as f64 / layers;
+        is_full.then_some(Self { at, places: front, spacing })
+    }
+
+    /// From where to where it goes along an axis, m.
+    fn extent(&self, axis: DVec3) -> (f64, f64) {
+        let start = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) =
+            self.places.iter().map(|x| x.dot(axis)).fold(start, |(low, high), s| (low.min(s), high.max(s)));
+        (low - 0.5 * self.spacing, high + 0.5 * self.spacing)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::assembly::build;
+    use crate::plugin::Registry;
+    use crate::scene::{Source, parse};
+
+    const ELASTIC: &str = "StVenantKirchhoff(density: 2700, young: 7e10, poisson: 0.33)";
+    const BOX: &str = "Box(min: (0, 0), max: (0.005, 0.01))";
+
+    /// Whether a flyer of that shape, material and velocity, with a plate in front of it from x = 5.2 mm on, is warned of.
+    fn warned(flyer: &str, material: &str, velocity: &str) -> bool {
+        let text = format!(
+            r#"(dimension: Two, materials: {{"m": {material}}},
+                bodies: [(name: "flyer", material: "m", shape: {flyer}, spacing: 5e-4, formulation: TotalLagrangian, velocity: {velocity}),
+                         (name: "target", material: "m", shape: Box(min: (0.0052, 0), max: (0.015, 0.01)), spacing: 5e-4, formulation: TotalLagrangian)],
+                contacts: [Contact(between: ("flyer", "target"), law: Penalty())],
+                time: (end: 1e-6))"#
+        );
+        let (scene, source) = parse(Source::new("impact.ron", text)).expect("a scene");
+        let sim = build(&scene, &source, &Registry::standard()).expect("a simulation");
+        sim.warnings().iter().any(|text| text.contains("face to face, at 4"))
+    }
+
+    #[test]
+    fn plates_that_meet_face_to_face_and_stay_elastic_are_warned_of() {
+        assert!(warned(BOX, ELASTIC, "(4, 0)"));
+        let metal = |stress: f64| {
+            format!(
+                "J2(density: 2700, young: 7e10, poisson: 0.33, hardening: Perfect(yield_stress: {stress:?}))"
+            )
+        };
+        // The stress is rho c v / 2 = 33 MPa, and the limit twice the yield stress.
+        assert!(warned(BOX, &metal(3e7), "(4, 0)"));
+        assert!(!warned(BOX, &metal(1e7), "(4, 0)"));
+    }
+
+    #[test]
+    fn bodies_that_slide_past_each_other_part_or_are_round_are_not() {
+        assert!(!warned(BOX, ELASTIC, "(0, 4)"));
+        assert!(!warned(BOX, ELASTIC, "(-4, 0)"));
+        assert!(!warned("Sphere(center: (0, 0.005), radius: 0.005)", ELASTIC, "(4, 0)"));
+        // At the corner.
+        assert!(!warned("Box(min: (0, -0.009), max: (0.005, 0.001))", ELASTIC, "(4, 0)"));
+    }
+}
