@@ -417,3 +417,48 @@ fn nothing_is_lost_silently_where_particles_that_touch_are_removed() {
     assert!(coarse.0 < 5e-5 && fine.0 < 1e-5, "{coarse:?} {fine:?}");
     assert!(small.abs() < 0.2 * large.abs() && fine.1.abs() < 3e-5, "{large} {small} {fine:?}");
 }
+
+/// A block with that plugin list that is drawn by a traction of 0.1 MPa on one side, above that symmetry plane, in steps of that share of the usual ones.
+fn drawn(plugins: &str, conditions: &str, factor: f64) -> Simulation {
+    let text = format!(
+        r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "block", material: "soft", shape: Box(min: (0, 0), max: (0.1, 0.03)), spacing: 0.005, formulation: TotalLagrangian, plugins: [hourglass_control(), {plugins}])],
+            conditions: [Traction(on: Select(body: "block", face: MaxX), value: (1e5, 0)), {conditions}],
+            time: (end: 0.004, step: Adaptive(factor: {factor:?})))"#
+    );
+    let (scene, source) = parse(Source::new("drawn.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+    assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_traction_acts_on_the_surface_of_a_body_that_can_fail_as_on_any_other() {
+    let places = |plugins: &str| {
+        let mut sim = drawn(plugins, "Symmetry(plane: Y, at: 0)", 1.0);
+        sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+        assert!(sim.warnings().is_empty(), "{:?}", sim.warnings());
+        let (view, _) = sim.world().body_view(BodyId(0));
+        view.read::<Position>().expect("places").iter().map(|x| x.0).collect::<Vec<DVec3>>()
+    };
+    let fragile = places("failure(criterion: MaximumPrincipalStrain(limit: 0.9))");
+    for (a, b) in places("").iter().zip(fragile) {
+        assert!(a.abs_diff_eq(b, 1e-12), "{a} {b}");
+    }
+}
+
+#[test]
+fn a_traction_goes_on_where_the_surface_that_it_acts_on_fails() {
+    let balance = |factor: f64| {
+        let mut sim = drawn("failure(criterion: MaximumPrincipalStrain(limit: 0.06))", "", factor);
+        sim.run(|_| true).unwrap_or_else(|error| panic!("{error}"));
+        let told =
+            |text: &&String| text.contains("the traction on body `block` acts on particles and no longer");
+        assert_eq!(sim.warnings().iter().filter(told).count(), 1, "{:?}", sim.warnings());
+        // All of the time the force is the traction times the side.
+        let impulse = 1e5 * 0.03 * sim.clock().time;
+        let momentum = momentum(&sim).0;
+        assert!((momentum.x / impulse - 1.0).abs() < 1e-9, "{momentum} {impulse}");
+        sim.ledger().relative_error().abs()
+    };
+    let (coarse, fine) = (balance(1.0), balance(0.25));
+    assert!(coarse < 1e-2 && fine < 0.5 * coarse, "{coarse} {fine}");
+}

@@ -1,6 +1,7 @@
 //! Conditions: supports, prescribed motion and loads. A condition is one file and one line of [`register`].
 
 mod body_force;
+mod broken_skin;
 mod displacement;
 mod face_area;
 mod field;

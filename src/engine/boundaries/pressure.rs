@@ -4,15 +4,19 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
 use super::load::{self, LoadLaw};
 use super::part::Part;
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::notation::{place, quantity};
-use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::plugin::{Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, Select};
 use crate::schedule::{Step, StepError};
 use crate::world::DeformationGradient;
+
+/// Label and account.
+const LABEL: &str = "pressure";
 
 /// Presses on a surface; the force follows it as it turns and stretches. It acts on the surface itself, a `face` or `surface` of a total-Lagrangian body whose
 /// shape is known, with the area and normal of now; else on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A
@@ -45,23 +49,13 @@ impl Plugin for PressureLoad {
         let selection = sim.select(&Select { surface: None, ..self.on.clone() }, "on")?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || LoadKind::Pressure(self.value.clone());
-            return skin_load::apply(
-                "pressure",
-                make,
-                LoadedSurface { select: &self.on, area: self.area },
-                skins,
-                sim,
-            );
+            let surface = LoadedSurface { select: &self.on, area: self.area };
+            let skins = skin_load::apply(LABEL, make, surface, skins, sim)?;
+            return broken_skin::apply(LABEL, skins, &selection, sim, |selection, sim| {
+                self.on_particles(selection, sim)
+            });
         }
-        let normal = normal_of(&self.on)?;
-        if self.area.is_none() {
-            selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
-        }
-        let areas = selection.parts.iter().map(|(id, rows)| match self.area {
-            Some(area) => area / selection.len() as f64,
-            None => loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64,
-        });
-        let law = Follower { value: self.value, normal, areas: areas.collect() };
+        let law = self.on_particles(&selection, sim)?;
         let bodies: Vec<_> = selection.parts.iter().map(|(id, _)| *id).collect();
         sim.add_setup(move |setup| {
             let without =
@@ -75,8 +69,23 @@ impl Plugin for PressureLoad {
                 None => Ok(()),
             }
         });
-        load::apply("pressure", law, &selection, sim, |system| system.reads::<DeformationGradient>());
+        load::apply(LABEL, law, &selection, sim, |system| system.reads::<DeformationGradient>());
         Ok(())
+    }
+}
+
+impl PressureLoad {
+    /// The load in equal shares on the selected particles.
+    fn on_particles(&self, selection: &Selection, sim: &SimBuilder<'_>) -> Result<Follower, SetupError> {
+        let normal = normal_of(&self.on)?;
+        if self.area.is_none() {
+            selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
+        }
+        let areas = selection.parts.iter().map(|(id, rows)| match self.area {
+            Some(area) => area / selection.len() as f64,
+            None => loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64,
+        });
+        Ok(Follower { value: self.value.clone(), normal, areas: areas.collect() })
     }
 }
 

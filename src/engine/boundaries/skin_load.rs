@@ -1,6 +1,8 @@
 //! Tractions and pressures on the surface of a body, which its skin distributes to the particles.
 //!
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
+//!
+//! Bodies that can fail are loaded so until a first particle that carries the loaded surface fails, and on the selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)).
 
 use std::sync::Arc;
 
@@ -15,7 +17,7 @@ use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, St
 use crate::shapes::directed_area;
 use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
 use crate::world::{
-    BodySet, Column, ColumnSet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
+    BodyId, BodySet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
 };
 
 /// What gives the force on a facet.
@@ -36,6 +38,20 @@ struct SkinLoad {
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
     last: Vec<DVec3>,
+    /// Whether the body can fail.
+    is_fragile: bool,
+    /// Whether a particle that carries the facets has failed.
+    is_broken: bool,
+}
+
+/// The loads of a condition on the skins of bodies.
+pub(super) struct SkinLoads(Vec<SkinLoad>);
+
+impl SkinLoads {
+    /// Whether the load on a body acts on its skin.
+    pub fn act_on(&self, body: BodyId) -> bool {
+        self.0.iter().any(|load| load.patch.skin.body == body && !load.is_broken)
+    }
 }
 
 /// The skins of the bodies of a selection; none if the load has to act on particles.
@@ -67,11 +83,11 @@ pub(super) fn skins_of(
 
 /// The skin of a body on which a load acts; none if the load has to act on particles.
 fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc<Skin>> {
-    let mut state = ColumnSet::default();
-    body.solid_law().ok()?.state(&mut state);
-    let is_whole = body.offers(Offer::DeformedContact) && state.get(Damage::NAME).is_none();
+    body.solid_law().ok()?;
+    // What has failed is loaded by a side of its particles.
+    let is_known = body.offers(Offer::DeformedContact) && (select.surface.is_none() || !body.can_fail());
     let is_surface = (select.face.is_some() || select.surface.is_some()) && select.nearest.is_none();
-    if !is_whole || !is_surface {
+    if !is_known || !is_surface {
         return None;
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
@@ -94,7 +110,7 @@ pub(super) fn apply(
     on: LoadedSurface<'_>,
     skins: Vec<Arc<Skin>>,
     sim: &mut SimBuilder<'_>,
-) -> Result<(), SetupError> {
+) -> Result<Shared<SkinLoads>, SetupError> {
     let LoadedSurface { select, area } = on;
     let mut loads = Vec::new();
     let mut total = 0.0;
@@ -118,18 +134,29 @@ pub(super) fn apply(
         return Err(SetupError::parameter("on", "no part of the surface is selected", help));
     }
     let factor = area.map_or(1.0, |area| area / total);
-    let bodies = BodySet::new(loads.iter().map(|(_, patch)| patch.skin.body));
-    let phases = sim.phases_of(&bodies);
     let loads = loads.into_iter().map(|(facets, patch)| SkinLoad {
         label,
         kind: make(),
+        is_fragile: sim.body(patch.skin.body).can_fail(),
         patch,
         facets,
         factor,
         last: Vec::new(),
+        is_broken: false,
     });
-    let shared = sim.share(loads.collect::<Vec<_>>());
-    let make = System::new(Stage::Boundary, label, Make(shared));
+    let loads = SkinLoads(loads.collect());
+    Ok(add_systems(label, loads, sim))
+}
+
+fn add_systems(label: &'static str, loads: SkinLoads, sim: &mut SimBuilder<'_>) -> Shared<SkinLoads> {
+    let bodies = BodySet::new(loads.0.iter().map(|load| load.patch.skin.body));
+    let phases = sim.phases_of(&bodies);
+    let can_break = loads.0.iter().any(|load| load.is_fragile);
+    let shared = sim.share(loads);
+    let mut make = System::new(Stage::Boundary, label, Make(shared));
+    if can_break {
+        make = make.reads_near::<Damage>();
+    }
     sim.add_system(
         make.on_phases(phases.clone())
             .reads_near::<Position>()
@@ -140,18 +167,18 @@ pub(super) fn apply(
             .touches("corrected_stress", Mode::Adds),
     );
     let push =
-        move |step: &mut Step<'_>| step.resources.of(shared).iter().try_for_each(|load| load.push(step));
+        move |step: &mut Step<'_>| step.resources.of(shared).0.iter().try_for_each(|load| load.push(step));
     sim.add_system(System::new(Stage::External, label, push).on_phases(phases).adds::<Force>());
-    Ok(())
+    shared
 }
 
 /// The system that computes the forces.
-struct Make(Shared<Vec<SkinLoad>>);
+struct Make(Shared<SkinLoads>);
 
 impl Run for Make {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let resources = step.resources;
-        resources.of_mut(self.0).iter_mut().try_for_each(|load| load.make(step))?;
+        resources.of_mut(self.0).0.iter_mut().try_for_each(|load| load.make(step))?;
         for phase in step.world.phases() {
             if let Some(mut solid) = step.resources.solid_mut(phase) {
                 solid.renew_ghosts();
@@ -162,35 +189,75 @@ impl Run for Make {
 
     fn save_with(&self, resources: &Resources) -> Vec<u8> {
         let loads = resources.of(self.0);
-        let saved: Vec<Saved> = loads.iter().map(|load| (load.last.clone(), load.patch.saved())).collect();
+        let saved: Vec<Saved> =
+            loads.0.iter().map(|load| (load.last.clone(), load.patch.saved(), load.is_broken)).collect();
         postcard::to_stdvec(&saved).unwrap_or_default()
     }
 
     fn restore_with(&mut self, state: &[u8], resources: &Resources) -> bool {
         let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
         let mut loads = resources.of_mut(self.0);
-        let fits = saved.len() == loads.len();
-        for (load, (last, places)) in loads.iter_mut().zip(saved) {
+        let fits = saved.len() == loads.0.len();
+        for (load, (last, places, is_broken)) in loads.0.iter_mut().zip(saved) {
             let facets: Vec<u32> = load.facets.iter().map(|facet| facet.0).collect();
             load.patch.restore(&places);
             load.patch.select(facets);
-            load.last = last;
+            (load.last, load.is_broken) = (last, is_broken);
         }
         fits
     }
 }
 
-/// Forces at the end of the last step, and where the vertices were.
-type Saved = (Vec<DVec3>, Vec<(u32, Last)>);
+/// Forces at the end of the last step, where the vertices were, and whether the skin is broken.
+type Saved = (Vec<DVec3>, Vec<(u32, Last)>, bool);
 
 impl SkinLoad {
-    /// The forces at the end of the step, and their work.
+    /// The forces at the end of the step, and their work; that of the last forces is left where the skin breaks in this step.
     fn make(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let Self { label, kind, patch, facets, factor, last } = self;
-        let skin = Arc::clone(&patch.skin);
+        if self.is_broken {
+            return Ok(());
+        }
+        self.look(step)?;
+        let skin = Arc::clone(&self.patch.skin);
         let columns = SkinColumns::new(&skin, step.world)?;
-        patch.update(&columns.view(), step.clock.dt, Wanted::default());
-        let (axes, t) = (skin.facets.axes, step.clock.end());
+        self.patch.update(&columns.view(), step.clock.dt, Wanted::default());
+        if !self.is_broken {
+            self.load(step)?;
+        }
+        let account = step.ledger.account(self.label, AccountKind::Supplied);
+        step.ledger.add(account, skin.body, self.patch.work(&mut self.last, step.clock.dt));
+        self.patch.hand_on();
+        let body = step.world.body(skin.body);
+        if let Some(mut solid) = step.resources.solid_mut(body.phase) {
+            self.patch.add_couples(&mut *solid, body.rows.start);
+        }
+        Ok(())
+    }
+
+    /// Looks whether a particle that carries the facets has failed in this step, and tells the user.
+    fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        if !self.is_fragile {
+            return Ok(());
+        }
+        let (view, rows) = step.world.body_view(self.patch.skin.body);
+        let damage = view.read_near::<Damage>()?;
+        let has_failed = |&particle: &u32| damage[rows.start + particle as usize].0 >= 1.0;
+        self.is_broken = self.patch.particles().iter().any(has_failed);
+        if self.is_broken {
+            step.warnings.push(format!(
+                "the {} on body `{}` acts on particles and no longer on its surface from {} on, because particles of that surface have failed",
+                self.label,
+                step.world.body(self.patch.skin.body).name,
+                quantity(step.clock.end(), "s")
+            ));
+        }
+        Ok(())
+    }
+
+    /// Loads the facets.
+    fn load(&mut self, step: &Step<'_>) -> Result<(), StepError> {
+        let Self { label, kind, patch, facets, factor, .. } = self;
+        let (axes, t) = (patch.skin.facets.axes, step.clock.end());
         for &(facet, middle, area) in &*facets {
             let corners = patch.corners(facet);
             if !corners.iter().all(|corner| corner.is_there) {
@@ -214,17 +281,13 @@ impl SkinLoad {
             }
             (0..axes).for_each(|k| patch.push_corner(facet, k, force / axes as f64));
         }
-        let account = step.ledger.account(label, AccountKind::Supplied);
-        step.ledger.add(account, skin.body, patch.work(last, step.clock.dt));
-        patch.hand_on();
-        let body = step.world.body(skin.body);
-        if let Some(mut solid) = step.resources.solid_mut(body.phase) {
-            patch.add_couples(&mut *solid, body.rows.start);
-        }
         Ok(())
     }
 
     fn push(&self, step: &mut Step<'_>) -> Result<(), StepError> {
+        if self.is_broken {
+            return Ok(());
+        }
         let (view, rows) = step.world.body_view(self.patch.skin.body);
         self.patch.add_forces(&mut view.write::<Force>()?[rows]);
         Ok(())

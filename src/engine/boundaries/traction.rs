@@ -3,13 +3,18 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area};
 use super::field::VectorField;
 use super::load::{self, DeadLoad};
 use super::on_rigid::arms_of;
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
-use crate::plugin::{Plugin, SetupError, SimBuilder};
+use crate::plugin::{Plugin, Selection, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
+use crate::world::BodyId;
+
+/// Label and account.
+const LABEL: &str = "traction";
 
 /// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the surface itself, a `face` or `surface` of a
 /// Lagrangian or rigid body whose shape is known; else on the selected particles, in equal shares of the loaded area.
@@ -42,25 +47,35 @@ impl Plugin for Traction {
         load::require_movable(&selection, sim)?;
         if let Some(skins) = skins_of(&self.on, &selection, sim)? {
             let make = || LoadKind::Traction(field.clone());
-            return skin_load::apply(
-                "traction",
-                make,
-                LoadedSurface { select: &self.on, area: self.area },
-                skins,
-                sim,
-            );
+            let surface = LoadedSurface { select: &self.on, area: self.area };
+            let skins = skin_load::apply(LABEL, make, surface, skins, sim)?;
+            let law = |selection: &Selection, sim: &mut SimBuilder<'_>| {
+                on_particles(&self.on, self.area, field.clone(), selection, sim)
+            };
+            return broken_skin::apply(LABEL, skins, &selection, sim, law);
         }
-        if self.area.is_none() {
-            selection.parts.iter().try_for_each(|(id, rows)| check_is_side(&self.on, *id, rows, sim))?;
-        }
-        let share = |(id, rows): &(crate::world::BodyId, Vec<u32>)| match self.area {
-            Some(area) => vec![area / selection.len() as f64; rows.len()],
-            None => vec![loaded_area(&self.on, sim.body(*id), rows) / rows.len() as f64; rows.len()],
-        };
-        let shares = selection.parts.iter().map(share).collect();
-        let arms = arms_of(&self.on, &selection, sim);
-        let law = DeadLoad { name: Self::NAME, field, shares, arms };
-        load::apply("traction", law, &selection, sim, |system| system);
+        let law = on_particles(&self.on, self.area, field, &selection, sim)?;
+        load::apply(LABEL, law, &selection, sim, |system| system);
         Ok(())
     }
+}
+
+/// The load in equal shares on the selected particles.
+fn on_particles(
+    select: &Select,
+    area: Option<f64>,
+    field: VectorField,
+    selection: &Selection,
+    sim: &SimBuilder<'_>,
+) -> Result<DeadLoad, SetupError> {
+    if area.is_none() {
+        selection.parts.iter().try_for_each(|(id, rows)| check_is_side(select, *id, rows, sim))?;
+    }
+    let share = |(id, rows): &(BodyId, Vec<u32>)| match area {
+        Some(area) => vec![area / selection.len() as f64; rows.len()],
+        None => vec![loaded_area(select, sim.body(*id), rows) / rows.len() as f64; rows.len()],
+    };
+    let shares = selection.parts.iter().map(share).collect();
+    let arms = arms_of(select, selection, sim);
+    Ok(DeadLoad { name: Traction::NAME, field, shares, arms })
 }

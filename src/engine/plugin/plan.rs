@@ -10,7 +10,7 @@ use super::offers::{BodyKind, Offer};
 use crate::materials::{FluidLaw, Law, Material, SolidLaw};
 use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
-use crate::world::{BodyId, PhaseId};
+use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
 
 /// A plane side of a body whose particles are held along its normal, and free along another axis: they have been put onto it.
 #[derive(Clone, Debug)]
@@ -77,6 +77,15 @@ impl BodyPlan {
             Law::Solid(law) => Ok(law),
             _ => Err(self.wrong_material("a solid")),
         }
+    }
+
+    /// Whether its particles can fail.
+    pub fn can_fail(&self) -> bool {
+        let mut state = ColumnSet::default();
+        if let Ok(law) = self.solid_law() {
+            law.state(&mut state);
+        }
+        state.get(Damage::NAME).is_some()
     }
 
     /// The specific heat of a solid whose material has one, J/(kg K).

@@ -267,6 +267,11 @@ impl Patch {
         });
     }
 
+    /// The particles that carry the patch, by their numbers in the body, ascending.
+    pub fn particles(&self) -> &[u32] {
+        &self.particles
+    }
+
     /// All vertices of the patch.
     pub fn vertices(&self) -> &[Vertex] {
         &self.now

@@ -12,8 +12,7 @@ use crate::scene::Dimension;
 use crate::schedule::Resources;
 use crate::solids::{LocalMotion, SolidPhase};
 use crate::world::{
-    BodyId, Column, ColumnSet, Damage, DeformationGradient, MissingColumn, Mobility, Position, Removed,
-    Velocity, World,
+    BodyId, DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World,
 };
 
 /// What a contact of particles means for a body that slides.
@@ -37,7 +36,7 @@ impl MemberParticles {
     pub fn of(body: &BodyPlan, dimension: Dimension) -> Self {
         let root = |volume: f64| if dimension == Dimension::Two { volume.sqrt() } else { volume.cbrt() };
         let radius: Vec<f64> = body.sites.iter().map(|site| 0.5 * root(site.volume)).collect();
-        let deform = body.offers(Offer::DeformedContact) && !can_fail(body);
+        let deform = body.offers(Offer::DeformedContact) && !body.can_fail();
         let on_a_side = on_a_side(body.sites.iter().map(|site| site.position), &radius, dimension);
         Self { body: body.id, radius, deform, on_a_side }
     }
@@ -51,15 +50,6 @@ impl MemberParticles {
     pub fn least(&self) -> f64 {
         self.radius.iter().copied().fold(f64::INFINITY, f64::min)
     }
-}
-
-/// Whether particles of a body can fail.
-pub(in crate::contact) fn can_fail(body: &BodyPlan) -> bool {
-    let mut state = ColumnSet::default();
-    if let Ok(law) = body.solid_law() {
-        law.state(&mut state);
-    }
-    state.get(Damage::NAME).is_some()
 }
 
 fn on_a_side(places: impl Iterator<Item = DVec3>, radius: &[f64], dimension: Dimension) -> usize {

@@ -14,7 +14,7 @@ mod sides;
 
 pub use error::CONTACT;
 pub(super) use error::failed;
-pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members, can_fail};
+pub(super) use members::{BUMPS, MemberColumns, MemberParticles, Members};
 pub(super) use motion::MotionBounds;
 pub(super) use node_view::{NodeMotion, NodeTurn, NodeView};
 pub(super) use shape::{Nearness, of_pair};

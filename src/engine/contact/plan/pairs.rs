@@ -6,7 +6,7 @@ use super::body::{elastic_of, find, is_rigid};
 use super::checks::Named;
 use super::images::mirrors;
 use super::skins_of::BodySkins;
-use crate::contact::bodies::{BUMPS, ContactSides, MemberParticles, NodeTurn, SideNodes, can_fail};
+use crate::contact::bodies::{BUMPS, ContactSides, MemberParticles, NodeTurn, SideNodes};
 use crate::contact::laws::{ContactPair, NormalForce, damping_ratio};
 use crate::contact::particles::ParticleContact;
 use crate::contact::response::Interaction;
@@ -125,7 +125,7 @@ impl Planner<'_> {
         of: &[(&BodyPlan, Arc<Skin>)],
         particles: &dyn Fn(&Self) -> Result<Vec<Touching>, Vec<Problem>>,
     ) -> Result<Vec<(Touching, Acts)>, Vec<Problem>> {
-        let fragile = of.iter().filter(|(body, _)| can_fail(body)).map(|(_, skin)| Arc::clone(skin));
+        let fragile = of.iter().filter(|(body, _)| body.can_fail()).map(|(_, skin)| Arc::clone(skin));
         let fragile: Vec<Arc<Skin>> = fragile.collect();
         if fragile.is_empty() {
             return Ok(always(vec![skins]));
