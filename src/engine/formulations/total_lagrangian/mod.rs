@@ -34,7 +34,7 @@ pub use bonds::{BondError, Bonds};
 pub(super) use cracks::Cracks;
 pub use formulation::TotalLagrangian;
 pub(super) use frame::{AffineFrame, bodies_of, fill_ghosts, frame_of};
-pub(super) use gather::{CorrectStress, Gather, fit_gradients};
+pub(super) use gather::{CorrectStress, Gather};
 pub(super) use held::{HeldParticles, all_shares};
 pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};
 pub(super) use internal_force::InternalForce;

@@ -3,11 +3,12 @@
 use glam::{DMat3, DVec3};
 
 use super::control::{ControlPass, ControlRows};
+use super::reference_fit::{FittedBlock, ReferenceFit};
 use crate::formulations::total_lagrangian::{
-    AffineFrame, Bonds, CorrectStress, Gather, HessianBlock, PackedParticle,
+    AffineFrame, Bonds, CorrectStress, HessianBlock, PackedParticle,
 };
 use crate::linalg::Sym3;
-use crate::parallel::{BLOCK, run_hot, run_hot_in, split_by_rows};
+use crate::parallel::{BLOCK, run_hot, split_by_rows};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
 
 /// What the pass writes of packed rows, cut by rows of one body.
@@ -26,6 +27,8 @@ split_by_rows!(GradientRows { stresses, self_force, control, control_force, hess
 pub(super) struct UpdatedGradientPass<'a> {
     pub bonds: &'a Bonds,
     pub sites: &'a [PackedParticle],
+    /// The sums over these bonds, where they are known.
+    pub fit: Option<&'a ReferenceFit>,
     /// F_r, where the reference is not the original one.
     pub gradient: Option<&'a [DMat3]>,
     /// Sums of the stabilizers, where they do not fold into the stress.
@@ -49,17 +52,16 @@ impl UpdatedGradientPass<'_> {
         let (n, first) = (rows.deformation.len(), block.first);
         let mut stretch = [DVec3::ZERO; BLOCK];
         let mut volume = [0.0; BLOCK];
-        let gather = Gather {
-            bonds: self.bonds,
-            sites: self.sites,
-            first,
-            count: n,
+        let fitted = FittedBlock {
             gradient: &mut block.gradient,
             residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut volume,
         };
-        run_hot_in(self.plane, gather);
+        match self.fit {
+            Some(fit) => fit.give(self.sites, first, n, fitted),
+            None => fitted.sum(self.bonds, self.sites, self.plane, first, n),
+        }
         let GradientRows { stresses, self_force, control, control_force, mut hessian } = own;
         hessian.after_fit(self.bonds, self.sites, first, &mut block.gradient[..n]);
         let f_r = self.follow(&volume, &mut rows, block);

@@ -25,6 +25,7 @@ mod pack;
 mod parameters;
 mod phase;
 mod reference;
+mod reference_fit;
 mod row_loops;
 mod seen;
 mod set_up;

@@ -29,9 +29,8 @@ impl UpdatedRows {
         Ok(())
     }
 
-    /// Fills all sites.
-    pub fn pack(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
-        self.pack_reference(world, phase)?;
+    /// Fills the sites of the start, where they are others.
+    pub fn pack_original(&mut self, world: &World, phase: PhaseId) -> Result<(), MissingColumn> {
         if !self.has_followed() {
             return Ok(());
         }

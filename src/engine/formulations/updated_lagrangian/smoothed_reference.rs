@@ -19,7 +19,7 @@ use glam::{DMat3, DVec3};
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{Bonds, fit_gradients};
+use crate::formulations::total_lagrangian::Bonds;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
@@ -29,13 +29,6 @@ const SHARE: f64 = 0.75;
 const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
-
-/// Writes f - I of all real rows of the phase at the places that the sites hold.
-pub(super) fn increments(packed: &UpdatedRows, plane: bool, gradient: &mut Vec<DMat3>) {
-    let UpdatedRows { bonds, sites, volume, .. } = packed;
-    gradient.resize(volume.len(), DMat3::ZERO);
-    fit_gradients(bonds, sites, plane, 0, gradient);
-}
 
 /// What the reference places of a body are smoothed by.
 #[derive(Clone, Copy)]

@@ -11,7 +11,8 @@ use super::force;
 use super::gradient::{GradientRows, UpdatedGradientPass};
 use super::lost_neighbors::widen;
 use super::phase::UpdatedRows;
-use super::smoothed_reference::{ReferenceRelaxation, ReferenceSmoothing, increments};
+use super::reference_fit::ReferenceFit;
+use super::smoothed_reference::{ReferenceRelaxation, ReferenceSmoothing};
 use crate::formulations::total_lagrangian::{
     AffineFrame, BondedSites, Ellipsoid, FrameIndifferent, PackedParticle,
 };
@@ -55,8 +56,7 @@ pub(super) struct UpdatedSolids {
 #[derive(Default)]
 struct KeptMemory {
     relaxation: ReferenceRelaxation,
-    /// f - I at the places of the reference.
-    changes: Vec<DMat3>,
+    fit: ReferenceFit,
     /// Internal forces before the update, N.
     before: Vec<Force>,
 }
@@ -88,15 +88,19 @@ impl UpdatedSolids {
         self.solids.iter().map(|body| body.has_terms() || body.has_hessian_residual()).collect()
     }
 
-    /// Runs the pass over all bodies.
+    /// Runs the pass over all bodies. Where the fit of f is known, the sites of the reference are filled.
     fn pass(
         &mut self,
         world: &World,
         packed: &mut UpdatedRows,
         part: SolidPart<'_>,
+        fit: Option<&ReferenceFit>,
     ) -> Result<(), StepError> {
         let view = world.phase(self.phase);
-        packed.pack(world, self.phase)?;
+        if fit.is_none() {
+            packed.pack_reference(world, self.phase)?;
+        }
+        packed.pack_original(world, self.phase)?;
         packed.has_force = false;
         let mut columns = SolidColumns::own(&view)?;
         let support = view.read_near::<SupportRadius>()?;
@@ -109,7 +113,7 @@ impl UpdatedSolids {
         for k in 0..self.solids.len() {
             let rows = world.body(self.solids.id(k)).rows.clone();
             let of_body = BodyPass { body: k, view: &view, rows, part };
-            self.pass_over_body(of_body, packed, &mut columns)?;
+            self.pass_over_body(of_body, packed, &mut columns, fit)?;
         }
         packed.hessian.share();
         self.add_differences(&view, packed, part.dt)?;
@@ -124,6 +128,7 @@ impl UpdatedSolids {
         of_body: BodyPass<'_>,
         packed: &mut UpdatedRows,
         columns: &mut SolidColumns<'_>,
+        fit: Option<&ReferenceFit>,
     ) -> Result<(), MissingColumn> {
         let (k, rows, plane) = (of_body.body, of_body.rows.clone(), self.plane);
         let reference_volume = of_body.view.read::<ReferenceVolume>()?;
@@ -155,6 +160,7 @@ impl UpdatedSolids {
         let pass = UpdatedGradientPass {
             bonds,
             sites,
+            fit,
             gradient: follows.then_some(&gradient[..]),
             control: is_apart.then_some(control_pass),
             reference_volume: bytemuck::cast_slice(&reference_volume),
@@ -245,7 +251,7 @@ impl UpdatedSolids {
         self.write_forces(step.world, packed, &mut kept.before)?;
         self.move_reference(step.world, packed, is_due, &mut kept)?;
         // States of laws have advanced by this step already.
-        self.pass(step.world, packed, SolidPart::REPEATED)?;
+        self.pass(step.world, packed, SolidPart::REPEATED, Some(&kept.fit))?;
         self.solids.book_repeated(step)?;
         packed.warn_of_released(step);
         let mut after = std::mem::take(&mut packed.force);
@@ -313,8 +319,9 @@ impl UpdatedSolids {
             }
         }
         packed.pack_reference(world, self.phase)?;
-        increments(packed, self.plane, &mut kept.changes);
-        let changes = &kept.changes[..];
+        let bodies = (0..is_due.len()).map(|k| world.body(self.solids.id(k)).rows.clone());
+        kept.fit.make(&packed.bonds, &packed.sites, self.plane, bodies);
+        let changes = &kept.fit.gradient[..];
         {
             let mut gradient = view.write::<UpdatedGradient>()?;
             for k in (0..is_due.len()).filter(|&k| is_due[k]) {
@@ -410,7 +417,7 @@ impl Run for UpdatedSolids {
             renewed.map_err(|error| error.in_step(step.world))?;
             packed.take_gradients(step.world, self.phase, &self.failed)?;
         }
-        self.pass(step.world, &mut packed, SolidPart::of(step))?;
+        self.pass(step.world, &mut packed, SolidPart::of(step), None)?;
         self.solids.book(step)?;
         // From the first step on, so that it has its place among the energies.
         step.ledger.account(ACCOUNT, AccountKind::Dissipated);
