@@ -1,6 +1,7 @@
 //! The bonds of the reference configuration: neighbours, weights, and the inverse moment matrix of every particle.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -41,9 +42,9 @@ pub enum BondError {
 #[derive(Debug, Default)]
 pub struct Bonds {
     /// Where the neighbours of each row start.
-    pub(in crate::formulations) offsets: Vec<u32>,
+    pub(in crate::formulations) offsets: Arc<Vec<u32>>,
     /// Row of the neighbour; rows beyond the last particle are ghosts (see [`Ghosts`]).
-    pub(in crate::formulations) neighbors: Vec<u32>,
+    pub(in crate::formulations) neighbors: Arc<Vec<u32>>,
     /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
     /// deformation gradient of an affine map stays exact.
     pub(in crate::formulations) weights: Vec<f32>,
@@ -161,7 +162,7 @@ impl Bonds {
         let rows = body.rows.clone();
         let list = body.neighbors(search)?;
         if self.offsets.is_empty() {
-            self.offsets.push(0);
+            Arc::make_mut(&mut self.offsets).push(0);
         }
         let numbers = 0..(rows.len() + body.ghost_rows.len()) as u32;
         let is_seen: Vec<bool> = numbers.map(|number| body.is_seen(number)).collect();
@@ -182,18 +183,33 @@ impl Bonds {
     }
 
     fn extend(&mut self, next: &RowBonds) {
-        let start = self.neighbors.len();
-        self.offsets.extend(next.ends.iter().map(|end| u32::try_from(start + end).unwrap_or(u32::MAX)));
-        self.neighbors.extend_from_slice(&next.neighbors);
+        self.add_neighbors(&next.ends, &next.neighbors);
         self.weights.extend_from_slice(&next.weights);
     }
 
-    /// Lets go of all bonds; memory is kept.
+    /// Appends the neighbours of some rows, each of which ends there.
+    pub(in crate::formulations) fn add_neighbors(&mut self, ends: &[usize], neighbors: &[u32]) {
+        let start = self.neighbors.len();
+        let offset = |end: &usize| u32::try_from(start + end).unwrap_or(u32::MAX);
+        Arc::make_mut(&mut self.offsets).extend(ends.iter().map(offset));
+        Arc::make_mut(&mut self.neighbors).extend_from_slice(neighbors);
+    }
+
+    /// Lets go of neighbours that are shared.
+    pub(in crate::formulations) fn leave_topology(&mut self) {
+        (self.offsets, self.neighbors) = Default::default();
+    }
+
+    /// Lets go of all bonds; memory is kept where no others share the neighbours.
     pub(in crate::formulations) fn clear(&mut self) {
         let Self { offsets, neighbors, weights, inverse_moment, first_moment, weight_sum, free, carried: _ } =
             self;
-        offsets.clear();
-        neighbors.clear();
+        for list in [offsets, neighbors] {
+            match Arc::get_mut(list) {
+                Some(list) => list.clear(),
+                None => *list = Arc::default(),
+            }
+        }
         weights.clear();
         inverse_moment.clear();
         first_moment.clear();
@@ -259,14 +275,21 @@ impl Bonds {
         support: &[f64],
         ellipsoids: Option<Ellipsoids<'_>>,
     ) -> f64 {
-        let trace =
-            |i: usize, inverse: &Sym3| ellipsoids.map_or(inverse.trace(), |own| own.0[i].trace(inverse));
-        let particle = |i: usize| {
+        let step = |i: usize, trace: f64| {
             let sum = self.weight_sum[i];
-            let mean_inverse = trace(i, &self.inverse_moment[i]) / axes as f64;
-            estimate.stable_step_with(sum, mean_inverse, 0.5 * support[i] * sum)
+            estimate.stable_step_with(sum, trace / axes as f64, 0.5 * support[i] * sum)
         };
-        let steps = rows.into_par_iter().with_min_len(ROWS_OF_TASK).map(particle).filter(|dt| dt.is_finite());
+        let smaller = |least: f64, i: usize| {
+            let inverse = &self.inverse_moment[i];
+            let own = match ellipsoids.map(|all| &all.0[i]) {
+                None => step(i, inverse.trace()),
+                // Few particles need their shortest axis.
+                Some(own) if step(i, own.trace(inverse, own.least_axis())) >= least => return least,
+                Some(own) => step(i, own.trace(inverse, own.shortest())),
+            };
+            if own.is_finite() { least.min(own) } else { least }
+        };
+        let steps = rows.into_par_iter().with_min_len(ROWS_OF_TASK).fold(|| f64::INFINITY, smaller);
         steps.reduce(|| f64::INFINITY, f64::min)
     }
 
@@ -282,10 +305,10 @@ impl Bonds {
         self.free.push(u32::try_from(row).unwrap_or(u32::MAX));
     }
 
-    /// Takes the neighbours of other bonds, with room for weights and moments, which have to be given.
-    pub(in crate::formulations) fn take_topology(&mut self, other: &Self) {
-        self.offsets.clone_from(&other.offsets);
-        self.neighbors.clone_from(&other.neighbors);
+    /// Shares the neighbours of other bonds, with room for weights and moments, which have to be given.
+    pub(in crate::formulations) fn share_topology(&mut self, other: &Self) {
+        self.offsets = Arc::clone(&other.offsets);
+        self.neighbors = Arc::clone(&other.neighbors);
         self.weights.resize(other.weights.len(), 0.0);
         let rows = other.inverse_moment.len();
         self.inverse_moment.resize(rows, Sym3::ZERO);

@@ -18,6 +18,11 @@ const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
 /// Determinant of F F^T down to which, with such a trace, no stretch is below 1/20, far above the limit.
 const FLAT: f64 = 0.02;
 
+/// What a bound of an eigenvalue is raised by, so that rounding does not matter.
+const ROUNDING: f64 = 1e-6;
+/// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is then no more than half as far from the mean.
+const ROUND: f64 = 0.9;
+
 /// The ellipsoid r . G r = 1 of a particle.
 #[derive(Clone, Copy)]
 pub(in crate::formulations) struct Ellipsoid {
@@ -25,9 +30,8 @@ pub(in crate::formulations) struct Ellipsoid {
     pub tensor: Sym3,
     /// G^-1.
     inverse: Sym3,
-    /// Longest and shortest half axis, to 1e-7.
+    /// A bound of the longest half axis: 3 % above it at most.
     pub longest: f64,
-    pub shortest: f64,
     /// (det G)^(1/2), one over its volume.
     pub density: f64,
 }
@@ -35,7 +39,7 @@ pub(in crate::formulations) struct Ellipsoid {
 impl Ellipsoid {
     /// The unit sphere.
     pub const SPHERE: Self =
-        Self { tensor: Sym3::IDENTITY, inverse: Sym3::IDENTITY, longest: 1.0, shortest: 1.0, density: 1.0 };
+        Self { tensor: Sym3::IDENTITY, inverse: Sym3::IDENTITY, longest: 1.0, density: 1.0 };
 
     /// G of the ellipsoid that follows a deformation F half way, in the logarithm of the stretches, between a sphere and what a sphere becomes: the inverse of the left
     /// stretch tensor, as long as no stretch is large.
@@ -51,13 +55,7 @@ impl Ellipsoid {
     /// The ellipsoid of G.
     pub fn new(tensor: Sym3) -> Self {
         let inverse = tensor.inverse();
-        Self {
-            tensor,
-            inverse,
-            longest: extreme_eigenvalues(&inverse).1.sqrt(),
-            shortest: extreme_eigenvalues(&tensor).1.sqrt().recip(),
-            density: tensor.determinant().sqrt(),
-        }
+        Self { tensor, inverse, longest: longest(&tensor, &inverse), density: tensor.determinant().sqrt() }
     }
 
     /// The matrix A of a quadratic form, seen in the coordinates in which the ellipsoid is the unit sphere.
@@ -72,10 +70,30 @@ impl Ellipsoid {
         self.inverse.double_dot(a)
     }
 
-    /// Trace of an inverse moment matrix as waves along the shortest axis feel it.
-    pub fn trace(&self, inverse: &Sym3) -> f64 {
-        self.rounded_trace(inverse) / (self.shortest * self.shortest)
+    /// Shortest half axis, to 1e-7.
+    pub fn shortest(&self) -> f64 {
+        extreme_eigenvalues(&self.tensor).1.sqrt().recip()
     }
+
+    /// A bound below the shortest half axis.
+    pub fn least_axis(&self) -> f64 {
+        let deviator = self.tensor.deviator();
+        let most = self.tensor.trace() / 3.0 + 2.0 * (deviator.double_dot(&deviator) / 6.0).sqrt();
+        ((1.0 + ROUNDING) * most).sqrt().recip()
+    }
+
+    /// Trace of an inverse moment matrix as waves along an axis of that length feel it, which is the shortest one.
+    pub fn trace(&self, inverse: &Sym3, axis: f64) -> f64 {
+        self.rounded_trace(inverse) / (axis * axis)
+    }
+}
+
+/// A bound of the longest half axis of the ellipsoid of G: that of the widest G with such a trace and such a deviator, where this is nearly a sphere.
+fn longest(tensor: &Sym3, inverse: &Sym3) -> f64 {
+    let (mean, deviator) = (tensor.trace() / 3.0, tensor.deviator());
+    let least = mean - 2.0 * (deviator.double_dot(&deviator) / 6.0).sqrt();
+    let square = if least > ROUND * mean { 1.0 / least } else { extreme_eigenvalues(inverse).1 };
+    square.sqrt()
 }
 
 /// The ellipsoids of the real rows of a phase.
@@ -108,7 +126,7 @@ mod tests {
         let turn = DMat3::from_rotation_x(0.4) * DMat3::from_rotation_z(1.1);
         let f = turn * DMat3::from_diagonal(DVec3::new(1.44, 0.25, 9.0)) * DMat3::from_rotation_y(0.7);
         let own = Ellipsoid::new(Ellipsoid::following(&f));
-        assert!((own.longest - 6.0).abs() < 1e-12 && (own.shortest - 0.5).abs() < 1e-12);
+        assert!((own.longest - 6.0).abs() < 1e-12 && (own.shortest() - 0.5).abs() < 1e-12);
         assert!((own.density * 1.2 * 0.5 * 6.0 - 1.0).abs() < 1e-12);
         assert!((own.rounded(&own.tensor) - Sym3::IDENTITY).norm() < 1e-12);
         let other = Sym3 { xx: 0.3, yy: 2.0, zz: 1.1, xy: 0.2, xz: -0.4, yz: 0.1 };
@@ -125,6 +143,12 @@ mod tests {
             let f = turn * DMat3::from_diagonal(DVec3::new(stretch, 0.5, 0.9));
             let longest = Ellipsoid::new(Ellipsoid::following(&f)).longest;
             assert!((longest - stretch.sqrt()).abs() < 1e-12, "{longest}");
+        }
+        for stretch in [0.9, 0.96, 1.02, 1.05, 1.2] {
+            let f = turn * DMat3::from_diagonal(DVec3::new(1.0, 1.0 / stretch, stretch));
+            let found = Ellipsoid::new(Ellipsoid::following(&f)).longest;
+            let longest = stretch.max(1.0 / stretch).sqrt();
+            assert!(found > longest * (1.0 - 1e-12) && found < 1.03 * longest, "{found} for {longest}");
         }
         let r = DVec3::new(0.3, -1.0, 2.0);
         assert!((Ellipsoids(&round).distance(&ghosts, 0, 1, r) - r.length()).abs() < 1e-12);

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::parameters::{USUAL_CHANGE, Update};
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{BondedRows, Bonds, Ellipsoid, Ellipsoids, PackedParticle};
-use crate::linalg::smallest_and_largest_stretch;
+use crate::linalg::{Sym3, smallest_and_largest_stretch};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
 
@@ -56,7 +56,9 @@ impl UpdateRule {
         let limit = LOST * 2.0 * self.h;
         // An ellipsoid is nowhere thinner than the root of the smallest stretch, which is found to 1e-7.
         let farthest = farthest_beside(rows.clone(), packed, BESIDE * self.spacing);
-        if farthest * farthest < limit * limit * (1.0 - 1e-5) * smallest_stretch(&deformation[rows.clone()]) {
+        let own = &deformation[rows.clone()];
+        let is_near = |stretch: f64| farthest * farthest < limit * limit * (1.0 - 1e-5) * stretch;
+        if is_near(least_stretch(own)) || is_near(smallest_stretch(own)) {
             return false;
         }
         let UpdatedRows { sites, bonds, ghosts, .. } = packed;
@@ -78,6 +80,14 @@ impl UpdateRule {
         });
         farthest.0 > limit
     }
+}
+
+/// A bound below the smallest stretch of some particles: no square of a stretch is farther from one than F^T F is from I.
+fn least_stretch(deformation: &[DeformationGradient]) -> f64 {
+    let change: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
+        Largest::of(rows.iter().map(|f| (Sym3::gram(f.0) - Sym3::IDENTITY).norm()))
+    });
+    (1.0 - change.0).max(0.0).sqrt()
 }
 
 /// The smallest stretch of some particles, at most one.
@@ -125,7 +135,10 @@ impl HotLoop for LargestDistance<'_> {
             let own = &sites[i];
             let (x_i, u_i) =
                 (Vector::splat(a, own.reference.xyz()), Vector::splat(a, own.displacement.xyz()));
+            let own_volume = Lanes4::splat(own.reference.0[3]);
             let row = &bonds.neighbors[bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize];
+            // The others have this one in their rows, which ascend.
+            let row = &row[row.partition_point(|&j| (j as usize) < i)..];
             for n in (0..row.len()).step_by(4) {
                 // Where there are no more, the last one again.
                 let last = row.len() - 1;
@@ -146,7 +159,7 @@ impl HotLoop for LargestDistance<'_> {
                 ]);
                 let now = then + (Vector::new(a, [x, y, z]) - u_i);
                 let short = a.where_below(then.length_squared().lanes(), limit, now.length_squared().lanes());
-                let present = a.where_below(Lanes4::ZERO, volume, short);
+                let present = a.where_below(Lanes4::ZERO, a.larger(volume, own_volume), short);
                 largest = a.larger(present, largest);
             }
         }
@@ -161,7 +174,7 @@ fn has_changed(rows: Range<usize>, packed: &UpdatedRows, most: f64) -> bool {
     let first_row = rows.start;
     // A length changes by no more than the pair vector does: few pairs need a look at their ellipsoids.
     let shortest =
-        packed.ellipsoids[rows.clone()].iter().map(|own| own.shortest).fold(f64::INFINITY, f64::min);
+        packed.ellipsoids[rows.clone()].iter().map(Ellipsoid::least_axis).fold(f64::INFINITY, f64::min);
     let least = (most * shortest).powi(2);
     let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
         let changes = own.iter().enumerate().flat_map(|(k, site)| {

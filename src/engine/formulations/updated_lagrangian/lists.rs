@@ -11,15 +11,17 @@ use rayon::prelude::*;
 
 use super::candidates::{Candidates, Searched, largest, radii};
 use super::row_loops::{Corrections, MeasurePairs, PairBlock, PairOrigin, RowPairs, Weights};
-use super::seen::{Columns, SeenParticle, fill, fill_columns, place};
+use super::seen::{Columns, SeenParticles, fill_columns};
 use crate::formulations::total_lagrangian::{BondError, Bonds, Ellipsoid};
 use crate::kernels::Kernel;
 use crate::neighbors::NeighborSearch;
 use crate::parallel::{BLOCK, block_count, run_hot_on};
 use crate::symmetry::Ghosts;
 
-/// Blocks of rows that are built before they are put together: enough for all threads, and little memory.
-const BLOCKS_AT_ONCE: usize = 256;
+/// Blocks of rows that each thread makes before they are put together: so few that they stay in its second-level cache until then.
+const BLOCKS_AT_ONCE: usize = 8;
+/// Rows of a part of a block.
+const PART: usize = 16;
 
 /// What is kept from one update to the next.
 #[derive(Default)]
@@ -28,7 +30,7 @@ pub(super) struct ReferenceLists {
     candidates: Vec<Candidates>,
     search: NeighborSearch,
     radii: Vec<f64>,
-    seen: Vec<SeenParticle>,
+    seen: SeenParticles,
     columns: Vec<Columns>,
     blocks: Vec<PairBlock>,
 }
@@ -62,7 +64,7 @@ impl ReferenceLists {
     /// Begins a reference of bodies with these rows.
     pub fn begin(&mut self, reference: &ReferenceOfPhase<'_>, bodies: impl Iterator<Item = Range<usize>>) {
         let ReferenceOfPhase { places, volumes, support, ellipsoids, ghosts } = *reference;
-        fill(&mut self.seen, ghosts, ellipsoids, support, (places, volumes));
+        self.seen.fill(ghosts, ellipsoids, support, (places, volumes));
         self.radii.clear();
         let mut count = 0;
         for rows in bodies {
@@ -86,9 +88,9 @@ impl ReferenceLists {
         let list = candidates.renewed((rows.clone(), ghost_rows), &searched, search)?;
         let square = largest(&radii[rows.clone()]).powi(2);
         let source = PairOrigin::Near { list, first: rows.start, square };
-        let pairs = RowPairs { seen, source, has_ghosts: !reference.ghosts.is_empty() };
+        let pairs = RowPairs { seen, source };
         if bonds.offsets.is_empty() {
-            bonds.offsets.push(0);
+            bonds.add_neighbors(&[0], &[]);
         }
         in_waves(&pairs, &rows, &kernel, blocks, |block| append(bonds, block));
         candidates.rest();
@@ -108,7 +110,7 @@ impl ReferenceLists {
         gradient: &[DMat3],
         ghosts: &Ghosts,
     ) {
-        place(&mut self.seen, ghosts, original, volumes);
+        self.seen.place(ghosts, original, volumes);
         fill_columns(&mut self.columns, ghosts, gradient);
     }
 
@@ -117,11 +119,11 @@ impl ReferenceLists {
         let Self { seen, columns, blocks, .. } = self;
         let Bonds { offsets, neighbors, weights, inverse_moment, first_moment, weight_sum, .. } = bonds;
         let source = PairOrigin::Known { offsets, neighbors, columns };
-        let pairs = RowPairs { seen, source, has_ghosts: seen.len() > inverse_moment.len() };
+        let pairs = RowPairs { seen, source };
         let mut row = rows.start;
         in_waves(&pairs, rows, kernel, blocks, |block| {
             let first = offsets[row] as usize;
-            weights[first..first + block.len()].copy_from_slice(&block.weights);
+            weights[first..first + block.len()].copy_from_slice(&block.weights[..block.len()]);
             for correction in &block.corrections {
                 inverse_moment[row] = correction.inverse;
                 first_moment[row] = correction.first_moment;
@@ -135,10 +137,8 @@ impl ReferenceLists {
 
 /// Appends the rows of a block.
 fn append(bonds: &mut Bonds, block: &PairBlock) {
-    let start = bonds.neighbors.len();
-    bonds.offsets.extend(block.ends.iter().map(|end| u32::try_from(start + end).unwrap_or(u32::MAX)));
-    bonds.neighbors.extend_from_slice(&block.neighbors[..block.len()]);
-    bonds.weights.extend_from_slice(&block.weights);
+    bonds.add_neighbors(&block.ends, &block.neighbors[..block.len()]);
+    bonds.weights.extend_from_slice(&block.weights[..block.len()]);
     for correction in &block.corrections {
         bonds.inverse_moment.push(correction.inverse);
         bonds.first_moment.push(correction.first_moment);
@@ -155,15 +155,20 @@ fn in_waves(
     mut take: impl FnMut(&PairBlock),
 ) {
     let (count, plane) = (block_count(rows.len()), kernel.dimension() == 2);
-    blocks.resize_with(blocks.len().max(count.min(BLOCKS_AT_ONCE)), PairBlock::default);
-    for group in (0..count).step_by(BLOCKS_AT_ONCE) {
-        let wave = &mut blocks[..(count - group).min(BLOCKS_AT_ONCE)];
+    let at_once = BLOCKS_AT_ONCE * rayon::current_num_threads();
+    blocks.resize_with(blocks.len().max(count.min(at_once)), PairBlock::default);
+    for group in (0..count).step_by(at_once) {
+        let wave = &mut blocks[..(count - group).min(at_once)];
         wave.par_iter_mut().enumerate().for_each(|(k, block)| {
             let first = rows.start + (group + k) * BLOCK;
-            let rows = first..rows.end.min(first + BLOCK);
-            run_hot_on(plane, MeasurePairs { pairs, rows: rows.clone(), block: &mut *block });
-            kernel.dispatch(Weights(&mut *block));
-            run_hot_on(plane, Corrections { pairs, rows, block });
+            let end = rows.end.min(first + BLOCK);
+            block.clear();
+            for first in (first..end).step_by(PART) {
+                let rows = first..end.min(first + PART);
+                run_hot_on(plane, MeasurePairs { pairs, rows: rows.clone(), block: &mut *block });
+                kernel.dispatch(Weights(&mut *block));
+                run_hot_on(plane, Corrections { pairs, rows, block: &mut *block });
+            }
         });
         wave.iter().for_each(&mut take);
     }

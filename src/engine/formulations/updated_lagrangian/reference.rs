@@ -81,7 +81,8 @@ impl UpdatedRows {
             let hidden = self.held.hidden_of(kernel.body);
             bodies.push(UpdatedBody { body: k, rows, ghost_rows, kernel: kernel.kernel, hidden });
         }
-        let Self { lists, bonds, volume, ellipsoids, ghosts, kernels, .. } = self;
+        let Self { lists, bonds, volume, ellipsoids, ghosts, kernels, control, .. } = self;
+        control.bonds.leave_topology();
         let reference = ReferenceOfPhase { places: position, volumes: volume, support, ellipsoids, ghosts };
         lists.begin(&reference, bodies.iter().map(|body| body.rows.clone()));
         bonds.clear();

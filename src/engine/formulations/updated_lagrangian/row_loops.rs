@@ -4,27 +4,35 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::seen::{Columns, OwnParticle, SeenParticle};
+use super::seen::{Columns, FourSeen, OwnParticle, SeenParticles};
 use crate::correction::{MomentMatrix, add_moment};
 use crate::kernels::{KernelProfile, KernelVisitor, ProfiledKernel};
 use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, run_hot};
 
-/// The rows of a block. Those of pairs are longer than what is used.
+/// The rows of a block, which are made in parts, so that what is measured of pairs stays in the first-level cache. Those of pairs are longer than what is used.
 #[derive(Default)]
 pub(super) struct PairBlock {
     /// Where those of each row end.
     pub ends: Vec<usize>,
     pub neighbors: Vec<u32>,
-    /// Distance as both ends measure it, m.
-    distance: Vec<f64>,
+    pub weights: Vec<f32>,
+    pub corrections: Vec<Correction>,
+    /// Number of bonds before those of the present part.
+    begin: usize,
+    /// Number of groups of four pairs that are measured in the part: those of a row begin with a group.
+    groups: usize,
+    /// Which pairs of each group are bonds.
+    kept: Vec<u8>,
+    /// Square of the distance as both ends measure it, m2.
+    square: Vec<f64>,
     /// Factor of the kernel.
     density: Vec<f64>,
     /// Support radius, m.
     support: Vec<f64>,
-    pub weights: Vec<f32>,
-    pub corrections: Vec<Correction>,
+    /// Weights of the pairs that are measured.
+    measured: Vec<f32>,
     /// Who is near a particle by the largest radius.
     near: Vec<u32>,
 }
@@ -65,30 +73,57 @@ pub(super) enum PairOrigin<'a> {
 /// Pairs of all rows.
 #[derive(Clone, Copy)]
 pub(super) struct RowPairs<'a> {
-    pub seen: &'a [SeenParticle],
+    pub seen: &'a SeenParticles,
     pub source: PairOrigin<'a>,
-    /// Whether there are ghosts.
-    pub has_ghosts: bool,
 }
 
 /// The lanes that hold one of that many neighbours.
 const MASKS: [usize; 5] = [0, 1, 3, 7, 15];
 
 impl PairBlock {
-    /// Makes room for a row of that many pairs, four at a time, behind those that are used.
+    /// Lets go of all rows; memory is kept.
+    pub fn clear(&mut self) {
+        self.ends.clear();
+        self.corrections.clear();
+    }
+
+    /// Begins a part.
+    #[inline(always)]
+    fn begin_part(&mut self) {
+        self.begin = self.len();
+        self.groups = 0;
+    }
+
+    /// Makes room for a row of that many pairs behind the bonds that are used.
     #[inline(always)]
     fn reserve(&mut self, used: usize, count: usize) {
-        let room = used + count + 4;
-        if self.distance.len() < room {
-            let room = room * 3 / 2;
-            self.neighbors.resize(room, 0);
-            self.distance.resize(room, 0.0);
-            self.density.resize(room, 0.0);
-            self.support.resize(room, 0.0);
+        let (room, groups) = (used + count + 4, self.groups + count / 4 + 1);
+        if self.neighbors.len() < room {
+            self.neighbors.resize(room * 3 / 2, 0);
+            self.weights.resize(room * 3 / 2, 0.0);
+        }
+        if self.kept.len() < groups {
+            let groups = groups * 3 / 2;
+            self.kept.resize(groups, 0);
+            self.square.resize(4 * groups, 0.0);
+            self.density.resize(4 * groups, 0.0);
+            self.support.resize(4 * groups, 0.0);
+            self.measured.resize(4 * groups, 0.0);
         }
     }
 
-    /// Number of pairs.
+    /// Puts a group of pairs behind the others, of which those whose bit is set are bonds.
+    #[inline(always)]
+    fn put<A: FourLanes>(&mut self, pairs: &FourSeen<A>, bits: usize) {
+        let at = 4 * self.groups;
+        put(&mut self.square, at, pairs.square.lanes());
+        put(&mut self.density, at, pairs.density.lanes());
+        put(&mut self.support, at, pairs.support.lanes());
+        self.kept[self.groups] = bits as u8;
+        self.groups += 1;
+    }
+
+    /// Number of bonds.
     pub fn len(&self) -> usize {
         self.ends.last().copied().unwrap_or(0)
     }
@@ -109,9 +144,10 @@ fn four(row: &[u32], n: usize, own: usize) -> [usize; 4] {
     }
 }
 
+/// The numbers of four rows, as lists hold them.
 #[inline(always)]
-fn of<T>(all: &[T], [j, k, l, m]: [usize; 4]) -> [&T; 4] {
-    [&all[j], &all[k], &all[l], &all[m]]
+fn numbers([j, k, l, m]: [usize; 4]) -> [u32; 4] {
+    [j as u32, k as u32, l as u32, m as u32]
 }
 
 /// Finds the pairs of some rows and measures their distances.
@@ -126,7 +162,7 @@ impl HotLoop for MeasurePairs<'_, '_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        if self.pairs.has_ghosts { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
+        if self.pairs.seen.has_ghosts() { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
     }
 }
 
@@ -134,12 +170,12 @@ impl MeasurePairs<'_, '_> {
     #[inline(always)]
     fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
         let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
-        block.ends.clear();
-        let mut used = 0;
+        block.begin_part();
+        let mut used = block.begin;
         for i in rows {
             match *source {
                 PairOrigin::Near { list, first, square } => {
-                    let own = OwnParticle::new(a, &seen[i]);
+                    let own = OwnParticle::new(a, seen, i);
                     let count = keep_near::<A, GHOSTS>(
                         a,
                         (seen, &own, i),
@@ -153,15 +189,12 @@ impl MeasurePairs<'_, '_> {
                 PairOrigin::Known { offsets, neighbors, columns } => {
                     let row = &neighbors[offsets[i] as usize..offsets[i + 1] as usize];
                     block.reserve(used, row.len());
-                    let own = OwnParticle::moving(a, &seen[i], &columns[i]);
+                    let own = OwnParticle::moving(a, seen, i, &columns[i]);
                     for n in (0..row.len()).step_by(4) {
                         let rows = four(row, n, i);
-                        let (arm, _) = own.arms::<GHOSTS>(a, of(seen, rows));
-                        let moved = own.moved(a, arm, of(columns, rows));
-                        let pairs = own.measure(a, moved, of(seen, rows));
-                        put(&mut block.distance, used + n, pairs.square.sqrt().lanes());
-                        put(&mut block.density, used + n, pairs.density.lanes());
-                        put(&mut block.support, used + n, pairs.support.lanes());
+                        let (arm, _) = own.arms::<GHOSTS>(a, seen, rows);
+                        let moved = own.moved(a, arm, columns, rows);
+                        block.put(&own.measure(a, moved, seen, rows), MASKS[(row.len() - n).min(4)]);
                     }
                     used += row.len();
                 }
@@ -182,7 +215,7 @@ fn put(values: &mut [f64], at: usize, four: Lanes4) {
 #[inline(always)]
 fn keep_near<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    (seen, own, i): (&[SeenParticle], &OwnParticle<A>, usize),
+    (seen, own, i): (&SeenParticles, &OwnParticle<A>, usize),
     candidates: &[u32],
     square: f64,
     near: &mut Vec<u32>,
@@ -194,52 +227,36 @@ fn keep_near<A: FourLanes, const GHOSTS: bool>(
     let mut used = 0;
     for n in (0..candidates.len()).step_by(4) {
         let rows = four(candidates, n, i);
-        let (arm, _) = own.arms::<GHOSTS>(a, of(seen, rows));
+        let (arm, _) = own.arms::<GHOSTS>(a, seen, rows);
         let mask = a.below(arm.length_squared().lanes(), limit) & MASKS[(candidates.len() - n).min(4)];
         if let Some(to) = near[used..].first_chunk_mut::<4>() {
-            *to = a.pack([rows[0] as u32, rows[1] as u32, rows[2] as u32, rows[3] as u32], mask);
+            *to = a.pack(numbers(rows), mask);
         }
         used += mask.count_ones() as usize;
     }
     used
 }
 
-/// Puts those that are near and within the ellipsoids behind the pairs that are used; returns how many are used then.
+/// Puts those that are near and within the ellipsoids behind the bonds that are used; returns how many are used then.
 #[inline(always)]
 fn measure_near<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    (seen, own, i): (&[SeenParticle], &OwnParticle<A>, usize),
+    (seen, own, i): (&SeenParticles, &OwnParticle<A>, usize),
     count: usize,
     mut used: usize,
     block: &mut PairBlock,
 ) -> usize {
-    let PairBlock { neighbors, distance, density, support, near, .. } = block;
     for n in (0..count).step_by(4) {
-        let rows = four(&near[..count], n, i);
-        let others = of(seen, rows);
-        let (arm, _) = own.arms::<GHOSTS>(a, others);
-        let pairs = own.measure(a, arm, others);
+        let rows = four(&block.near[..count], n, i);
+        let (arm, _) = own.arms::<GHOSTS>(a, seen, rows);
+        let pairs = own.measure(a, arm, seen, rows);
         let limit = pairs.support.squared().lanes();
-        let mask = a.below(pairs.square.lanes(), limit) & MASKS[(count - n).min(4)];
-        let (root, factor, radius) =
-            (pairs.square.sqrt().lanes(), pairs.density.lanes(), pairs.support.lanes());
-        if mask == MASKS[4] {
-            if let Some(to) = neighbors[used..].first_chunk_mut::<4>() {
-                *to = [rows[0] as u32, rows[1] as u32, rows[2] as u32, rows[3] as u32];
-            }
-            put(distance, used, root);
-            put(density, used, factor);
-            put(support, used, radius);
-            used += 4;
-        } else {
-            for lane in 0..4 {
-                neighbors[used] = rows[lane] as u32;
-                distance[used] = root.0[lane];
-                density[used] = factor.0[lane];
-                support[used] = radius.0[lane];
-                used += mask >> lane & 1;
-            }
+        let bits = a.below(pairs.square.lanes(), limit) & MASKS[(count - n).min(4)];
+        block.put(&pairs, bits);
+        if let Some(to) = block.neighbors[used..].first_chunk_mut::<4>() {
+            *to = a.pack(numbers(rows), bits);
         }
+        used += bits.count_ones() as usize;
     }
     used
 }
@@ -251,17 +268,18 @@ impl KernelVisitor for Weights<'_> {
     type Output = ();
 
     fn visit<K: KernelProfile>(self, kernel: ProfiledKernel<K>) {
-        let count = self.0.len();
-        let PairBlock { distance, density, support, weights, .. } = self.0;
-        weights.resize(count, 0.0);
-        let (distance, density, support) = (&distance[..count], &density[..count], &support[..count]);
-        run_hot(WeightLoop { kernel, distance, density, support, weights });
+        let PairBlock { begin, groups, kept, square, density, support, measured, weights, .. } = self.0;
+        let count = 4 * *groups;
+        let measured = &mut measured[..count];
+        let (square, density, support) = (&square[..count], &density[..count], &support[..count]);
+        run_hot(WeightLoop { kernel, square, density, support, weights: &mut *measured });
+        run_hot(KeepWeights { kept, measured, weights: &mut weights[*begin..] });
     }
 }
 
 struct WeightLoop<'a, K: KernelProfile> {
     kernel: ProfiledKernel<K>,
-    distance: &'a [f64],
+    square: &'a [f64],
     density: &'a [f64],
     support: &'a [f64],
     weights: &'a mut [f32],
@@ -272,7 +290,7 @@ impl<K: KernelProfile> HotLoop for WeightLoop<'_, K> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, _: A) {
-        let Self { kernel, distance, density, support, weights } = self;
+        let Self { kernel, square, density, support, weights } = self;
         let count = weights.len();
         let Some(&first) = support.first() else { return };
         let ratio = 1.0 / K::SUPPORT;
@@ -283,13 +301,40 @@ impl<K: KernelProfile> HotLoop for WeightLoop<'_, K> {
         }
         if is_uniform {
             for k in 0..count {
-                weights[k] = (density[k] * scaled.pair_weight(distance[k])) as f32;
+                weights[k] = (density[k] * scaled.pair_weight(square[k].sqrt())) as f32;
             }
         } else {
             for k in 0..count {
                 let own = kernel.scaled(support[k] * ratio);
-                weights[k] = (density[k] * own.pair_weight(distance[k])) as f32;
+                weights[k] = (density[k] * own.pair_weight(square[k].sqrt())) as f32;
             }
+        }
+    }
+}
+
+/// Takes those weights whose bits are set.
+struct KeepWeights<'a> {
+    kept: &'a [u8],
+    measured: &'a [f32],
+    weights: &'a mut [f32],
+}
+
+impl HotLoop for KeepWeights<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        let Self { kept, measured, weights } = self;
+        let (fours, _) = measured.as_chunks::<4>();
+        let mut used = 0;
+        for group in 0..fours.len() {
+            let (four, bits) = (fours[group], kept[group] as usize);
+            let bytes = [four[0].to_bits(), four[1].to_bits(), four[2].to_bits(), four[3].to_bits()];
+            let [j, k, l, m] = a.pack(bytes, bits);
+            if let Some(to) = weights[used..].first_chunk_mut::<4>() {
+                *to = [f32::from_bits(j), f32::from_bits(k), f32::from_bits(l), f32::from_bits(m)];
+            }
+            used += bits.count_ones() as usize;
         }
     }
 }
@@ -306,7 +351,7 @@ impl HotLoop for Corrections<'_, '_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) {
-        if self.pairs.has_ghosts { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
+        if self.pairs.seen.has_ghosts() { self.run_with::<A, true>(a) } else { self.run_with::<A, false>(a) }
     }
 }
 
@@ -314,11 +359,10 @@ impl Corrections<'_, '_> {
     #[inline(always)]
     fn run_with<A: FourLanes, const GHOSTS: bool>(self, a: A) {
         let Self { pairs: RowPairs { seen, source, .. }, rows, block } = self;
-        let PairBlock { ends, neighbors, weights, corrections, .. } = block;
-        corrections.clear();
-        let mut start = 0;
+        let PairBlock { ends, neighbors, weights, corrections, begin, .. } = block;
+        let (mut start, before) = (*begin, corrections.len());
         for (k, i) in rows.enumerate() {
-            let end = ends[k];
+            let end = ends[before + k];
             let row = match *source {
                 PairOrigin::Near { .. } => &neighbors[start..end],
                 PairOrigin::Known { offsets, neighbors, .. } => {
@@ -334,16 +378,16 @@ impl Corrections<'_, '_> {
 #[inline(always)]
 fn correction<A: FourLanes, const GHOSTS: bool>(
     a: A,
-    seen: &[SeenParticle],
+    seen: &SeenParticles,
     i: usize,
     row: &[u32],
     weights: &[f32],
 ) -> Correction {
-    let own = OwnParticle::new(a, &seen[i]);
+    let own = OwnParticle::new(a, seen, i);
     let (mut x, mut y, mut z) = (Vector::zero(a), Vector::zero(a), Vector::zero(a));
     let (mut first_moment, mut weight_sum) = (Vector::zero(a), Number::zero(a));
     for n in (0..row.len()).step_by(4) {
-        let (arm, volume) = own.arms::<GHOSTS>(a, of(seen, four(row, n, i)));
+        let (arm, volume) = own.arms::<GHOSTS>(a, seen, four(row, n, i));
         let mut weight = Lanes4::ZERO;
         for lane in 0..(row.len() - n).min(4) {
             weight.0[lane] = f64::from(weights[n + lane]);
@@ -359,7 +403,7 @@ fn correction<A: FourLanes, const GHOSTS: bool>(
     let [reach_z, weight_sum, _, _] =
         a.sums([first_moment.z.lanes(), weight_sum.lanes(), Lanes4::ZERO, Lanes4::ZERO]).0;
     let moment = MomentMatrix::of(Sym3 { xx, yy, zz, xy, xz, yz }, A::AXES);
-    let inverse = if seen[i].place.0[3] > 0.0 { moment.inverse() } else { None };
+    let inverse = if seen.places[i].0[3] > 0.0 { moment.inverse() } else { None };
     Correction {
         inverse: inverse.unwrap_or_default(),
         first_moment: DVec3::new(first_x, first_y, reach_z),

@@ -6,30 +6,34 @@ use crate::formulations::total_lagrangian::Ellipsoid;
 use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
 use crate::symmetry::{Ghost, Ghosts};
 
-/// A particle, or a ghost.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub(super) struct SeenParticle {
+/// All particles, and their ghosts. Loops that look at places alone read nothing else.
+#[derive(Default)]
+pub(super) struct SeenParticles {
     /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of places: seen from both ends of a bond, these are then the
     /// same to the last bit.
-    pub place: Lanes4,
-    /// Shift of a ghost, m.
-    pub shift: Lanes4,
+    pub places: Vec<Lanes4>,
+    /// Shift of a ghost, m; empty where there is none.
+    shifts: Vec<Lanes4>,
+    ellipsoids: Vec<SeenEllipsoid>,
+}
+
+/// The columns of F_r.
+pub(super) type Columns = [Lanes4; 3];
+
+/// How far a particle sees.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+struct SeenEllipsoid {
     /// Gxx, Gyy, Gzz of the ellipsoid, and the factor of its kernel.
     stretch: Lanes4,
     /// Gxy, Gxz, Gyz, and the support radius, m.
     shear: Lanes4,
 }
 
-/// The columns of F_r.
-pub(super) type Columns = [Lanes4; 3];
-
-impl SeenParticle {
-    fn of(ellipsoid: &Ellipsoid, support: f64, place: DVec3, volume: f64) -> Self {
+impl SeenEllipsoid {
+    fn of(ellipsoid: &Ellipsoid, support: f64) -> Self {
         let g = &ellipsoid.tensor;
         Self {
-            place: Lanes4::new(place, volume),
-            shift: Lanes4::ZERO,
             stretch: Lanes4([g.xx, g.yy, g.zz, ellipsoid.density]),
             shear: Lanes4([g.xy, g.xz, g.yz, support]),
         }
@@ -38,40 +42,52 @@ impl SeenParticle {
     fn image(&self, ghost: &Ghost<'_>) -> Self {
         let DVec3 { x, y, z } = ghost.map.signs;
         let [xy, xz, yz, support] = self.shear.0;
-        Self {
-            place: Lanes4::new(ghost.map.vector(self.place.xyz()), self.place.0[3]),
-            shift: Lanes4::new(ghost.map.shift, 0.0),
-            stretch: self.stretch,
-            shear: Lanes4([x * y * xy, x * z * xz, y * z * yz, support]),
-        }
+        Self { stretch: self.stretch, shear: Lanes4([x * y * xy, x * z * xz, y * z * yz, support]) }
     }
 }
 
-/// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and their ghosts.
-pub(super) fn fill(
-    seen: &mut Vec<SeenParticle>,
-    ghosts: &Ghosts,
-    ellipsoids: &[Ellipsoid],
-    support: &[f64],
-    (places, volumes): (&[DVec3], &[f64]),
-) {
-    seen.resize(places.len() + ghosts.len(), SeenParticle::default());
-    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [SeenParticle]| {
-        for (own, row) in seen.iter_mut().zip(first..) {
-            *own = SeenParticle::of(&ellipsoids[row], support[row], places[row], volumes[row]);
+impl SeenParticles {
+    /// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and their ghosts.
+    pub fn fill(
+        &mut self,
+        ghosts: &Ghosts,
+        ellipsoids: &[Ellipsoid],
+        support: &[f64],
+        (places, volumes): (&[DVec3], &[f64]),
+    ) {
+        let (count, all) = (places.len(), places.len() + ghosts.len());
+        self.places.resize(all, Lanes4::ZERO);
+        self.ellipsoids.resize(all, SeenEllipsoid::default());
+        let seen = &mut self.ellipsoids[..count];
+        for_each_block(seen, &mut Vec::new(), &|first, seen: &mut [SeenEllipsoid]| {
+            for (own, row) in seen.iter_mut().zip(first..) {
+                *own = SeenEllipsoid::of(&ellipsoids[row], support[row]);
+            }
+        });
+        ghosts.fill(&mut self.ellipsoids, |ghost, own| own.image(&ghost));
+        self.shifts.clear();
+        if !ghosts.is_empty() {
+            self.shifts.resize(all, Lanes4::ZERO);
+            ghosts.fill(&mut self.shifts, |ghost, _| Lanes4::new(ghost.map.shift, 0.0));
         }
-    });
-    ghosts.fill(seen, |ghost, own| own.image(&ghost));
-}
+        self.place(ghosts, places, volumes);
+    }
 
-/// Moves the particles to other places, m, and gives them other volumes, m3; their ellipsoids stay.
-pub(super) fn place(seen: &mut [SeenParticle], ghosts: &Ghosts, places: &[DVec3], volumes: &[f64]) {
-    for_each_block(&mut seen[..places.len()], &mut Vec::new(), &|first, seen: &mut [SeenParticle]| {
-        for (own, row) in seen.iter_mut().zip(first..) {
-            own.place = Lanes4::new(places[row], volumes[row]);
-        }
-    });
-    ghosts.fill(seen, |ghost, own| own.image(&ghost));
+    /// Moves the particles to other places, m, and gives them other volumes, m3; their ellipsoids stay.
+    pub fn place(&mut self, ghosts: &Ghosts, places: &[DVec3], volumes: &[f64]) {
+        let seen = &mut self.places[..places.len()];
+        for_each_block(seen, &mut Vec::new(), &|first, seen: &mut [Lanes4]| {
+            for (own, row) in seen.iter_mut().zip(first..) {
+                *own = Lanes4::new(places[row], volumes[row]);
+            }
+        });
+        ghosts.fill(&mut self.places, |ghost, own| Lanes4::new(ghost.map.vector(own.xyz()), own.0[3]));
+    }
+
+    /// Whether there are ghosts.
+    pub fn has_ghosts(&self) -> bool {
+        !self.shifts.is_empty()
+    }
 }
 
 /// Fills the columns of F_r of all particles and their ghosts.
@@ -107,36 +123,45 @@ pub(super) struct FourSeen<A: FourLanes> {
 impl<A: FourLanes> OwnParticle<A> {
     /// That of a row.
     #[inline(always)]
-    pub fn new(a: A, seen: &SeenParticle) -> Self {
+    pub fn new(a: A, seen: &SeenParticles, row: usize) -> Self {
+        let ellipsoid = &seen.ellipsoids[row];
         Self {
-            place: vector(a, seen.place),
-            stretch: numbers(a, seen.stretch),
-            shear: numbers(a, seen.shear),
+            place: vector(a, seen.places[row]),
+            stretch: numbers(a, ellipsoid.stretch),
+            shear: numbers(a, ellipsoid.shear),
             columns: [Vector::zero(a); 3],
         }
     }
 
     /// That of a row with its F_r.
     #[inline(always)]
-    pub fn moving(a: A, seen: &SeenParticle, [x, y, z]: &Columns) -> Self {
-        Self { columns: [vector(a, *x), vector(a, *y), vector(a, *z)], ..Self::new(a, seen) }
+    pub fn moving(a: A, seen: &SeenParticles, row: usize, [x, y, z]: &Columns) -> Self {
+        Self { columns: [vector(a, *x), vector(a, *y), vector(a, *z)], ..Self::new(a, seen, row) }
     }
 
     /// Pair vectors to four others, m, with their volumes, m3; `GHOSTS` where there are ghosts among them.
     #[inline(always)]
-    pub fn arms<const GHOSTS: bool>(&self, a: A, of: [&SeenParticle; 4]) -> (Vector<A>, Number<A>) {
-        let [x, y, z, volume] = a.transpose([of[0].place, of[1].place, of[2].place, of[3].place]);
+    pub fn arms<const GHOSTS: bool>(
+        &self,
+        a: A,
+        seen: &SeenParticles,
+        [j, k, l, m]: [usize; 4],
+    ) -> (Vector<A>, Number<A>) {
+        let of = &seen.places[..];
+        let [x, y, z, volume] = a.transpose([of[j], of[k], of[l], of[m]]);
         let arm = Vector::new(a, [x, y, z]) - self.place;
         if !GHOSTS {
             return (arm, Number::new(a, volume));
         }
-        let [x, y, z, _] = a.transpose([of[0].shift, of[1].shift, of[2].shift, of[3].shift]);
+        let of = &seen.shifts[..];
+        let [x, y, z, _] = a.transpose([of[j], of[k], of[l], of[m]]);
         (arm + Vector::new(a, [x, y, z]), Number::new(a, volume))
     }
 
     /// Pair vectors as the mean of the F_r of both ends moves them, m.
     #[inline(always)]
-    pub fn moved(&self, a: A, arm: Vector<A>, of: [&Columns; 4]) -> Vector<A> {
+    pub fn moved(&self, a: A, arm: Vector<A>, columns: &[Columns], [j, k, l, m]: [usize; 4]) -> Vector<A> {
+        let of = [&columns[j], &columns[k], &columns[l], &columns[m]];
         let half = Number::splat(a, 0.5);
         let mut sum = Vector::zero(a);
         let along = [arm.x, arm.y, arm.z];
@@ -149,7 +174,9 @@ impl<A: FourLanes> OwnParticle<A> {
 
     /// What both measure along pair vectors, m, to four others.
     #[inline(always)]
-    pub fn measure(&self, a: A, r: Vector<A>, of: [&SeenParticle; 4]) -> FourSeen<A> {
+    pub fn measure(&self, a: A, r: Vector<A>, seen: &SeenParticles, [j, k, l, m]: [usize; 4]) -> FourSeen<A> {
+        let of = &seen.ellipsoids[..];
+        let of = [&of[j], &of[k], &of[l], &of[m]];
         let [xx, yy, zz, density] = a.transpose([of[0].stretch, of[1].stretch, of[2].stretch, of[3].stretch]);
         let [xy, xz, yz, support] = a.transpose([of[0].shear, of[1].shear, of[2].shear, of[3].shear]);
         let ([own_xx, own_yy, own_zz, own_density], [own_xy, own_xz, own_yz, own_support]) =
