@@ -334,3 +334,44 @@ impl Bonds {
             + self.inverse_moment.len() * (size_of::<Sym3>() + size_of::<DVec3>() + size_of::<f64>())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::super::reach::Ellipsoid;
+    use super::*;
+
+    #[test]
+    fn the_stable_step_is_the_smallest_of_all_particles_whichever_need_their_shortest_axis() {
+        let wave = |k: usize, a: f64| (a * k as f64 + 0.3).sin();
+        let count = 3000;
+        let strain = |k: usize| {
+            let (a, b, c) = (wave(k, 0.7), wave(k, 1.9), wave(k, 0.13));
+            DMat3::from_diagonal(DVec3::new(1.0 + 0.4 * a, 1.0 + 0.3 * b, 1.0 - 0.2 * c))
+        };
+        let ellipsoids: Vec<Ellipsoid> =
+            (0..count).map(|k| Ellipsoid::new(Ellipsoid::following(&strain(k)))).collect();
+        let inverse = |k: usize| match k % 100 {
+            7 => Sym3::ZERO,
+            _ => {
+                Sym3 { xx: 1.2, yy: 1.0 + 0.1 * wave(k, 0.4), zz: 0.9, xy: 0.1 * wave(k, 2.3), ..Sym3::ZERO }
+            }
+        };
+        let bonds = Bonds {
+            inverse_moment: (0..count).map(inverse).collect(),
+            weight_sum: (0..count).map(|k| 1e4 * (1.0 + 0.2 * wave(k, 0.05))).collect(),
+            ..Bonds::default()
+        };
+        let (estimate, support) = (StepEstimate { wave: 1e6, bond: 0.0, hessian: 0.0 }, vec![0.1; count]);
+        let all = Some(Ellipsoids(&ellipsoids));
+        let found = bonds.stable_step(0..count, 3, &estimate, &support, all);
+        let step = |k: usize| {
+            let (own, sum) = (&ellipsoids[k], bonds.weight_sum[k]);
+            let felt = own.trace(&bonds.inverse_moment[k], own.shortest());
+            estimate.stable_step_with(sum, felt / 3.0, 0.05 * sum)
+        };
+        let least = (0..count).map(step).filter(|step| step.is_finite()).fold(f64::INFINITY, f64::min);
+        assert!(found > 0.0 && found == least, "{found} for {least}");
+    }
+}

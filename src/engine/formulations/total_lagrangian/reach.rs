@@ -149,6 +149,9 @@ mod tests {
             let found = Ellipsoid::new(Ellipsoid::following(&f)).longest;
             let longest = stretch.max(1.0 / stretch).sqrt();
             assert!(found > longest * (1.0 - 1e-12) && found < 1.03 * longest, "{found} for {longest}");
+            let shortest = stretch.min(1.0 / stretch).sqrt();
+            let least = Ellipsoid::new(Ellipsoid::following(&f)).least_axis();
+            assert!(least <= shortest && least > 0.9 * shortest, "{least} for {shortest}");
         }
         let r = DVec3::new(0.3, -1.0, 2.0);
         assert!((Ellipsoids(&round).distance(&ghosts, 0, 1, r) - r.length()).abs() < 1e-12);
