@@ -154,7 +154,7 @@ impl HourglassControl {
                 (eulerian, "such bodies have `Variational`, `Stiffness`, `Viscous` and `Combined`")
             }
             Form::Stiffness | Form::MohseniMofidi2020 => {
-                (lagrangian, "such bodies have `Variational`, `Viscous` and `Combined`")
+                (lagrangian, "such bodies have `Variational`, `Ganzenmueller2015`, `Viscous` and `Combined`")
             }
             _ => (&BodySet::default(), ""),
         };
