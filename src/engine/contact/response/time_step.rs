@@ -17,7 +17,7 @@ const SWEPT_FACTOR: f64 = 0.25;
 const OF_LANDING: f64 = 0.55;
 /// Factor for skins that are pressed: together with bonds, which have used up 0.65 of theirs, nine tenths of the critical step. What hardens as it is pressed is stiff where nothing begins.
 const OF_PRESSED: f64 = 0.85;
-/// Ways in a step over the depth at which the centre of a particle is at the surface, up to which the spring stays what it is within a step, and from which on it changes
+/// Ways in a step over the depth at which the centre of a particle is at the surface (of rigid bodies, over the deepest overlap), up to which the spring stays what it is within a step, and from which on it changes
 /// so much that the step is that of a touch that begins.
 const STEADY: [f64; 2] = [0.01, 0.04];
 
@@ -125,15 +125,69 @@ pub(in crate::contact) fn propose(
     Ok(())
 }
 
-/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy.
-const IMPACT_FACTOR: f64 = 0.05;
+/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy; and where bodies lie, slide or roll on each other and nothing begins or
+/// ends. Friction, the corners of slender bodies and others on the far side make the frequency up to four times as large, so that steps stay below that part of the critical one.
+const IMPACT_FACTORS: [f64; 2] = [0.05, 0.3];
+
+/// Frequency of all springs together over that of a slow swing of a body on them, such as rocking.
+const SLOWER: f64 = 2.0;
+
+/// How points of a rigid body, or particles of a wall, near the surface of another one move along its normal.
+#[derive(Clone, Copy, Default)]
+pub(in crate::contact) struct NormalMotion {
+    /// Largest overlap, m.
+    deepest: f64,
+    /// Largest speed, m/s, and acceleration, m/s2, of those that touch or may do so soon.
+    speed: f64,
+    acceleration: f64,
+}
+
+impl NormalMotion {
+    /// Of a particle that forces move: nothing is known of how it lands.
+    pub const UNKNOWN: Self = Self { deepest: 0.0, speed: f64::INFINITY, acceleration: 0.0 };
+
+    /// Of one point that moves at `speed`, m/s, with this acceleration, m/s2, before a step of length `dt`, s.
+    pub fn of(overlap: f64, speed: f64, acceleration: f64, dt: f64) -> Self {
+        if overlap > 0.0 || -overlap < AHEAD * speed * dt {
+            Self { deepest: overlap.max(0.0), speed, acceleration }
+        } else {
+            Self::default()
+        }
+    }
+
+    /// The larger of both.
+    pub fn add(&mut self, other: &Self) {
+        self.deepest = self.deepest.max(other.deepest);
+        self.speed = self.speed.max(other.speed);
+        self.acceleration = self.acceleration.max(other.acceleration);
+    }
+
+    /// Step over one over the frequency. The speed that counts is that of a swing about the state of balance, whose speed and acceleration are never zero at once: steps that
+    /// change within a swing would give it energy.
+    fn factor(&self, frequency: f64, dt: f64) -> f64 {
+        let [of_impact, at_rest] = IMPACT_FACTORS;
+        if dt == 0.0 {
+            // Nothing is known yet of the length of the first step.
+            return of_impact;
+        }
+        let way = self.speed.hypot(SLOWER * self.acceleration / frequency) * dt;
+        let share = if way == 0.0 { 0.0 } else { way / self.deepest };
+        at_rest + ((share - STEADY[0]) / (STEADY[1] - STEADY[0])).clamp(0.0, 1.0) * (of_impact - at_rest)
+    }
+}
 
 /// Proposes the limit of contacts of two rigid bodies of a squared frequency, 1/s2.
-pub(in crate::contact) fn propose_rigid(step: &mut Step<'_>, pair: (BodyId, BodyId), squared: f64) {
+pub(in crate::contact) fn propose_rigid(
+    step: &mut Step<'_>,
+    pair: (BodyId, BodyId),
+    squared: f64,
+    landing: NormalMotion,
+) {
     if squared > 0.0 {
         let world = step.world;
         let (one, other) = (&world.body(pair.0).name, &world.body(pair.1).name);
-        let limit = IMPACT_FACTOR / squared.sqrt();
+        let (frequency, dt) = (squared.sqrt(), step.clock.dt);
+        let limit = landing.factor(frequency, dt) / frequency;
         step.limits.propose(limit, format_args!("contact of rigid `{one}` and `{other}`"));
     }
 }

@@ -1,5 +1,6 @@
 //! Contact in small scenes, against closed forms and invariants.
 
+mod at_rest;
 mod deformed;
 mod heat;
 mod images;

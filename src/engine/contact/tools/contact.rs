@@ -155,7 +155,7 @@ impl SurfaceContact {
                 time_step::propose(step, pair, &touches)?;
             }
             _ => {
-                time_step::propose_rigid(step, pair, squared.max(expected));
+                time_step::propose_rigid(step, pair, squared.max(expected), near.landing);
                 let velocity = motion[1].velocity - motion[0].velocity;
                 time_step::propose_approach(step, pair, velocity, gap);
             }

@@ -9,6 +9,7 @@ use super::together::{Spot, Together};
 use crate::contact::active::Least;
 use crate::contact::bodies::{ContactSides, Nearness, NodeMotion, NodeView};
 use crate::contact::laws::Touch;
+use crate::contact::response::time_step::NormalMotion;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::BlockSum;
 use crate::rigid::RigidBody;
@@ -42,6 +43,7 @@ pub(in crate::contact) struct NearNodes {
     pub held: Option<usize>,
     /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
     pub massless: usize,
+    pub landing: NormalMotion,
 }
 
 impl BlockSum for NearNodes {
@@ -49,6 +51,7 @@ impl BlockSum for NearNodes {
         self.least.add(&next.least);
         self.held = self.held.or(next.held);
         self.massless += next.massless;
+        self.landing.add(&next.landing);
     }
 }
 
@@ -85,7 +88,8 @@ impl OnSurface<'_> {
         }
         let held = nodes.is_held(i).then_some(i);
         let massless = usize::from(held.is_some() || matches!(nodes, NodeView::Rigid(_)));
-        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless });
+        let landing = self.landing(i, held.is_some(), [nearest.point, own_place - center], &near);
+        near_nodes.add(&NearNodes { least: Least(nodes.radius(i) / near.scale), held, massless, landing });
         let touches = near.overlap > 0.0 && nodes.reaches(i, center, nearest.normal, tool);
         // Where the body of the node has it, a period away from the image that touches.
         touches.then(|| {
@@ -96,6 +100,20 @@ impl OnSurface<'_> {
             };
             NodeTouch { x: center, shift: own_place - center, point: nearest.point, near, share }
         })
+    }
+
+    /// How a node that nothing moves but the body that it is a point of, or conditions, moves against the surface, of which a point of the reference configuration is nearest to it; `shift` is the way to the image
+    /// of the node.
+    fn landing(&self, i: usize, held: bool, [point, shift]: [DVec3; 2], near: &Nearness) -> NormalMotion {
+        let Self { nodes, tool, dt, .. } = self;
+        if matches!(nodes, NodeView::Particles(_)) && !held {
+            return NormalMotion::UNKNOWN;
+        }
+        let (motion, place) = (nodes.motion(i, true), tool.place(point));
+        let velocity = motion.velocity(DVec3::ZERO, place + shift) - tool.velocity_at(place);
+        let acceleration = motion.acceleration(place + shift) - tool.acceleration_at(place);
+        let [speed, change] = [velocity, acceleration].map(|of| of.dot(near.normal).abs());
+        NormalMotion::of(near.overlap, speed, change, *dt)
     }
 
     /// The force of a node that touches, with its history.
