@@ -46,6 +46,7 @@ pub enum Outside {
     #[default]
     Error,
     /// The particle is taken out of the run: nothing moves it or feels it any more, recordings leave it out, and the
-    /// summary counts it. The energy that leaves with it has an account of its own, `removed`.
+    /// summary counts it. The energy that leaves with it has an account of its own, `removed`. A rigid body leaves as a
+    /// whole, once all of its particles are outside.
     Remove,
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::system::RemovalRule;
 use crate::parallel::{BLOCK, for_each_block};
 use crate::plugin::SimBuilder;
+use crate::rigid::is_rigid;
 use crate::scene::{Axis, Dimension, Outside};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Position};
@@ -67,7 +68,8 @@ impl RemovalRule for RemoveOutside {
             }
             f64::from(count)
         });
-        if any == 0.0 {
+        // A rigid body leaves as a whole: what is left of it would go on alone.
+        if any == 0.0 || (any as usize) < position.len() && is_rigid(step, body) {
             return Ok(());
         }
         for (b, block) in position.chunks(BLOCK).enumerate().filter(|(b, _)| counts[*b] > 0.0) {

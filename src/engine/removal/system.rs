@@ -12,6 +12,7 @@ use super::leaving::Leaving;
 use crate::notation::quantity;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
+use crate::rigid::take_out;
 use crate::scene::Outside;
 use crate::schedule::{Access, AccountKind, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
@@ -136,6 +137,7 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
             0.5 * mass[row].0 * (v.length_squared() + kick.length_squared() + power)
         })
     };
+    let kinetic = take_out(step, body).unwrap_or(kinetic);
     clear(&view, rows)?;
     if view.read::<Removed>()?[own].iter().all(|row| *row == Removed::YES) {
         step.warnings.push(format!(

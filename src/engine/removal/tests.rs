@@ -146,3 +146,34 @@ fn bodies_of_every_formulation_leave_particle_by_particle() {
         assert!(removed[rows].iter().all(|removed| *removed != Removed::NO), "{formulation}");
     }
 }
+
+#[test]
+fn a_rigid_body_leaves_as_a_whole_with_its_energy() {
+    let at = |end: f64| {
+        let text = format!(
+            r#"(dimension: Two, gravity: (0.0, -10.0), {DOMAIN} materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
+                bodies: [(name: "block", material: "wood", shape: Box(min: (0, 0), max: (0.08, 0.04)), spacing: 0.01, velocity: (2, 0), formulation: Rigid(spin: (0, 0, 1)))],
+                time: (end: {end:?}))"#
+        );
+        let (scene, source) = parse(Source::new("block.ron", text)).unwrap_or_else(|e| panic!("{e}"));
+        let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"));
+        sim.run(|_| true).unwrap();
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        let removed = view.read::<Removed>().unwrap();
+        (
+            rows.filter(|row| removed[*row] == Removed::YES).count(),
+            account(&sim, "removed"),
+            account(&sim, "kinetic"),
+            sim.ledger().relative_error(),
+        )
+    };
+    // Half of it is outside after 0.03 s, all of it after 0.05 s: with m (v^2 + (g t)^2) / 2 + I w^2 / 2 and a mass of 1.6 kg.
+    let (gone, removed, kinetic, error) = at(0.035);
+    assert!(gone == 0 && removed == 0.0 && error.abs() < 1e-6, "{gone} {removed} {error}");
+    assert!(kinetic > 3.2, "{kinetic}");
+    let (gone, removed, kinetic, error) = at(0.1);
+    let expected = 0.5 * 1.6 * (4.0 + 0.25) + 0.5 * 1.6 * (0.0064 + 0.0016) / 12.0;
+    assert!(gone == 32 && kinetic == 0.0, "{gone} {kinetic}");
+    assert!((removed / expected - 1.0).abs() < 0.02, "{removed} {expected}");
+    assert!(error.abs() < 1e-3, "{error}");
+}

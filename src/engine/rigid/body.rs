@@ -31,6 +31,24 @@ pub struct RigidState {
     pub force: DVec3,
     /// Torque about its centre at the end of the last step, N m.
     pub torque: DVec3,
+    /// Whether it has been taken out of the run: nothing moves it or feels it any more.
+    pub gone: bool,
+}
+
+impl RigidState {
+    /// At rest, with the centre there, m.
+    pub fn at(center: DVec3) -> Self {
+        Self {
+            center,
+            rotation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            angular_momentum: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
+            force: DVec3::ZERO,
+            torque: DVec3::ZERO,
+            gone: false,
+        }
+    }
 }
 
 /// A rigid body.

@@ -191,16 +191,7 @@ impl Rigid {
             nodes,
             constraint,
         };
-        let state = RigidState {
-            center: of_shape.center,
-            rotation: DQuat::IDENTITY,
-            velocity: DVec3::ZERO,
-            angular_momentum: DVec3::ZERO,
-            angular_velocity: DVec3::ZERO,
-            force: DVec3::ZERO,
-            torque: DVec3::ZERO,
-        };
-        Ok(RigidBody::new(parts, state))
+        Ok(RigidBody::new(parts, RigidState::at(of_shape.center)))
     }
 }
 

@@ -20,4 +20,5 @@ pub(crate) use inertia::sphere_of;
 pub use nodes::{Nodes, RigidNode, Round};
 pub use outline::Rim;
 pub use rotation::Inertia;
+pub(crate) use systems::{is_rigid, take_out};
 pub use wrench::Wrench;

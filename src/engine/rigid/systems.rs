@@ -8,7 +8,7 @@ use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Clock, Resources, Run, Stage, Step, StepError, System};
-use crate::world::{BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Velocity};
+use crate::world::{BodyId, BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Removed, Velocity};
 
 /// Label of the system that moves rigid bodies by the first kick and the drift.
 const RIGID_DRIFT: &str = "rigid_drift";
@@ -29,9 +29,14 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
             .writes::<Velocity>(),
     );
     sim.add_system(
-        System::each::<(&mut Force, &Mass)>(Stage::Rates, RIGID_WEIGHT, ids, move |_, (force, mass)| {
-            force.0 = gravity * mass.0;
-        })
+        System::each::<(&mut Force, &Mass, &Removed)>(
+            Stage::Rates,
+            RIGID_WEIGHT,
+            ids,
+            move |_, (force, mass, removed)| {
+                force.0 = if *removed == Removed::NO { gravity * mass.0 } else { DVec3::ZERO };
+            },
+        )
         .on_phases(phases.clone()),
     );
     sim.add_system(
@@ -127,12 +132,33 @@ impl RigidBody {
         self.refresh();
     }
 
+    /// Takes the body out of the run in a step of length `dt`, s, and returns the kinetic energy with which it goes, J: after a last kick by the forces of the step before.
+    pub fn take_out(&mut self, dt: f64) -> f64 {
+        self.kick(0.5 * dt);
+        let kinetic = self.kinetic();
+        let RigidState { center, rotation, .. } = self.state;
+        self.state = RigidState { center, rotation, gone: true, ..RigidState::at(center) };
+        kinetic
+    }
+
     /// Kinetic energy, J.
     pub fn kinetic(&self) -> f64 {
         let RigidState { velocity, angular_velocity, angular_momentum, .. } = &self.state;
         let moving = if self.mass.is_finite() { self.mass * velocity.length_squared() } else { 0.0 };
         0.5 * (moving + angular_velocity.dot(*angular_momentum))
     }
+}
+
+/// Whether a body is rigid.
+pub(crate) fn is_rigid(step: &Step<'_>, body: BodyId) -> bool {
+    let bodies = step.resources.try_get::<RigidBodies>();
+    bodies.is_some_and(|bodies| bodies.iter().any(|rigid| rigid.id == body))
+}
+
+/// Takes a rigid body out of the run, and returns the kinetic energy with which it goes, J; none if the body is not rigid.
+pub(crate) fn take_out(step: &Step<'_>, body: BodyId) -> Option<f64> {
+    let mut bodies = step.resources.try_get_mut::<RigidBodies>()?;
+    bodies.iter_mut().find(|rigid| rigid.id == body).map(|rigid| rigid.take_out(step.clock.dt))
 }
 
 struct RigidDrift {
@@ -145,7 +171,7 @@ impl Run for RigidDrift {
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let gravity_work = step.ledger.account("gravity", AccountKind::Supplied);
         let resources = step.resources;
-        for body in resources.get_mut::<RigidBodies>().iter_mut() {
+        for body in resources.get_mut::<RigidBodies>().iter_mut().filter(|body| !body.state.gone) {
             // As for particles: what is prescribed is set first, then the forces kick what is free.
             let work = body.drive(false, &step.clock)?;
             body.kick(0.5 * dt);
@@ -196,6 +222,11 @@ impl Run for RigidKick {
         let constraints = step.ledger.account("constraints", AccountKind::Supplied);
         let resources = step.resources;
         for body in resources.get_mut::<RigidBodies>().iter_mut() {
+            if body.state.gone {
+                step.ledger.set(kinetic, body.id, 0.0);
+                propose(body, DVec3::ZERO, self.end, step);
+                continue;
+            }
             let contact = sum_of_forces(body, step)?;
             share_out(body, contact, step)?;
             let power = body.constraint_power();

@@ -35,6 +35,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
         bodies: bodies.iter().map(|body| InContact::of(body, &touching)).collect(),
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
         energies: Vec::with_capacity(touching.len()),
+        gone: Vec::new(),
         touching,
         acts,
         fragile,
@@ -78,6 +79,8 @@ struct Contacts {
     /// The bodies that can fail and touch with their skins until then.
     fragile: Vec<Fragile>,
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
+    /// Rigid bodies that have been taken out of the run.
+    gone: Vec<BodyId>,
 }
 
 /// A body that touches others.
@@ -107,6 +110,8 @@ impl Contacts {
         };
         if let Some(mut bodies) = step.resources.try_get_mut::<RigidBodies>() {
             bodies.iter_mut().for_each(|body| body.contact_stiffness = Wrench::default());
+            self.gone.clear();
+            self.gone.extend(bodies.iter().filter(|body| body.state.gone).map(|body| body.id));
         }
         if !self.fragile.is_empty() {
             // From the first step on, so that the tables of energies have a column for it.
@@ -115,8 +120,9 @@ impl Contacts {
         for fragile in &mut self.fragile {
             fragile.look(step)?;
         }
-        for (pair, acts) in self.touching.iter_mut().zip(&self.acts) {
-            if acts.now(&self.fragile) {
+        for k in 0..self.touching.len() {
+            if self.acts_now(k) {
+                let pair = &mut self.touching[k];
                 pair.find(step, pair.bodies().map(motion_of))?;
             }
         }
@@ -127,7 +133,7 @@ impl Contacts {
             }
         }
         for k in 0..self.touching.len() {
-            if !self.acts[k].now(&self.fragile) {
+            if !self.acts_now(k) {
                 continue;
             }
             let other = match self.touching[k].turn() {
@@ -149,10 +155,15 @@ impl Contacts {
         Ok(())
     }
 
+    /// Whether a contact acts in this step: not one of a body that has been taken out of the run.
+    fn acts_now(&self, k: usize) -> bool {
+        let is_there = |body: &BodyId| !self.gone.contains(body);
+        self.acts[k].now(&self.fragile) && self.touching[k].bodies().iter().all(is_there)
+    }
+
     /// What acts in this step.
     fn acting(&self) -> impl Iterator<Item = &Touching> {
-        let all = self.touching.iter().zip(&self.acts);
-        all.filter(|(_, acts)| acts.now(&self.fragile)).map(|(touching, _)| touching)
+        (0..self.touching.len()).filter(|&k| self.acts_now(k)).map(|k| &self.touching[k])
     }
 
     /// Adds what acts on the material beside particles to its stress, before the pass of the internal force.
