@@ -81,6 +81,9 @@ fn a_check_reviews_bodies_by_what_they_are() {
     let rigid = "formulation: Rigid()), Body(name: \"block\", material: \"steel\", shape: Box(min: (0.5, 0.0), max: (0.6, 0.1)), spacing: 0.01, formulation: Rigid()";
     let notes = check(rigid);
     assert!(!notes.contains("hourglass_control") && !notes.contains("plastic flow"), "{notes}");
+    let held = "formulation: TotalLagrangian)], conditions: [Fix(on: Select()";
+    let notes = check(held);
+    assert!(notes.contains("conditions move all of body `beam`"), "{notes}");
 }
 
 /// Notes and warnings of `check` on water in a tank, with another fluid beside it where `other` has the text of one.

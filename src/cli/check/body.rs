@@ -3,7 +3,7 @@
 use meshless_engine::plugin::{BodyKind, Registry};
 use meshless_engine::scene::{Dimension, Scene};
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, Mass, PlasticStrain, Position};
+use meshless_engine::world::{BodyId, Mass, Mobility, PlasticStrain, Position};
 use serde::Serialize;
 
 use crate::cli::failure::Failure;
@@ -33,6 +33,9 @@ pub struct BodyReport {
     pub across: f64,
     /// Whether its material flows plastically.
     pub plastic: bool,
+    /// Whether conditions hold or drive all of it along all axes.
+    #[serde(skip)]
+    pub driven: bool,
     /// Mean, smallest and largest number of neighbours, where they are counted.
     pub neighbours: Option<(f64, usize, usize)>,
     /// Names of the plugins of the scene and of the body.
@@ -80,10 +83,16 @@ impl BodyReport {
             plastic: kind == Some(BodyKind::Solid)
                 && view.read::<PlasticStrain>().is_ok()
                 && has_plasticity(scene, &body.material),
+            driven: is_driven(&view.read::<Mobility>().map_err(failed)?[rows], scene.dimension),
             neighbours: count.map(|count| (count.mean, count.least, count.most)),
             plugins: plugins.map(|item| item.name().to_owned()).collect(),
         })
     }
+}
+
+/// Whether no force moves any of these particles.
+fn is_driven(mobility: &[Mobility], dimension: Dimension) -> bool {
+    mobility.iter().all(|of| of.0.x == 0.0 && of.0.y == 0.0 && (dimension == Dimension::Two || of.0.z == 0.0))
 }
 
 /// Columns are those of all bodies of a formulation: whether the material itself has a flow stress stands in its text.

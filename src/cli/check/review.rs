@@ -67,6 +67,12 @@ fn of_body(body: &BodyReport) -> Vec<String> {
     if body.kind == Some(BodyKind::Fluid) && !has("density_diffusion") {
         notes.push(format!("fluid `{name}` has no `density_diffusion`: its pressure will be noisy"));
     }
+    if is_solid && body.driven {
+        notes.push(format!(
+            "conditions move all of body `{name}`, whose stiffness limits the time step all the same: `formulation: Rigid()` moves alike and limits none, \
+             if its stresses do not matter"
+        ));
+    }
     if is_solid && body.across < ACROSS - 0.5 {
         notes.push(format!(
             "body `{name}` has {} particles across its smallest side: at least {} resolve its bending",
