@@ -86,6 +86,9 @@ struct Gain {
     rate: f64,
 }
 
+/// Share of the heat that goes from particle to particle in a step which the sums of a long run may be off by rounding.
+const DIGITS: f64 = 1e-12;
+
 /// The heat of some particles.
 #[derive(Clone, Copy, Default)]
 struct Heat {
@@ -93,6 +96,8 @@ struct Heat {
     come: f64,
     /// What conduction changes in all, J: nothing but rounding.
     conducted: f64,
+    /// What particles gain and lose by it, J.
+    exchanged: f64,
     /// Largest rate at which a particle comes to the temperature of its neighbours, 1/s.
     fastest: f64,
 }
@@ -101,6 +106,7 @@ impl BlockSum for Heat {
     fn add(&mut self, next: &Self) {
         self.come += next.come;
         self.conducted += next.conducted;
+        self.exchanged += next.exchanged;
         self.fastest = self.fastest.max(next.fastest);
     }
 }
@@ -142,6 +148,7 @@ impl Conduction {
                 sum.come += capacity * (now.0 - last.0);
                 let change = dt * gain.power;
                 sum.conducted += change;
+                sum.exchanged += change.abs();
                 now.0 += change / capacity;
                 last.0 = now.0;
                 sum.fastest = sum.fastest.max(gain.rate / capacity);
@@ -151,6 +158,7 @@ impl Conduction {
         drop((now, last, solid));
         let heat = step.ledger.account("heat", AccountKind::Stored);
         step.ledger.add(heat, of.body, found.come + found.conducted);
+        step.ledger.set_resolution(DIGITS * found.exchanged);
         let into_heat = step.ledger.account("into_heat", AccountKind::Dissipated);
         step.ledger.add(into_heat, of.body, -found.come);
         if found.fastest > 0.0 {

@@ -86,6 +86,12 @@ fn no_heat_leaves_a_surface() {
             let before = heat(&sim);
             sim.run(|_| true).unwrap();
             assert!((heat(&sim) / before - 1.0).abs() < 1e-13, "{formulation}");
+            // Nothing but round-off is out of balance: no warning.
+            assert!(
+                sim.ledger().relative_error().abs() < 0.01,
+                "{formulation} {}",
+                sim.ledger().relative_error()
+            );
             rate_error(&sim, |x| (pi * x).cos(), DIFFUSIVITY * pi * pi).abs()
         });
         assert!(errors[2] < 0.03 && errors.is_sorted_by(|a, b| a > b), "{formulation} {errors:?}");

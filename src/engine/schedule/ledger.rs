@@ -149,9 +149,9 @@ impl Ledger {
         self.largest = turnover.fold(self.largest, f64::max);
     }
 
-    /// States the energy below which all is round-off, J.
+    /// States an energy below which all is round-off, J; the largest one that is stated counts.
     pub fn set_resolution(&mut self, energy: f64) {
-        self.resolution = energy;
+        self.resolution = self.resolution.max(energy);
     }
 
     /// The largest energy that any account has held, J.
