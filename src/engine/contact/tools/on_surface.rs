@@ -43,6 +43,7 @@ pub(in crate::contact) struct NearNodes {
     pub held: Option<usize>,
     /// How many nodes near it have no mass of their own: points of a rigid body, and such particles.
     pub massless: usize,
+    /// How they move along its normal.
     pub landing: NormalMotion,
 }
 
