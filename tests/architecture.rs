@@ -333,6 +333,7 @@ const WITHOUT_CIRCLES: &[&str] = &[
     "formulations/fluid/cloud",
     "formulations/fluid/density",
     "formulations/fluid/rotation",
+    "formulations/fluid/moments",
     "formulations/fluid/walls",
     "formulations/fluid/passes",
     "formulations/fluid/passes/blocks",

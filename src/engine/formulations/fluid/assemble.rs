@@ -194,7 +194,7 @@ fn cloud(
     let ends = groups.iter().map(|group| group.cloud.end as u32).collect();
     let total = groups.last().map_or(0, |group| group.cloud.end);
     let gaps = GapPairs::new(sides(&groups, sim));
-    let neighborhoods = if spin { sticky(&groups, spacing, sim)? } else { Vec::new() };
+    let neighborhoods = neighborhoods(&groups, spin, spacing, sim)?;
     Ok(FlowCloud {
         groups,
         fluid,
@@ -235,10 +235,17 @@ fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     groups.iter().filter_map(side).collect()
 }
 
-/// Who is beside whom in the bodies to which fluids stick.
-fn sticky(groups: &[Group], spacing: f64, sim: &SimBuilder<'_>) -> Result<Vec<Neighborhood>, SetupError> {
-    let is_sticky = |group: &&Group| matches!(&group.role, Role::Boundary(surface) if surface.no_slip);
-    let mut bodies: Vec<BodyId> = groups.iter().filter(is_sticky).map(|group| group.body).collect();
+/// Who is beside whom in the bodies that deform, and with spin in those to which fluids stick.
+fn neighborhoods(
+    groups: &[Group],
+    spin: bool,
+    spacing: f64,
+    sim: &SimBuilder<'_>,
+) -> Result<Vec<Neighborhood>, SetupError> {
+    let is_soft = |group: &Group| sim.body(group.body).kind == BodyKind::Solid;
+    let sticks = |group: &Group| matches!(&group.role, Role::Boundary(surface) if surface.no_slip);
+    let asks = |group: &&Group| is_soft(group) || spin && sticks(group);
+    let mut bodies: Vec<BodyId> = groups.iter().filter(asks).map(|group| group.body).collect();
     bodies.dedup();
     let of = |id: BodyId| Neighborhood::new(sim.body(id), spacing, &sim.periodic());
     bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()

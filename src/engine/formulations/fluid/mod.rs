@@ -22,6 +22,9 @@ mod density;
 /// The rotation around each particle, which friction must not feel.
 mod rotation;
 
+/// Where the forces on boundaries act: at their surface.
+mod moments;
+
 /// What bounds a fluid.
 mod walls;
 

@@ -6,15 +6,16 @@ use crate::formulations::fluid::cloud::{
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift};
+use crate::formulations::fluid::moments::{SurfaceMoments, SurfaceStretching};
 use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, reads_flow};
-use crate::formulations::fluid::rotation::{FrictionMoments, Spin};
+use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
     GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
-use crate::plugin::{BodyKind, SetupError, SimBuilder};
+use crate::plugin::{BodyKind, BodyPlan, SetupError, SimBuilder};
 use crate::removal::REMOVAL;
 use crate::schedule::{Access, Mode, Stage, System};
 use crate::world::{
@@ -91,6 +92,7 @@ pub fn add(
                 .after(COMPRESSION),
         );
     }
+    add_stretching(sim, fluid, &boundaries);
     add_state(sim, fluid, account);
     add_force(sim, groups, fluid, FLUID_FORCE, terms);
     if spin {
@@ -102,6 +104,20 @@ pub fn add(
     }
     add_boundaries(sim, groups, boundaries, spin);
     Ok(())
+}
+
+/// Adds what the stretching of deformable bodies does to the compression of the fluid, where there are any.
+fn add_stretching(sim: &mut SimBuilder<'_>, fluid: PhaseId, boundaries: &[PhaseId]) {
+    let is_soft = |body: &BodyPlan| body.kind == BodyKind::Solid && boundaries.contains(&body.phase);
+    if sim.bodies().iter().any(is_soft) {
+        sim.add_system(
+            System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
+                .on_phases([fluid])
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(COMPRESSION_RATES, Mode::Writes)
+                .after(COMPRESSION),
+        );
+    }
 }
 
 /// Adds what turns compression into density, with its energy in an account, and density into pressure.
@@ -193,7 +209,7 @@ fn add_force(
     let flows = of_phase().any(|group| group.fluid().is_some());
     let gravity = flows.then(|| sim.gravity());
     let access = terms.as_ref().map_or_else(Vec::new, |terms| terms.access(sim, phase));
-    let force = FlowForce { phase, gravity, parts, moments: FrictionMoments::default(), terms };
+    let force = FlowForce { phase, gravity, parts, moments: SurfaceMoments::default(), terms };
     let system = System::new(Stage::Rates, label, force).on_phases([phase]).touches_all(access);
     let system = reads_flow(system).reads::<Mass>().reads::<Removed>();
     sim.add_system(if flows { system.writes::<Force>() } else { system.adds::<Force>() });

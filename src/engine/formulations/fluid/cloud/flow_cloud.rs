@@ -67,7 +67,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) loads: Vec<DVec3>,
     /// Spins of all particles, 1/s; zero for boundaries, and none at all where friction goes without.
     pub(in crate::formulations::fluid) spins: Vec<Lanes4>,
-    /// Bodies to which viscous fluids stick.
+    /// Bodies that deform, and those to which viscous fluids stick.
     pub(in crate::formulations::fluid) neighborhoods: Vec<Neighborhood>,
 }
 

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::Sym3;
 use crate::neighbors::{Cloud, NeighborError, NeighborList, Periodic};
-use crate::plugin::BodyPlan;
+use crate::plugin::{BodyKind, BodyPlan};
 use crate::world::BodyId;
 
 /// Distance of the particles that move with one, over the spacing of the fluid.
@@ -15,6 +15,8 @@ const REACH: f64 = 1.5;
 #[derive(Debug)]
 pub struct Neighborhood {
     pub body: BodyId,
+    /// Whether the body deforms.
+    pub is_soft: bool,
     pub list: NeighborList,
 }
 
@@ -34,11 +36,22 @@ impl Neighborhood {
     pub fn new(body: &BodyPlan, spacing: f64, periodic: &Periodic) -> Result<Self, NeighborError> {
         let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
         let list = NeighborList::reference(Cloud::uniform(&positions, REACH * spacing), periodic)?;
-        Ok(Self { body: body.id, list })
+        Ok(Self { body: body.id, is_soft: body.kind == BodyKind::Solid, list })
     }
 
     /// The cluster of particle `k`, all zero for a removed particle.
     pub fn cluster(&self, records: &[FlowParticle], k: usize, periodic: &Periodic) -> Cluster {
+        self.cluster_before(records, k, periodic, 0.0)
+    }
+
+    /// The same that long before, s.
+    pub fn cluster_before(
+        &self,
+        records: &[FlowParticle],
+        k: usize,
+        periodic: &Periodic,
+        before: f64,
+    ) -> Cluster {
         let own = &records[k];
         if own.volume() == 0.0 {
             return Cluster { mean: DVec3::ZERO, moment: Sym3::ZERO, motion: DMat3::ZERO };
@@ -47,8 +60,8 @@ impl Neighborhood {
         let (mut moment, mut motion) = (Sym3::ZERO, DMat3::ZERO);
         for &j in self.list.row(k) {
             let other = &records[j as usize];
-            let x = periodic.minimal_image(other.position() - own.position());
             let v = other.velocity() - own.velocity();
+            let x = periodic.minimal_image(other.position() - own.position()) - before * v;
             volume += other.volume();
             first += other.volume() * x;
             momentum += other.volume() * v;

@@ -11,9 +11,9 @@ use crate::parallel::{Split, for_each_block, split_by_rows};
 use crate::rigid::RigidBody;
 use crate::world::{Force, Mass, Mobility, Removed, Velocity};
 
-/// Friction at the surface of a row of particles pulls at it with 1.6 times its force, and at the row below with -0.6 (`rotation::moments`), and follows their velocities alike: the rate is
-/// 1.6^2 + 0.6^2 = 2.9 times that of the force on the first row alone, and explicit steps stand two over the rate.
-const SHEARED: f64 = 1.6;
+/// Friction at the surface of a row of particles pulls at it with 1.6 times its force, and at the row below with -0.6 (`moments::friction`), and follows their velocities alike. The fluid beside, of
+/// the same density, follows at its own rate: the fastest motion of both together decays at 3.7 times the rate that the force on the first row alone has, and explicit steps stand two over the rate.
+const SHARED: f64 = 2.0;
 
 /// The columns that change.
 pub struct ParticleRows<'a> {
@@ -78,10 +78,17 @@ impl Particles<'_> {
     pub fn rate(&self) -> f64 {
         let moves = |k: usize| self.removed[k] == Removed::NO && self.mobility[k].0 != DVec3::ZERO;
         let rates = self.drag.iter().zip(self.mass).enumerate();
-        rates.filter(|(k, _)| moves(*k)).map(|(_, (drag, mass))| SHEARED * drag / mass.0).fold(0.0, f64::max)
+        rates.filter(|(k, _)| moves(*k)).map(|(_, (drag, mass))| SHARED * drag / mass.0).fold(0.0, f64::max)
     }
 
-    /// The same of a rigid body: the sum of the rates of all of its motions, which is no less than the fastest.
+    /// Least density of a particle of the body that the flow acts on, kg/m3.
+    pub fn lightest(&self) -> Option<f64> {
+        let rows = self.records.iter().zip(self.mass).zip(self.total);
+        let wet = rows.filter(|((record, _), force)| record.volume() > 0.0 && force.0 != DVec3::ZERO);
+        wet.map(|((record, mass), _)| mass.0 / record.volume()).min_by(f64::total_cmp)
+    }
+
+    /// [`Particles::rate`] of a rigid body: the sum of the rates of all of its motions, which is no less than the fastest.
     pub fn rate_of_rigid_body(&self, body: &RigidBody) -> f64 {
         let along = |x: DVec3| -> f64 { DVec3::AXES.iter().map(|&axis| body.inverse_mass_at(x, axis)).sum() };
         let pulled = self.drag.iter().zip(self.records).filter(|(drag, _)| **drag > 0.0);

@@ -11,10 +11,10 @@ use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
-use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, PARTS, Role};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
+use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
-use crate::formulations::fluid::rotation::FrictionMoments;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -61,7 +61,7 @@ pub fn add_force_on_bodies(
         parts: Vec::new(),
         other_total: Vec::new(),
         other_parts: Vec::new(),
-        moments: FrictionMoments::default(),
+        moments: SurfaceMoments::default(),
         drag: Vec::new(),
         sums: Vec::new(),
     };
@@ -110,6 +110,10 @@ impl FlowCloud {
     }
 }
 
+/// Stable step of the surface of a deformable body in units of h / sqrt(K / rho), with its density and the largest bulk modulus K of all fluids, whose pressure moves it: a strip of half the density of
+/// the water, two particles of it thick, is stable at 0.42 and not at 0.6.
+const SURFACE: f64 = 0.4;
+
 struct Coupling {
     phase: PhaseId,
     /// Whether friction follows the motion of the bodies in the sub-steps.
@@ -120,7 +124,7 @@ struct Coupling {
     /// The same from the other side of a thin body.
     other_total: Vec<Force>,
     other_parts: Vec<DVec3>,
-    moments: FrictionMoments,
+    moments: SurfaceMoments,
     /// How fast friction grows with the velocity of each particle, kg/s.
     drag: Vec<f64>,
     sums: Vec<Exchange>,
@@ -192,9 +196,17 @@ impl Coupling {
             Some(body) => (give_to_rigid_body(body, &particles, columns), particles.rate_of_rigid_body(body)),
             None => (particles.give(columns, &mut self.sums), particles.rate()),
         };
+        let name = &step.world.body(group.body).name;
         if rate > 0.0 {
-            let name = &step.world.body(group.body).name;
             step.limits.propose(1.0 / rate, format_args!("friction of the fluid on `{name}`"));
+        }
+        if cloud.soft_neighborhood(group).is_some()
+            && let Some(density) = particles.lightest()
+        {
+            let fluids = cloud.groups.iter().filter_map(Group::fluid);
+            let stiffest = fluids.map(FluidState::bulk_modulus).fold(0.0, f64::max);
+            let limit = SURFACE * cloud.kernel.smoothing_length() * (density / stiffest).sqrt();
+            step.limits.propose(limit, format_args!("pressure of the fluid on the light `{name}`"));
         }
         Ok(exchange)
     }

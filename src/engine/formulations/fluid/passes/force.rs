@@ -7,7 +7,7 @@ use super::pair_force::PairForce;
 use crate::formulations::fluid::cloud::{
     ACCOUNTS, FLOW_RECORDS, FlowCloud, GAP_FORCES, PARTS, REPELLED, Role, SPINS,
 };
-use crate::formulations::fluid::rotation::FrictionMoments;
+use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::pair::{BodyTerms, PhaseTerms};
 use crate::parallel::{for_each_block, share_wide_rows};
 use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
@@ -32,7 +32,7 @@ pub struct FlowForce {
     pub gravity: Option<DVec3>,
     /// The parts of the force on each body, for the booking of their work.
     pub parts: Shared<Vec<BodyTerms>>,
-    pub moments: FrictionMoments,
+    pub moments: SurfaceMoments,
     /// Pair terms of plugins, run in the same pass.
     pub terms: Option<PhaseTerms>,
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::pair_force::PairForce;
 use crate::formulations::fluid::cloud::{FlowCloud, PARTS};
-use crate::formulations::fluid::rotation::FrictionMoments;
+use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::world::{BodyId, Force};
 
 impl FlowCloud {
@@ -17,7 +17,7 @@ impl FlowCloud {
             let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
             let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
             PairForce { cloud: self, group, adds: false }.run(&mut total, &mut parts);
-            FrictionMoments::default().add(self, group, &mut total, &mut parts);
+            SurfaceMoments::default().add(self, group, &mut total, &mut parts);
             self.repel(group, &mut total, &mut parts);
             self.press_gaps(group, &mut total, &mut parts);
             let sum = sum.get_or_insert_with(|| vec![Default::default(); total.len()]);

@@ -5,7 +5,8 @@ use glam::{DMat3, DVec3};
 use super::spin::rotation;
 use crate::linalg::Sym3;
 
-/// Share of the trace of the moment matrix that is added to its diagonal: points that nearly lie in a plane or on a line show nothing across it but how they turn.
+/// Share of the trace of the moment matrix that is added to its diagonal: points that nearly lie in a plane or on a line show nothing across it but how they turn. What that leaves of other
+/// motions is taken up in a second step, so that its square is left.
 const FLAT: f64 = 0.01;
 
 /// The matrix B with `B M = T`, for the moment matrix `M = sum m x (x) x` of some points and `T = sum m v (x) x`: the gradient of their motion. A motion that turns is found as it is, and what
@@ -19,7 +20,9 @@ pub fn affine(moment: &Sym3, first: DMat3, plane: bool) -> DMat3 {
     let mass = moment.to_matrix();
     let turn = turning(rotation(moment, axial(&first), plane));
     let rest = first - turn * mass;
-    let stretch = rest * (*moment + Sym3::from_diagonal(DVec3::splat(FLAT * trace))).inverse().to_matrix();
+    let inverse = (*moment + Sym3::from_diagonal(DVec3::splat(FLAT * trace))).inverse().to_matrix();
+    let stretch = rest * inverse;
+    let stretch = stretch + (rest - stretch * mass) * inverse;
     let lost = rotation(moment, axial(&(rest - stretch * mass)), plane);
     turn + stretch + turning(lost)
 }
@@ -60,6 +63,9 @@ mod tests {
             assert!(axial(&(map * moment.to_matrix() - shear)).length() < 1e-13);
         }
         let (moment, first) = moments(cube, shear);
-        assert!((affine(&moment, first, false) - shear).abs_diff_eq(DMat3::ZERO, 2.0 * 3.0 * FLAT));
+        assert!(
+            (affine(&moment, first, false) - shear)
+                .abs_diff_eq(DMat3::ZERO, 2.0 * (3.0 * FLAT) * (3.0 * FLAT))
+        );
     }
 }

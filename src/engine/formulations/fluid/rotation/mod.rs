@@ -6,7 +6,5 @@ mod spin;
 
 mod body_gradient;
 
-mod moments;
-
-pub use moments::FrictionMoments;
+pub use affine::affine;
 pub use spin::Spin;

@@ -8,6 +8,8 @@ mod spin;
 
 mod soft_block;
 
+mod soft_pressure;
+
 mod channel;
 
 mod loads;

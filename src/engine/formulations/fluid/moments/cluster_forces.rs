@@ -1,0 +1,88 @@
+//! Forces on the particles around one that have a given first moment and no sum.
+//!
+//! A particle has no moment of its own. A moment M_w is made of forces `V_k B_w (x_k - x_mean)` on the particles k of its cluster, with B_w such that they add up to M_w
+//! and to no force ([`affine`](crate::formulations::fluid::rotation)). What they do is `M_w : L_w` with the gradient L_w of the motion of the cluster by the same B.
+
+use glam::{DMat3, DVec3};
+
+use crate::formulations::fluid::cloud::{Cluster, FlowCloud, Group, Neighborhood, PARTS};
+use crate::formulations::fluid::lanes::FlowParticle;
+use crate::formulations::fluid::rotation::affine;
+use crate::neighbors::Periodic;
+use crate::parallel::for_each_block;
+use crate::world::Force;
+
+/// How N moments of each particle act on its cluster.
+#[derive(Debug, Default)]
+pub struct ClusterForces<const N: usize> {
+    shifts: Vec<MomentShift<N>>,
+}
+
+/// Mean place of a cluster, and B_w of each moment.
+#[derive(Clone, Copy, Debug)]
+struct MomentShift<const N: usize> {
+    mean: DVec3,
+    maps: [DMat3; N],
+}
+
+type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
+
+impl<const N: usize> ClusterForces<N> {
+    /// Takes the moments of the particles of a body, N m, of which the first is that of all of the force.
+    pub fn set(
+        &mut self,
+        cloud: &FlowCloud,
+        group: &Group,
+        near: &Neighborhood,
+        moments: impl Fn(usize) -> [DMat3; N] + Sync,
+    ) {
+        let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
+        let none = MomentShift { mean: DVec3::ZERO, maps: [DMat3::ZERO; N] };
+        self.shifts.resize(records.len(), none);
+        for_each_block(&mut self.shifts[..], &mut Vec::new(), &|begin, shifts: &mut [MomentShift<N>]| {
+            for (k, shift) in (begin..).zip(shifts) {
+                *shift = none;
+                let moments = moments(k);
+                if moments[0] != DMat3::ZERO {
+                    let Cluster { mean, moment, .. } = near.cluster(records, k, periodic);
+                    *shift =
+                        MomentShift { mean, maps: moments.map(|first| affine(&moment, first, cloud.plane)) };
+                }
+            }
+        });
+    }
+
+    /// Adds the forces of the first moment to the whole, and those of the last to one of its parts.
+    pub fn add(
+        &self,
+        cloud: &FlowCloud,
+        group: &Group,
+        near: &Neighborhood,
+        (total, parts): (&mut [Force], &mut [DVec3]),
+        part: usize,
+    ) {
+        let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
+        let (parts, _) = parts.as_chunks_mut();
+        for_each_block((total, parts), &mut Vec::new(), &|first, (total, parts): Rows<'_>| {
+            for (k, (total, parts)) in (first..).zip(total.iter_mut().zip(parts)) {
+                let forces = self.on(near, records, k, periodic);
+                total.0 += forces[0];
+                parts[part] += forces[N - 1];
+            }
+        });
+    }
+
+    /// The forces on particle `k` of all clusters that it is in.
+    fn on(&self, near: &Neighborhood, records: &[FlowParticle], k: usize, periodic: &Periodic) -> [DVec3; N] {
+        let (own, shifts) = (&records[k], &self.shifts);
+        let mut forces = shifts[k].maps.map(|map| map * -shifts[k].mean);
+        for &w in near.list.row(k) {
+            let MomentShift { mean, maps } = &shifts[w as usize];
+            if maps[0] != DMat3::ZERO {
+                let x = periodic.minimal_image(own.position() - records[w as usize].position()) - *mean;
+                (0..N).for_each(|n| forces[n] += maps[n] * x);
+            }
+        }
+        forces.map(|force| own.volume() * force)
+    }
+}
