@@ -10,7 +10,7 @@ use crate::scene::{Problem, Scene};
 const RATIO: f64 = 10.0;
 
 /// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start, against rest or against the one that
-/// bounds the flow, or, where nothing does, the fluid beside which the fastest is slowest, and of a fall through the height of all fluid bodies.
+/// bounds the flow, or, where nothing does, against the centre of mass of all, and of a fall through the height of all fluid bodies.
 ///
 /// # Errors
 /// Nothing moves, so that there is nothing to estimate from.
@@ -22,10 +22,13 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
     let fall = if high > low { (2.0 * (high - low)).sqrt() } else { 0.0 };
     let velocity = |body: &BodyPlan| body.velocity.map_or(DVec3::ZERO, |v| v.0);
     let fastest = |frame: DVec3| bodies.iter().map(|body| velocity(body).distance(frame)).fold(0.0, f64::max);
-    let is_bounded = bodies.iter().any(|body| body.kind != BodyKind::Fluid);
-    let frames = bodies.iter().filter(|body| !is_bounded || body.kind != BodyKind::Fluid);
+    let bounds = || bodies.iter().filter(|body| body.kind != BodyKind::Fluid);
     let at_rest = fastest(DVec3::ZERO);
-    let slowest = frames.map(|body| fastest(velocity(body))).fold(at_rest, f64::min);
+    let slowest = if bounds().next().is_some() {
+        bounds().map(|body| fastest(velocity(body))).fold(at_rest, f64::min)
+    } else {
+        fastest(mean_velocity(bodies))
+    };
     let fastest = if fall.max(slowest) > 0.0 { fall.max(slowest) } else { at_rest };
     let mut problems = Vec::new();
     for body in bodies {
@@ -45,4 +48,15 @@ pub fn estimate(bodies: &mut [BodyPlan], scene: &Scene) -> Result<(), Vec<Proble
         }
     }
     if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+/// Velocity of the centre of mass of all bodies, m/s.
+fn mean_velocity(bodies: &[BodyPlan]) -> DVec3 {
+    let (mut mass, mut momentum) = (0.0, DVec3::ZERO);
+    for body in bodies {
+        let of_body = body.material.density * body.sites.iter().map(|site| site.volume).sum::<f64>();
+        mass += of_body;
+        momentum += of_body * body.velocity.map_or(DVec3::ZERO, |v| v.0);
+    }
+    if mass > 0.0 { momentum / mass } else { DVec3::ZERO }
 }

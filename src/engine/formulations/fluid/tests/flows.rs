@@ -329,8 +329,8 @@ fn drops_that_fly_together_have_the_sound_of_their_meeting() {
         cloud.groups[0].fluid().expect("a fluid").sound_speed
     };
     assert_eq!(sound(0.0), 20.0);
-    // They meet at 4 m/s.
-    assert_eq!(sound(300.0), 40.0);
+    // Each meets the plane between them at 2 m/s, however fast both fly.
+    assert!((sound(300.0) - 20.0).abs() < 1e-10);
 }
 
 #[test]
