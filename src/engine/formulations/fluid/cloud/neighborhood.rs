@@ -10,6 +10,8 @@ use crate::world::BodyId;
 
 /// Distance of the particles that move with one, over the spacing of the fluid.
 const REACH: f64 = 1.5;
+/// Distance from which on a neighbour of the start has gone elsewhere, over the same spacing: bodies that flow or wear pass it on, and elastic ones stretch to it before the fluid sees gaps.
+const FARTHEST: f64 = 2.0 * REACH;
 
 /// The neighbours of the particles of a body at its start.
 #[derive(Debug)]
@@ -18,6 +20,8 @@ pub struct Neighborhood {
     /// Whether the body deforms.
     pub is_soft: bool,
     pub list: NeighborList,
+    /// Square of the distance from which on a neighbour counts no more, m2.
+    farthest: f64,
 }
 
 /// A particle and its neighbours in the body, weighed by their volumes.
@@ -36,7 +40,14 @@ impl Neighborhood {
     pub fn new(body: &BodyPlan, spacing: f64, periodic: &Periodic) -> Result<Self, NeighborError> {
         let positions: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
         let list = NeighborList::reference(Cloud::uniform(&positions, REACH * spacing), periodic)?;
-        Ok(Self { body: body.id, is_soft: body.kind == BodyKind::Solid, list })
+        let farthest = (FARTHEST * spacing).powi(2);
+        Ok(Self { body: body.id, is_soft: body.kind == BodyKind::Solid, list, farthest })
+    }
+
+    /// Whether two particles that were neighbours at the start, x apart, m, still are.
+    #[inline(always)]
+    pub fn are_near(&self, x: DVec3) -> bool {
+        x.length_squared() < self.farthest
     }
 
     /// The cluster of particle `k`, all zero for a removed particle.
@@ -61,7 +72,11 @@ impl Neighborhood {
         for &j in self.list.row(k) {
             let other = &records[j as usize];
             let v = other.velocity() - own.velocity();
-            let x = periodic.minimal_image(other.position() - own.position()) - before * v;
+            let now = periodic.minimal_image(other.position() - own.position());
+            if !self.are_near(now) {
+                continue;
+            }
+            let x = now - before * v;
             volume += other.volume();
             first += other.volume() * x;
             momentum += other.volume() * v;
@@ -76,4 +91,36 @@ impl Neighborhood {
 /// `v (x) x`.
 fn dyad(v: DVec3, x: DVec3) -> DMat3 {
     DMat3::from_cols(v * x.x, v * x.y, v * x.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parallel::Lanes4;
+
+    /// Four corners of a square of edge 1, of which the last one is `away` and takes its velocity with it.
+    fn square(away: DVec3) -> Cluster {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
+        let list = NeighborList::reference(Cloud::uniform(&corners, REACH), &Periodic::NONE).expect("a list");
+        let near = Neighborhood { body: BodyId(0), is_soft: true, list, farthest: FARTHEST * FARTHEST };
+        let mut records = corners.map(|x| FlowParticle {
+            place: Lanes4([x.x, x.y, 0.0, 1.0]),
+            motion: Lanes4([0.1 * x.x, 0.0, 0.0, 0.0]),
+        });
+        let x = corners[3] + away;
+        records[3].place = Lanes4([x.x, x.y, 0.0, 1.0]);
+        near.cluster(&records, 0, &Periodic::NONE)
+    }
+
+    #[test]
+    fn a_neighbour_that_has_gone_elsewhere_is_no_part_of_a_cluster() {
+        let (whole, without) = (square(DVec3::ZERO), square(DVec3::X * 10.0));
+        assert_eq!(whole.mean, DVec3::new(0.5, 0.5, 0.0));
+        // Of the three that are left: mean place, and moments 2/3 about it along both axes.
+        let third = 1.0 / 3.0;
+        assert!((without.mean - DVec3::new(third, third, 0.0)).length() < 1e-15);
+        let moment = without.moment.to_matrix();
+        assert!((moment.x_axis.x - 2.0 * third).abs() < 1e-15 && (moment.x_axis.y + third).abs() < 1e-15);
+        assert!((without.motion.x_axis.x - 0.2 * third).abs() < 1e-15);
+    }
 }

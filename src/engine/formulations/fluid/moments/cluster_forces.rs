@@ -78,9 +78,9 @@ impl<const N: usize> ClusterForces<N> {
         let mut forces = shifts[k].maps.map(|map| map * -shifts[k].mean);
         for &w in near.list.row(k) {
             let MomentShift { mean, maps } = &shifts[w as usize];
-            if maps[0] != DMat3::ZERO {
-                let x = periodic.minimal_image(own.position() - records[w as usize].position()) - *mean;
-                (0..N).for_each(|n| forces[n] += maps[n] * x);
+            let x = periodic.minimal_image(own.position() - records[w as usize].position());
+            if maps[0] != DMat3::ZERO && near.are_near(x) {
+                (0..N).for_each(|n| forces[n] += maps[n] * (x - *mean));
             }
         }
         forces.map(|force| own.volume() * force)
