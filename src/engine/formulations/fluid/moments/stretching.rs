@@ -17,6 +17,9 @@ use crate::linalg::Sym3;
 use crate::parallel::for_each_block;
 use crate::schedule::{Run, Step, StepError};
 
+/// Share of the support up to which neighbours are in the rows of all ranks: those of other ranks hold more than is near now.
+const WITHIN: f64 = 1.0 - 1e-6;
+
 /// Changes the rates of compression beside deformable bodies.
 #[derive(Default)]
 pub struct SurfaceStretching {
@@ -84,10 +87,10 @@ impl Stretched<'_> {
         let (own, mut sum) = (&records[i], 0.0);
         for &w in part(self.cloud.near_row(i), &self.among) {
             let other = &records[w as usize];
-            let x = self.cloud.offset(own.position(), other.position())
-                - self.half * (other.velocity() - own.velocity());
+            let now = self.cloud.offset(own.position(), other.position());
+            let x = now - self.half * (other.velocity() - own.velocity());
             let distance = x.length();
-            if distance < kernel.support {
+            if now.length() < WITHIN * kernel.support && distance < kernel.support {
                 let rate = self.rates[w as usize - self.among.start];
                 sum += other.volume() * kernel.weight(distance) * x.dot(rate * x);
             }
