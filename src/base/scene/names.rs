@@ -51,17 +51,13 @@ pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str>
     best.map(|(_, candidate)| candidate).or_else(longer).or_else(|| of_like_words(&wanted, known))
 }
 
-/// The known name all of whose words are in the wanted one, in any order, with the most words.
+/// The known name all of whose words of three letters and more are in the wanted one, in any order: that with the most of them.
 fn of_like_words<'a, S: AsRef<str>>(wanted: &str, known: &'a [S]) -> Option<&'a str> {
     let words: Vec<&str> = wanted.split('_').collect();
-    let count = |candidate: &str| {
-        let of_candidate = candidate.split('_').filter(|word| word.len() > 2);
-        of_candidate
-            .map(|word| usize::from(words.contains(&word)))
-            .try_fold(0, |n, has| (has > 0).then_some(n + has))
-    };
-    let counted = known.iter().filter_map(|name| Some((count(name.as_ref())?, name.as_ref())));
-    counted.filter(|(words, _)| *words > 0).max_by_key(|(words, _)| *words).map(|(_, name)| name)
+    let of = |candidate: &'a str| candidate.split('_').filter(|word| word.len() > 2);
+    let fits = |candidate: &&'a str| of(candidate).all(|word| words.contains(&word));
+    let with_words = known.iter().map(AsRef::as_ref).filter(|candidate| of(candidate).count() > 0);
+    with_words.filter(fits).max_by_key(|candidate| of(candidate).count())
 }
 
 #[cfg(test)]

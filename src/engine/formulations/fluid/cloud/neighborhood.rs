@@ -10,7 +10,7 @@ use crate::world::BodyId;
 
 /// Distance of the particles that move with one, over the spacing of the fluid.
 const REACH: f64 = 1.5;
-/// Distance from which on a neighbour of the start has gone elsewhere, over the same spacing: bodies that flow or wear pass it on, and elastic ones stretch to it before the fluid sees gaps.
+/// Distance from which on a neighbour of the start counts no more, over the same spacing: in a body that flows or wears it has gone elsewhere.
 const FARTHEST: f64 = 2.0 * REACH;
 
 /// The neighbours of the particles of a body at its start.
