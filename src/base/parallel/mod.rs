@@ -24,8 +24,8 @@ pub use lanes::Lanes4;
 pub use largest::Largest;
 pub use number::Number;
 pub use own::{
-    for_each_own_block, for_each_own_block_in_tasks, own_part, own_rows, share_part, share_picked,
-    share_rows, share_rows_of, share_wide_rows, sum_over_own_blocks,
+    for_each_own_block, for_each_own_block_in_tasks, others_rows, own_part, own_rows, share_part,
+    share_picked, share_rows, share_rows_of, share_wide_rows, sum_over_own_blocks,
 };
 pub use path::{HotLoop, PathError, have_same_bits, instruction_path, run_hot, take_instruction_path};
 pub use picked::Picked;

@@ -20,6 +20,12 @@ pub fn own_rows(body: &Range<usize>) -> Range<usize> {
     row(blocks.start)..row(blocks.end)
 }
 
+/// Rows of a body that other ranks compute.
+pub fn others_rows(body: &Range<usize>) -> [Range<usize>; 2] {
+    let own = own_rows(body);
+    [body.start..own.start, own.end..body.end]
+}
+
 /// Those of some rows of a body that this rank computes; an empty range within them where there are none.
 pub fn own_part(body: &Range<usize>, part: &Range<usize>) -> Range<usize> {
     let own = own_rows(body);

@@ -1,78 +1,20 @@
 //! Passes over rows in blocks: a lane is a particle, and eight of them read each neighbour once.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use super::near::part_of;
 use super::row_pass::{NearPairs, RowPass};
-use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, OwnBlock, Rows, SEEN, dot};
-use crate::parallel::{
-    BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector, for_each_block, for_each_own_block, run_blocks_on,
-    share_wide_rows,
-};
+use crate::formulations::fluid::lists::blocks::{Blocks, OwnBlock, Rows, SEEN, dot};
+use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector};
 
-/// What a pass sums for each block, or for each row.
-#[derive(Debug, Default)]
-pub struct RowSums {
-    of_blocks: Vec<Lanes8>,
-    pub(super) of_rows: Vec<DVec3>,
-}
-
-impl FlowCloud {
-    /// See [`FlowCloud::for_each_row`].
-    pub(super) fn run_in_blocks<const R: usize, const S: usize, P: RowPass<R, S>>(
-        &self,
-        blocks: &Blocks,
-        first: usize,
-        out: &mut [P::Output],
-        RowSums { of_blocks: sums, .. }: &mut RowSums,
-        pass: &P,
-    ) {
-        if out.is_empty() {
-            return;
-        }
-        let table = &blocks.lists.table;
-        let (from, to) = (self.group_at(first), self.group_at(first + out.len() - 1));
-        let Range { start, end } = table.of_fluid(from).start..table.of_fluid(to).end;
-        let stride = 3 * S;
-        sums.resize((end - start) * stride, Lanes8::ZERO);
-        for fluid in (from..=to).map(|number| table.of_fluid(number)) {
-            let lanes = &mut sums[(fluid.start - start) * stride..(fluid.end - start) * stride];
-            let of_blocks = BlockSums { lanes: &mut *lanes, stride };
-            for_each_own_block(of_blocks, &mut Vec::new(), &|k, sums: BlockSums<'_>| {
-                run_blocks_on(
-                    self.plane,
-                    RowPassBlocks { cloud: self, blocks, pass, first: fluid.start + k, sums },
-                );
-            });
-            share_wide_rows(lanes, stride);
-        }
-        let sums = &sums[..];
-        for_each_block(out, &mut Vec::new(), &|k, out: &mut [P::Output]| {
-            for (i, out) in (first + k..).zip(out) {
-                let (block, lane) = table.place(i);
-                let lanes = &sums[(block - start) * stride..][..stride];
-                let mut sums = [DVec3::ZERO; S];
-                if !pass.skips(i) {
-                    for n in 0..S {
-                        let of = |axis: usize| f64::from(lanes[3 * n + axis].0[lane]);
-                        sums[n] = DVec3::new(of(0), of(1), of(2));
-                    }
-                }
-                *out = pass.output(i, &sums);
-            }
-        });
-    }
-}
-
-struct RowPassBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
-    cloud: &'a FlowCloud,
-    blocks: &'a Blocks,
-    pass: &'a P,
-    first: usize,
-    sums: BlockSums<'a>,
+/// Some particles of a fluid, from row `first` of the cloud on, which fill whole blocks.
+pub(super) struct RowPassBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
+    pub cloud: &'a FlowCloud,
+    pub blocks: &'a Blocks,
+    pub pass: &'a P,
+    pub first: usize,
+    pub sums: &'a mut [[DVec3; S]],
 }
 
 impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBlocks<'_, R, S, P> {
@@ -80,7 +22,7 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Self { cloud, blocks: Blocks { lists, units, packed, near, hides, .. }, pass, first, sums } =
+        let Self { cloud, blocks: Blocks { lists, units, packed, near, hides }, pass, first, sums: out } =
             self;
         let unit = [a.splat(units.length.x), a.splat(units.length.y), a.splat(units.length.z)];
         let kernel = &cloud.kernel;
@@ -88,18 +30,14 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
         let least = a.splat(kernel.least_square());
         let among = pass.among();
         let first_group = cloud.group_at(among.start);
-        for (k, out) in sums.lanes.chunks_exact_mut(sums.stride).enumerate() {
-            let rows = &lists.table.rows[first + k];
+        for block in lists.table.of_rows(&(first..first + out.len())) {
+            let rows = &lists.table.rows[block];
             let mut sums = [Vector::zero(a); S];
-            let mut is_wanted = false;
-            for lane in 0..EIGHT {
-                is_wanted |= !pass.skips(rows[lane] as usize);
-            }
-            if is_wanted {
+            if rows.iter().any(|&row| !pass.skips(row as usize)) {
                 let own = OwnBlock::new(packed, rows);
                 let of_i = lanes_of(a, pass, rows);
-                let row = near.row(first + k);
-                let seen = if *hides { near.lanes(first + k) } else { &[] };
+                let row = near.row(block);
+                let seen = if *hides { near.lanes(block) } else { &[] };
                 let (mut group, mut of_j) = (first_group, [Vector::zero(a); R]);
                 for n in part_of(row, &among) {
                     let j = row[n];
@@ -133,12 +71,25 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                     pass.add(&pairs, &of_i, &of_j, &mut sums);
                 }
             }
-            for n in 0..S {
-                let Vector { x, y, z } = sums[n];
-                out[3 * n..3 * n + 3].copy_from_slice(&[x.lanes(), y.lanes(), z.lanes()]);
+            for lane in 0..EIGHT {
+                let row = rows[lane] as usize;
+                let of_lane = &mut out[row - first];
+                if pass.skips(row) {
+                    *of_lane = [DVec3::ZERO; S];
+                } else {
+                    for n in 0..S {
+                        of_lane[n] = lane_of(sums[n], lane);
+                    }
+                }
             }
         }
     }
+}
+
+/// The vector of one lane, in double precision.
+#[inline(always)]
+fn lane_of<A: EightLanes>(Vector { x, y, z }: Vector<A>, lane: usize) -> DVec3 {
+    [x, y, z].map(|axis| f64::from(axis.lanes().0[lane])).into()
 }
 
 /// What a pass reads of the particles of a block, a particle in each lane.

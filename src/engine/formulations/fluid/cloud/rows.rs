@@ -4,9 +4,15 @@ use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use super::near::{FourNear, part, take_until};
-use super::row_blocks::RowSums;
+use super::row_blocks::RowPassBlocks;
 use super::row_pass::RowPass;
-use crate::parallel::{FourLanes, HotLoop, Vector, for_each_block, own_part, run_hot_on, share_part};
+use crate::parallel::{
+    FourLanes, HotLoop, Vector, for_each_block, own_part, run_blocks_on, run_hot_on, share_part,
+};
+
+/// What a pass sums for each row, in memory that is kept.
+#[derive(Debug, Default)]
+pub struct RowSums(Vec<DVec3>);
 
 impl FlowCloud {
     /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums` is memory that is kept from step to step.
@@ -17,21 +23,8 @@ impl FlowCloud {
         sums: &mut RowSums,
         pass: &P,
     ) {
-        match &self.blocks {
-            Some(blocks) if first < self.fluid => self.run_in_blocks(blocks, first, out, sums, pass),
-            _ => self.run_by_rows(first, out, sums, pass),
-        }
-    }
-
-    fn run_by_rows<const R: usize, const S: usize, P: RowPass<R, S>>(
-        &self,
-        first: usize,
-        out: &mut [P::Output],
-        RowSums { of_rows, .. }: &mut RowSums,
-        pass: &P,
-    ) {
-        of_rows.resize(out.len() * S, DVec3::ZERO);
-        let (sums, _) = of_rows.as_chunks_mut::<S>();
+        sums.0.resize(out.len() * S, DVec3::ZERO);
+        let (sums, _) = sums.0.as_chunks_mut::<S>();
         let rows = first..first + out.len();
         for body in self.groups.iter().map(|group| &group.cloud) {
             let part = body.start.max(rows.start)..body.end.min(rows.end);
@@ -41,7 +34,13 @@ impl FlowCloud {
             }
             let of_own = &mut sums[own.start - first..own.end - first];
             for_each_block(of_own, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
-                run_hot_on(self.plane, RowPassRows { cloud: self, pass, first: own.start + start, sums });
+                let first = own.start + start;
+                match &self.blocks {
+                    Some(blocks) if first < self.fluid => {
+                        run_blocks_on(self.plane, RowPassBlocks { cloud: self, blocks, pass, first, sums });
+                    }
+                    _ => run_hot_on(self.plane, RowPassRows { cloud: self, pass, first, sums }),
+                }
             });
             let of_part = &mut sums[part.start - first..part.end - first];
             share_part(of_part.as_flattened_mut(), S, &part, body);

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::neighbors::NeighborList;
-use crate::parallel::{FourLanes, Split, own_rows};
+use crate::parallel::{FourLanes, Split};
 
 /// Rows of neighbours, each in the room that its rows in the lists ask for.
 #[derive(Debug, Default)]
@@ -68,15 +68,14 @@ impl NearRows {
         &self.indices[start..start + self.counts[i] as usize]
     }
 
-    /// Fills the rows of these bodies that other ranks look at with all that their lists hold, and the bits of each: who asks for neighbours within the support leaves out those beyond.
+    /// Fills rows that other ranks look at with all that their lists hold, and the bits of each: who asks for neighbours within the support leaves out those beyond.
     pub fn fill_others<'l>(
         &mut self,
-        bodies: impl Iterator<Item = Range<usize>>,
+        others: impl Iterator<Item = Range<usize>>,
         lists: impl Fn(usize) -> [(&'l [u32], &'l [u8]); 2],
     ) {
-        for body in bodies {
-            let own = own_rows(&body);
-            for row in (body.start..own.start).chain(own.end..body.end) {
+        for rows in others {
+            for row in rows {
                 let (start, mut used) = (self.starts[row], 0);
                 for (list, bits) in lists(row) {
                     let place = start + used..start + used + list.len();

@@ -11,7 +11,7 @@ use crate::formulations::fluid::lanes::{
 };
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
-    FourLanes, Lanes4, PlaneOrSpace, Split, for_each_own_block, run_hot_in, share_rows_of,
+    FourLanes, Lanes4, PlaneOrSpace, Split, for_each_own_block, others_rows, run_hot_in, share_rows_of,
 };
 use crate::schedule::{Run, Step, StepError};
 
@@ -54,14 +54,16 @@ impl FlowCloud {
         share_rows_of(&mut rates, self.fluids());
         share_rows_of(&mut is_close, self.fluids());
         let lists = &self.pairs;
-        near.fill_others(self.fluids(), |i| [(lists.fluid.row(i), &[]), (lists.walls.row(i), &[])]);
+        near.fill_others(self.fluids().flat_map(|fluid| others_rows(&fluid)), |i| {
+            [(lists.fluid.row(i), &[]), (lists.walls.row(i), &[])]
+        });
         (self.near, self.compression, self.is_close) = (near, rates, is_close);
     }
 }
 
 impl FlowCloud {
     /// Rows of each fluid.
-    fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
+    pub(super) fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
         self.groups.iter().map(|group| group.cloud.clone()).take_while(|rows| rows.end <= self.fluid)
     }
 }

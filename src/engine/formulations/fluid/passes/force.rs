@@ -41,18 +41,18 @@ impl Run for FlowForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let flows = self.gravity.is_some();
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        let mut blocks = if flows { cloud.blocks.take() } else { None };
+        let blocks = if flows { cloud.blocks.take() } else { None };
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let mut force = view.write_own::<Force>()?;
         let mut parts = step.resources.of_mut(self.parts);
         let groups = cloud.groups.iter().filter(|group| group.phase == self.phase);
-        for (number, (group, BodyTerms { forces, .. })) in groups.zip(parts.iter_mut()).enumerate() {
+        for (group, BodyTerms { forces, .. }) in groups.zip(parts.iter_mut()) {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
             let terms = self.terms.as_mut().filter(|terms| terms.act_on(group.body));
-            if let Some(blocks) = &mut blocks {
-                let mut pass = BlockForce { cloud: &cloud, group, number, blocks };
+            if let Some(blocks) = &blocks {
+                let pass = BlockForce { cloud: &cloud, group, blocks };
                 match terms {
                     Some(terms) => pass.run_with(terms, step, total, forces)?,
                     None => pass.run(total, forces),

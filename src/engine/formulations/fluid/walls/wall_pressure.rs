@@ -124,7 +124,12 @@ impl WallPressureRows<'_> {
                     let four =
                         Four::<D>::gather::<A, P>(a, &cloud.records, &own, as_rows(rows), &cloud.periods);
                     let square = dot(a, &four.x, &four.x);
-                    near.push(a, rows, a.below(square, limit) & ((1 << chunk.len()) - 1));
+                    let within = a.below(square, limit) & ((1 << chunk.len()) - 1);
+                    // Half of the lists of boundaries, along which fluids slide, is skin.
+                    if within == 0 {
+                        continue;
+                    }
+                    near.push(a, rows, within);
                     let distance = a.sqrt(square);
                     let volume = a.times(four.volume, MASKS[chunk.len()]);
                     let value = a.times(kernel.values(a, distance), volume);

@@ -93,7 +93,11 @@ impl BlockLists {
         counts.resize(table.rows.len(), [0; EIGHT]);
         let rows = (&mut counts[..], fluid.writer());
         for_each_block(rows, &mut Vec::new(), &|first, (counts, near): (&mut [_], NearWriter<'_>)| {
-            run_blocks_on(plane, Sift { table, candidates, places, sides, unit, limit, first, counts, near });
+            let sift = Sift { table, candidates, places, sides, unit, limit, first, counts, near };
+            match sides {
+                Some(_) => run_blocks_on(plane, Sifted::<true>(sift)),
+                None => run_blocks_on(plane, Sifted::<false>(sift)),
+            }
         });
         Ok(())
     }
@@ -118,12 +122,15 @@ struct Sift<'a> {
     near: NearWriter<'a>,
 }
 
-impl BlockLoop for Sift<'_> {
+/// `HIDDEN`: where some particles do not see what is near them.
+struct Sifted<'a, const HIDDEN: bool>(Sift<'a>);
+
+impl<const HIDDEN: bool> BlockLoop for Sifted<'_, HIDDEN> {
     type Output = ();
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Self { table, candidates, places, sides, unit, limit, first, counts, mut near } = self;
+        let Sift { table, candidates, places, sides, unit, limit, first, counts, mut near } = self.0;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let limit = a.splat(limit);
         for (k, counts) in counts.iter_mut().enumerate() {
@@ -135,10 +142,11 @@ impl BlockLoop for Sift<'_> {
                 let x = own.to(a, &places[j as usize], &unit).x;
                 let square = dot(a, &x, &x);
                 let bits = a.below(square, limit);
-                match sides {
-                    Some((sides, walls)) => row.push_if::<true>(j, who_sees(sides, walls, rows, j, bits)),
-                    None => row.push_if::<false>(j, bits),
-                }
+                let bits = match sides {
+                    Some((sides, walls)) if HIDDEN => who_sees(sides, walls, rows, j, bits),
+                    _ => bits,
+                };
+                row.push_if::<HIDDEN>(j, bits);
                 count = a.plus(count, a.where_below(square, limit, a.same(1.0)));
             }
             row.close();

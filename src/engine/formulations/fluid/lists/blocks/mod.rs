@@ -6,8 +6,6 @@ mod record;
 
 mod seen;
 
-mod sums;
-
 mod lists;
 
 mod memory;
@@ -16,5 +14,4 @@ pub use lists::{BlockLists, ListSources};
 pub use memory::Blocks;
 pub use record::{Other, OwnBlock, Packed, Units, dot, pack, pack_states};
 pub use seen::SEEN;
-pub use sums::BlockSums;
-pub use table::{BlockTable, Rows};
+pub use table::{OfBlocks, Rows};

@@ -1,18 +1,19 @@
 //! Which particles are a block: eight that are near each other.
 //!
-//! The particles of a body are sorted into cells of some spacings, and runs of them are halved along the longest side of their box until eight are left: compact boxes have few
-//! neighbours in common. They are rebuilt with the lists. A box stays smaller than the support; where particles are far apart, lanes of a block are left without one.
+//! The rows of a fluid lie along a space-filling curve. Those that loops take at a time, 64 in sequence, are halved along the longest side of their box until eight are left:
+//! compact boxes have few neighbours in common, and the sums of a block are those of rows of one loop. Blocks are made with the lists.
+
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::neighbors::{Buckets, Periodic, sort_into_cells};
-use crate::parallel::EIGHT;
+use crate::neighbors::Periodic;
+use crate::parallel::{BLOCK, EIGHT, Split};
 
-/// Particles that are halved together.
-const RUN: usize = 512;
-/// Length of a cell over the support: a cell has some sixty particles.
-const CELL: f64 = 1.5;
+/// Length of a box over the support, at most; where particles are farther apart, lanes of a block are left without one. Two halves of a block have as many pairs as the whole, or
+/// more; only the search around a box is longer the larger it is.
+const LONGEST: f64 = 2.0;
 
 /// Rows of the particles of a block; lanes without a particle repeat the last one.
 pub type Rows = [u32; EIGHT];
@@ -22,26 +23,22 @@ pub type Rows = [u32; EIGHT];
 pub struct BlockTable {
     /// Particles of each block, ascending.
     pub rows: Vec<Rows>,
-    /// Where the blocks of each fluid end.
-    pub ends: Vec<usize>,
-    /// Where each particle is: eight times its block, and its lane.
-    places: Vec<u32>,
     /// Middle of the box of each block, m, and half of its edges.
     pub centers: Vec<DVec3>,
     pub halves: Vec<DVec3>,
-    cells: Buckets,
-    runs: Vec<RunMemory>,
+    /// Rows of each fluid, and where its part of `starts` is.
+    fluids: Vec<(Range<usize>, usize)>,
+    /// For every 64 rows of each fluid, where their blocks start, and after those of a fluid where they end.
+    starts: Vec<usize>,
+    /// Where each particle is: eight times its block, and its lane.
+    places: Vec<u32>,
+    /// Rows of the particles, block by block, and for every 64 of them a bit for each that is the last of its block.
+    order: Vec<u32>,
+    lasts: Vec<u64>,
 }
 
-/// Memory for a run.
-#[derive(Debug, Default)]
-struct RunMemory {
-    points: Vec<RunPoint>,
-    blocks: Vec<Rows>,
-}
-
-/// A particle of a run; its place is measured from the first one.
-#[derive(Clone, Copy, Debug)]
+/// A particle; its place is measured from one beside it.
+#[derive(Clone, Copy, Debug, Default)]
 struct RunPoint {
     x: Vec3,
     row: u32,
@@ -51,11 +48,13 @@ impl BlockTable {
     /// Makes the blocks of fluids whose rows end here from the positions of their particles, m, which are finite.
     pub fn build(&mut self, positions: &[DVec3], fluids: &[u32], support: f64, periodic: &Periodic) {
         self.rows.clear();
-        self.ends.clear();
+        self.starts.clear();
+        self.fluids.clear();
         let mut first = 0;
         for end in fluids.iter().map(|&end| end as usize) {
+            self.fluids.push((first..end, self.starts.len()));
             self.add_fluid(&positions[first..end], first as u32, support, periodic);
-            self.ends.push(self.rows.len());
+            self.starts.push(self.rows.len());
             first = end;
         }
         self.places.resize(first, 0);
@@ -80,24 +79,31 @@ impl BlockTable {
     }
 
     fn add_fluid(&mut self, positions: &[DVec3], first: u32, support: f64, periodic: &Periodic) {
-        let Self { rows, cells, runs, .. } = self;
-        sort_into_cells(cells, positions, CELL * support, periodic);
-        let sorted = &cells.rows;
-        let count = positions.len().div_ceil(RUN);
-        runs.resize_with(runs.len().max(count), RunMemory::default);
-        runs[..count].par_iter_mut().zip(sorted.par_chunks(RUN)).for_each(|(run, sorted)| {
-            let RunMemory { points, blocks } = run;
-            let origin = positions[sorted[0] as usize];
-            let point = |&row: &u32| {
-                let x = periodic.minimal_image(positions[row as usize] - origin);
-                RunPoint { x: x.as_vec3(), row: first + row }
-            };
-            points.clear();
-            points.extend(sorted.iter().map(point));
-            blocks.clear();
-            halve(points, support as f32, blocks);
+        let Self { rows, starts, order, lasts, .. } = self;
+        order.resize(positions.len(), 0);
+        lasts.resize(positions.len().div_ceil(BLOCK), 0);
+        let runs = order.par_chunks_mut(BLOCK).zip(&mut lasts[..]).with_min_len(16);
+        runs.zip(positions.par_chunks(BLOCK)).enumerate().for_each(|(n, ((order, lasts), positions))| {
+            let mut points = [RunPoint::default(); BLOCK];
+            let points = &mut points[..positions.len()];
+            let row = first + (n * BLOCK) as u32;
+            for (k, point) in points.iter_mut().enumerate() {
+                let x = periodic.minimal_image(positions[k] - positions[0]);
+                *point = RunPoint { x: x.as_vec3(), row: row + k as u32 };
+            }
+            *lasts = 0;
+            halve(points, (LONGEST * support) as f32, 0, lasts);
+            order.iter_mut().zip(points).for_each(|(row, point)| *row = point.row);
         });
-        runs[..count].iter().for_each(|run| rows.extend_from_slice(&run.blocks));
+        for (run, lasts) in order.chunks(BLOCK).zip(lasts) {
+            starts.push(rows.len());
+            let mut rest = run;
+            while !rest.is_empty() {
+                let last = (*lasts >> (run.len() - rest.len())).trailing_zeros() as usize;
+                rows.push(std::array::from_fn(|lane| rest[lane.min(last)]));
+                rest = &rest[last + 1..];
+            }
+        }
     }
 
     /// Number of particles.
@@ -112,19 +118,52 @@ impl BlockTable {
         (place / EIGHT, place % EIGHT)
     }
 
-    /// The blocks of the fluid of that number.
-    pub fn of_fluid(&self, n: usize) -> std::ops::Range<usize> {
-        (if n == 0 { 0 } else { self.ends[n - 1] })..self.ends[n]
+    /// The blocks of some rows of a fluid, which start and end with 64 rows of it, or at its end.
+    #[inline]
+    pub fn of_rows(&self, rows: &Range<usize>) -> Range<usize> {
+        let starts = self.starts_of(rows);
+        starts[0]..starts[starts.len() - 1]
     }
 
-    /// The blocks of each fluid.
-    pub fn fluids(&self) -> impl Iterator<Item = std::ops::Range<usize>> + Clone {
-        (0..self.ends.len()).map(|n| self.of_fluid(n))
+    /// For every 64 of such rows, where their blocks start, and where the last end.
+    fn starts_of(&self, rows: &Range<usize>) -> &[usize] {
+        let n = self.fluids.partition_point(|(fluid, _)| fluid.start <= rows.start) - 1;
+        let (fluid, first) = &self.fluids[n];
+        let run = |row: usize| first + (row - fluid.start).div_ceil(BLOCK);
+        &self.starts[run(rows.start)..=run(rows.end)]
+    }
+
+    /// What belongs to the blocks of a fluid, to be cut where its rows are.
+    pub fn beside<T>(&self, fluid: &Range<usize>, blocks: T) -> OfBlocks<'_, T> {
+        OfBlocks { blocks, rows: fluid.len(), starts: self.starts_of(fluid) }
     }
 }
 
-/// Halves points until eight are left, in a box of edges up to `limit`, m.
-fn halve(points: &mut [RunPoint], limit: f32, blocks: &mut Vec<Rows>) {
+/// What belongs to the blocks of some rows, which is cut where the rows are.
+pub struct OfBlocks<'a, T> {
+    pub blocks: T,
+    rows: usize,
+    starts: &'a [usize],
+}
+
+impl<T: Split> Split for OfBlocks<'_, T> {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let Self { blocks, rows, starts } = self;
+        let run = at.div_ceil(BLOCK);
+        let (blocks, behind) = blocks.split(starts[run] - starts[0]);
+        (
+            Self { blocks, rows: at, starts: &starts[..=run] },
+            Self { blocks: behind, rows: rows - at, starts: &starts[run..] },
+        )
+    }
+}
+
+/// Halves points, of which some come before these, until eight are left, in a box of edges up to `limit`, m, and writes a bit for the last of each block.
+fn halve(points: &mut [RunPoint], limit: f32, before: usize, lasts: &mut u64) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in &*points {
         (low, high) = (low.min(point.x), high.max(point.x));
@@ -133,8 +172,7 @@ fn halve(points: &mut [RunPoint], limit: f32, blocks: &mut Vec<Rows>) {
     let longest = extent.max_element();
     if points.len() <= EIGHT && longest <= limit {
         points.sort_unstable_by_key(|point| point.row);
-        let last = points.len() - 1;
-        blocks.push(std::array::from_fn(|lane| points[lane.min(last)].row));
+        *lasts |= 1 << (before + points.len() - 1);
         return;
     }
     let axis = (0..3).find(|&axis| extent[axis] == longest).unwrap_or(0);
@@ -142,13 +180,14 @@ fn halve(points: &mut [RunPoint], limit: f32, blocks: &mut Vec<Rows>) {
     let middle = if points.len() > EIGHT { half.next_multiple_of(EIGHT).min(points.len() - 1) } else { half };
     points.select_nth_unstable_by(middle, |a, b| a.x[axis].total_cmp(&b.x[axis]).then(a.row.cmp(&b.row)));
     let (left, right) = points.split_at_mut(middle);
-    halve(left, limit, blocks);
-    halve(right, limit, blocks);
+    halve(left, limit, before, lasts);
+    halve(right, limit, before + middle, lasts);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::morton_order;
 
     /// A lattice of 12 x 12 x 12 at a spacing of 1 with some disorder, and two particles far away.
     fn places() -> Vec<DVec3> {
@@ -162,15 +201,21 @@ mod tests {
 
     #[test]
     fn every_particle_has_one_place_in_a_compact_block_of_its_body() {
-        let (positions, mut table) = (places(), BlockTable::default());
+        let (unsorted, mut table) = (places(), BlockTable::default());
+        let order = morton_order(&unsorted[..1728], 1.0);
+        let sorted = order.iter().map(|&n| unsorted[n as usize]).chain(unsorted[1728..].iter().copied());
+        let positions: Vec<DVec3> = sorted.collect();
         table.build(&positions, &[700, 1730], 2.6, &Periodic::NONE);
         for row in 0..positions.len() {
             let (block, lane) = table.place(row);
             assert_eq!(table.rows[block][lane] as usize, row);
-            assert!(table.of_fluid(usize::from(row >= 700)).contains(&block));
+            let body = if row < 700 { 0..700 } else { 700..1730 };
+            let start = row - (row - body.start) % BLOCK;
+            assert!(table.of_rows(&(start..(start + BLOCK).min(body.end))).contains(&block));
+            assert!(table.of_rows(&body).contains(&block));
         }
         let longest = |half: &DVec3| 2.0 * half.max_element();
-        assert!(table.halves.iter().all(|half| longest(half) <= 2.6 + 1e-6));
+        assert!(table.halves.iter().all(|half| longest(half) <= 2.0 * 2.6 + 1e-6));
         let mean = table.halves.iter().map(longest).sum::<f64>() / table.rows.len() as f64;
         assert!(mean < 2.0 && table.rows.len() < 1730 / 6, "{mean} {}", table.rows.len());
         // Each box holds its particles.

@@ -1,20 +1,27 @@
 //! First pass over pairs, in blocks: who is within the support, and the rate of compression (`passes::compression`).
 
+use std::ops::Range;
+
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OwnBlock, Packed, SEEN, dot, pack};
+use crate::formulations::fluid::lists::blocks::{
+    BlockLists, Blocks, OfBlocks, OwnBlock, Packed, SEEN, dot, pack,
+};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
-    BlockLoop, EightLanes, Lanes8, Split, for_each_block, for_each_own_block, run_blocks_on, share_rows_of,
+    BlockLoop, EIGHT, EightLanes, Lanes8, Split, for_each_own_block, others_rows, run_blocks_on,
+    share_rows_of,
 };
 
 impl FlowCloud {
     /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
     pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
-        let Blocks { lists, units, packed, near, rates, close, hides, .. } = blocks;
+        let Blocks { lists, units, packed, near, hides } = blocks;
         pack(packed, &self.records, units);
-        rates.resize(lists.table.rows.len(), Lanes8::ZERO);
-        close.resize(lists.table.rows.len(), 0);
+        let (mut rates, mut is_close) =
+            (std::mem::take(&mut self.compression), std::mem::take(&mut self.is_close));
+        rates.resize(self.fluid, 0.0);
+        is_close.resize(self.fluid, 0);
         let pass = Compress {
             packed,
             lists,
@@ -23,32 +30,28 @@ impl FlowCloud {
             reach: self.reach * self.reach,
             limit: self.kernel.support * self.kernel.support,
             least: self.kernel.least_square(),
+            scale: self.kernel.weight_scale(),
             plane: self.plane,
         };
-        let rows = (&mut rates[..], &mut close[..], near.writer());
+        let (rows, near_rows) = ((&mut rates[..], &mut is_close[..]), near.writer());
         if *hides {
-            self.kernel.run(AllCompressionBlocks::<true> { pass, rows });
+            self.kernel.run(AllCompressionBlocks::<true, _> { pass, fluids: self.fluids(), rows, near_rows });
         } else {
-            self.kernel.run(AllCompressionBlocks::<false> { pass, rows });
+            self.kernel.run(AllCompressionBlocks::<false, _> {
+                pass,
+                fluids: self.fluids(),
+                rows,
+                near_rows,
+            });
         }
-        share_rows_of(rates, lists.table.fluids());
-        share_rows_of(close, lists.table.fluids());
-        near.fill_others(lists.table.fluids(), |block| {
+        share_rows_of(&mut rates, self.fluids());
+        share_rows_of(&mut is_close, self.fluids());
+        let others = self.fluids().flat_map(|fluid| others_rows(&fluid));
+        near.fill_others(others.map(|rows| lists.table.of_rows(&rows)), |block| {
             let seen = if *hides { lists.seen(block) } else { Default::default() };
             [(lists.fluid.row(block), seen.0), (lists.walls.row(block), seen.1)]
         });
-        let factor = self.kernel.weight_scale();
-        let (rates, close, table) = (&*rates, &*close, &lists.table);
-        self.compression.resize(self.fluid, 0.0);
-        self.is_close.resize(self.fluid, 0);
-        let rows = (&mut self.compression[..], &mut self.is_close[..]);
-        for_each_block(rows, &mut Vec::new(), &|first, (rate, is_close): (&mut [f64], &mut [u8])| {
-            for (k, (rate, is_close)) in rate.iter_mut().zip(is_close).enumerate() {
-                let (block, lane) = table.place(first + k);
-                *rate = factor * f64::from(rates[block].0[lane]);
-                *is_close = close[block] >> lane & 1;
-            }
-        });
+        (self.compression, self.is_close) = (rates, is_close);
         if blocks.hides {
             self.pack_rows(blocks);
         }
@@ -71,27 +74,36 @@ struct Compress<'a> {
     reach: f64,
     limit: f64,
     least: f64,
+    /// Weight at r = 0.
+    scale: f64,
     plane: bool,
 }
 
 /// `HIDDEN`: where some particles do not see what is near them; those who do get a bit each.
-struct AllCompressionBlocks<'a, const HIDDEN: bool> {
+struct AllCompressionBlocks<'a, const HIDDEN: bool, F> {
     pass: Compress<'a>,
-    rows: BlockRows<'a>,
+    fluids: F,
+    rows: (&'a mut [f64], &'a mut [u8]),
+    near_rows: NearWriter<'a>,
 }
 
-/// Rates of compression, bits of the particles close to a boundary, and neighbours, of some blocks.
-type BlockRows<'a> = (&'a mut [Lanes8], &'a mut [u8], NearWriter<'a>);
+/// Rates of compression of some particles, whether each is close to a boundary, and the neighbours of their blocks.
+type BlockRows<'a> = (&'a mut [f64], &'a mut [u8], OfBlocks<'a, NearWriter<'a>>);
 
-impl<const HIDDEN: bool> KernelLoop for AllCompressionBlocks<'_, HIDDEN> {
+impl<const HIDDEN: bool, F: Iterator<Item = Range<usize>>> KernelLoop
+    for AllCompressionBlocks<'_, HIDDEN, F>
+{
     type Output = ();
 
     fn run<K: PairShape>(self, kernel: K) {
-        let Self { pass, rows } = self;
-        let mut rest = rows;
-        for fluid in pass.lists.table.fluids() {
-            let (rows, behind) = rest.split(fluid.len());
-            rest = behind;
+        let Self { pass, fluids, mut rows, mut near_rows } = self;
+        let table = &pass.lists.table;
+        for fluid in fluids {
+            let ((rates, close), behind) = rows.split(fluid.len());
+            rows = behind;
+            let (near, behind) = near_rows.split(table.of_rows(&fluid).len());
+            near_rows = behind;
+            let rows = (rates, close, table.beside(&fluid, near));
             for_each_own_block(rows, &mut Vec::new(), &|first, rows: BlockRows<'_>| {
                 let first = fluid.start + first;
                 run_blocks_on(pass.plane, CompressionBlocks::<K, HIDDEN> { pass, kernel, first, rows });
@@ -112,15 +124,16 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) {
-        let Self { pass, kernel, first, rows: (rates, close, mut writer) } = self;
-        let Compress { packed, lists, unit, back, reach, limit, least: smallest, .. } = pass;
+        let Self { pass, kernel, first, rows: (rates, is_close, near) } = self;
+        let Compress { packed, lists, unit, back, reach, limit, least: smallest, scale, .. } = pass;
+        let mut writer = near.blocks;
         let unit = [a.splat(unit[0]), a.splat(unit[1]), a.splat(unit[2])];
         let (back, limit, smallest) = (a.splat(back), a.splat(limit), a.splat(smallest));
-        for (k, (rate, close)) in rates.iter_mut().zip(close).enumerate() {
-            let block = first + k;
+        for (k, block) in lists.table.of_rows(&(first..first + rates.len())).enumerate() {
+            let rows = &lists.table.rows[block];
             let mut near = writer.row(k);
             let mut least = a.splat(f64::INFINITY);
-            let own = OwnBlock::new(packed, &lists.table.rows[block]);
+            let own = OwnBlock::new(packed, rows);
             let mut sums = RateSums { packed, kernel, own, unit, back, limit, smallest, sum: Lanes8::ZERO };
             let (fluid, walls) = (lists.fluid.row(block), lists.walls.row(block));
             if HIDDEN {
@@ -140,7 +153,12 @@ impl<K: PairShape, const HIDDEN: bool> BlockLoop for CompressionBlocks<'_, K, HI
                 }
             }
             near.close();
-            (*rate, *close) = (sums.sum, a.below(least, a.splat(reach)) as u8);
+            let close = a.below(least, a.splat(reach));
+            for lane in 0..EIGHT {
+                let row = rows[lane] as usize - first;
+                rates[row] = scale * f64::from(sums.sum.0[lane]);
+                is_close[row] = (close >> lane & 1) as u8;
+            }
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use std::cell::RefCell;
 
-use super::land::{FIXED, Landing, stride};
+use super::super::pair_force::ForceRows;
+use super::land::land;
 use super::pairs::{BlockForces, PairsOfBlock, hide};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{BlockSums, Blocks, OwnBlock, Packed};
+use crate::formulations::fluid::lists::blocks::{Blocks, OwnBlock, Packed};
 use crate::pair::{AllSums, BlockPairs, BoundTerms, CHUNK, PhaseTerms, RateBounds, TermRows, TermSums};
-use crate::parallel::{BlockLoop, EightLanes, Lanes8, for_each_own_block_in_tasks, run_blocks_on};
+use crate::parallel::{BlockLoop, EightLanes, Split, for_each_own_block_in_tasks, run_blocks_on};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 use glam::DVec3;
@@ -18,81 +19,52 @@ thread_local! {
     static PAIRS: RefCell<BlockPairs> = const { RefCell::new(BlockPairs::EMPTY) };
 }
 
-/// Tasks of 64 blocks are worth handing over to another thread.
-const PER_TASK: usize = 1;
+/// Tasks of 512 particles are worth handing over to another thread.
+const PER_TASK: usize = 8;
 
-/// The pass over the particles of the fluid of that number.
+/// The pass over the particles of a fluid.
 pub struct BlockForce<'a> {
     pub cloud: &'a FlowCloud,
     pub group: &'a Group,
-    pub number: usize,
-    pub blocks: &'a mut Blocks,
+    pub blocks: &'a Blocks,
 }
 
 impl BlockForce<'_> {
-    /// Writes the forces on all particles of the fluid and their parts.
-    pub fn run(&mut self, total: &mut [Force], parts: &mut [DVec3]) {
-        self.sum(None, 0);
-        self.land(TermRows::without_terms(total), parts);
+    /// Writes the forces on the particles that this rank computes, and their parts.
+    pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
+        self.sum(None, ForceRows { written: TermRows::without_terms(total), parts }, &mut Vec::new());
     }
 
     /// The same with the pair terms of the body.
     pub fn run_with(
-        &mut self,
+        &self,
         terms: &mut PhaseTerms,
         step: &mut Step<'_>,
         total: &mut [Force],
         parts: &mut [DVec3],
     ) -> Result<(), StepError> {
         let body = self.group.body;
-        let fastest = terms.on_body(step, body, total, &mut |terms, written, _| {
-            let fastest = self.sum(Some(terms), written.terms());
-            self.land(written, parts);
-            fastest
+        let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
+            self.sum(Some(terms), ForceRows { written, parts: &mut *parts }, sums)
         })?;
         fastest.limit(step, body);
         Ok(())
     }
 
-    fn sum(&mut self, terms: Option<&BoundTerms<'_>>, count: usize) -> RateBounds {
-        let range = self.blocks.lists.table.of_fluid(self.number);
-        let stride = stride(count);
-        let Blocks { forces, fastest, .. } = &mut *self.blocks;
-        let (mut forces, mut sums) = (std::mem::take(forces), std::mem::take(fastest));
-        forces.resize(range.len() * stride, Lanes8::ZERO);
-        let pass = Pass { cloud: self.cloud, group: self.group, blocks: self.blocks, terms, count };
-        let rows = BlockSums { lanes: &mut forces, stride };
-        let fastest =
-            self.cloud.kernel.run(AllForceBlocks { pass, first: range.start, rows, sums: &mut sums });
-        self.blocks.make_halo(self.number, &self.group.cloud);
-        let halo = &self.blocks.halos[self.number];
-        halo.fill_bytes(bytemuck::cast_slice_mut(&mut forces), stride * size_of::<Lanes8>());
-        (self.blocks.forces, self.blocks.fastest) = (forces, sums);
-        fastest
+    fn sum(
+        &self,
+        terms: Option<&BoundTerms<'_>>,
+        rows: ForceRows<'_>,
+        sums: &mut Vec<RateBounds>,
+    ) -> RateBounds {
+        self.cloud.kernel.run(AllForceBlocks { pass: self, terms, rows, sums })
     }
-
-    fn land(&self, written: TermRows<'_>, parts: &mut [DVec3]) {
-        let Blocks { lists, forces, .. } = &*self.blocks;
-        let first = lists.table.of_fluid(self.number).start;
-        let first_row = self.group.cloud.start;
-        let plane = self.cloud.plane;
-        Landing { table: &lists.table, first_block: first, first_row, forces, plane }.run(written, parts);
-    }
-}
-
-/// What the pass reads.
-struct Pass<'a> {
-    cloud: &'a FlowCloud,
-    group: &'a Group,
-    blocks: &'a Blocks,
-    terms: Option<&'a BoundTerms<'a>>,
-    count: usize,
 }
 
 struct AllForceBlocks<'a> {
-    pass: Pass<'a>,
-    first: usize,
-    rows: BlockSums<'a>,
+    pass: &'a BlockForce<'a>,
+    terms: Option<&'a BoundTerms<'a>>,
+    rows: ForceRows<'a>,
     sums: &'a mut Vec<RateBounds>,
 }
 
@@ -100,21 +72,23 @@ impl KernelLoop for AllForceBlocks<'_> {
     type Output = RateBounds;
 
     fn run<K: PairShape>(self, kernel: K) -> RateBounds {
-        let Self { pass, first, rows, sums } = self;
+        let Self { pass, terms, rows, sums } = self;
         for_each_own_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
             PAIRS.with_borrow_mut(|pairs| {
-                let first = first + row;
-                run_blocks_on(pass.cloud.plane, ForceBlocks { pass: &pass, kernel, first, rows, pairs })
+                let first = pass.group.cloud.start + row;
+                run_blocks_on(pass.cloud.plane, ForceBlocks { pass, terms, kernel, first, rows, pairs })
             })
         })
     }
 }
 
 struct ForceBlocks<'a, K> {
-    pass: &'a Pass<'a>,
+    pass: &'a BlockForce<'a>,
+    terms: Option<&'a BoundTerms<'a>>,
     kernel: K,
+    /// First row in the cloud.
     first: usize,
-    rows: BlockSums<'a>,
+    rows: ForceRows<'a>,
     pairs: &'a mut BlockPairs,
 }
 
@@ -123,23 +97,23 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) -> RateBounds {
-        let Self { pass, kernel, first, rows: BlockSums { lanes, stride }, pairs } = self;
-        let Pass { cloud, group, blocks, terms, count } = *pass;
-        let Blocks { lists, units, packed, near, hides, .. } = blocks;
+        let Self { pass: BlockForce { cloud, group, blocks }, terms, kernel, first, mut rows, pairs } = self;
+        let Blocks { lists, units, packed, near, hides } = blocks;
+        let count = rows.written.terms();
         let packed: &[Packed] = packed;
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
         let factor = cloud.viscosities.factor();
         let mut fastest = RateBounds::default();
         let mut of_terms: AllSums = Default::default();
-        for k in 0..lanes.len() / stride {
-            let rows = &lists.table.rows[first + k];
-            let own = OwnBlock::new(packed, rows);
-            let mut of_block = PairsOfBlock::new(a, (packed, kernel, units), own, cloud, rows);
-            pairs.begin(*rows, own.volume, cloud.kernel.support);
+        for block in lists.table.of_rows(&(first..first + rows.rows())) {
+            let particles = &lists.table.rows[block];
+            let own = OwnBlock::new(packed, particles);
+            let mut of_block = PairsOfBlock::new(a, (packed, kernel, units), own, cloud, particles);
+            pairs.begin(*particles, own.volume, cloud.kernel.support);
             of_terms[..count].fill(TermSums::default());
             let mut sums = BlockForces::ZERO;
-            let mut rest = near.row(first + k);
-            let mut seen = if *hides { near.lanes(first + k) } else { &[] };
+            let mut rest = near.row(block);
+            let mut seen = if *hides { near.lanes(block) } else { &[] };
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
                 if rest.is_empty() {
@@ -166,18 +140,10 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                     }
                 }
             }
-            let out = &mut lanes[k * stride..(k + 1) * stride];
-            out[..3].copy_from_slice(&sums.pressure);
-            out[3..6].copy_from_slice(&sums.viscous);
-            out[6..FIXED].copy_from_slice(&sums.wall);
-            let mut density = Lanes8::ZERO;
-            for (n, term) in of_terms[..count].iter().enumerate() {
-                out[FIXED + 3 * n..FIXED + 3 * (n + 1)].copy_from_slice(&term.force);
-                density = a.plus(density, term.density);
-            }
+            let of_terms = &of_terms[..count];
+            land(&sums, of_terms, (particles, first), cloud.plane, &mut rows);
             if count > 0 {
-                out[stride - 1] = density;
-                fastest.add_block(&of_terms[..count]);
+                fastest.add_block(of_terms);
             }
         }
         fastest
