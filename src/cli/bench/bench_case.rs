@@ -74,6 +74,13 @@ const DAM_PLATE: (&str, &str) =
 const ABRASIVE: (&str, &str) =
     ("assets/scenes/abrasive_flow.ron", include_str!("../../../assets/scenes/abrasive_flow.ron"));
 
+const CHANNEL_FLUID: (&str, &str) =
+    ("benches/scenes/channel_fluid.ron", include_str!("../../../benches/scenes/channel_fluid.ron"));
+const CHANNEL_FLOOR: (&str, &str) =
+    ("benches/scenes/channel_floor.ron", include_str!("../../../benches/scenes/channel_floor.ron"));
+const CHANNEL_GRAINS: (&str, &str) =
+    ("benches/scenes/channel_grains.ron", include_str!("../../../benches/scenes/channel_grains.ron"));
+
 /// Spacing of a lattice in the unit cube or square, m.
 fn cube(particles: f64) -> f64 {
     1.0 / particles.cbrt().round()
@@ -257,6 +264,27 @@ pub const BENCH_CASES: &[BenchCase] = &[
         name: "abrasive",
         title: "abrasive flow in a plane: fluid, grains, a wearing Eulerian solid, as the shipped scene has them",
         scene: ABRASIVE,
+        spacing: channel,
+        set: &[("parameters.dx", Spacing)],
+    },
+    BenchCase {
+        name: "abrasive-fluid",
+        title: "the fluid of abrasive alone, its floor a wall: a part, at the spacing of the whole",
+        scene: CHANNEL_FLUID,
+        spacing: channel,
+        set: &[("parameters.dx", Spacing)],
+    },
+    BenchCase {
+        name: "abrasive-floor",
+        title: "the floor of abrasive alone, an Eulerian solid that can fail",
+        scene: CHANNEL_FLOOR,
+        spacing: channel,
+        set: &[("parameters.dx", Spacing)],
+    },
+    BenchCase {
+        name: "abrasive-grains",
+        title: "the grains of abrasive alone over a rigid floor, with their contacts",
+        scene: CHANNEL_GRAINS,
         spacing: channel,
         set: &[("parameters.dx", Spacing)],
     },

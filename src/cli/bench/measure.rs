@@ -38,7 +38,7 @@ pub struct SetUp<'a> {
 pub struct Measurement {
     /// Name of the case.
     pub case: String,
-    /// Number of particles, without those of walls.
+    /// Number of particles, without those of walls; of all where none has neighbours.
     pub particles: usize,
     /// Mean number of neighbours.
     pub neighbors: f64,
@@ -48,6 +48,8 @@ pub struct Measurement {
     pub threads: u16,
     /// Steps that were timed.
     pub steps: u64,
+    /// Sub-steps of stiff bodies in each of them; none where all move by one clock.
+    pub sub_steps: Option<f64>,
     /// Their wall time, s.
     pub seconds: f64,
     /// Share of the threads' time in which they ran: below one where other programs took processors away. None where the
@@ -102,7 +104,7 @@ impl Measurement {
         while sim.clock().step < WARM_UP {
             sim.step().map_err(|error| failed(&error))?;
         }
-        let (first, timers) = (sim.clock().step, timers(&sim));
+        let (first, timers, short) = (sim.clock().step, timers(&sim), short_steps(&sim));
         let (processor, traffic) = (processor_seconds(), ranks::traffic());
         let begun = Instant::now();
         while ranks::any(begun.elapsed() < least) || sim.clock().step == first {
@@ -123,6 +125,7 @@ impl Measurement {
             ranks,
             threads,
             steps,
+            sub_steps: short_steps(&sim).zip(short).map(|(now, before)| per_step(before, now)),
             seconds,
             busy: spent.map(|spent| spent / (seconds * f64::from(threads))),
             particle_steps_per_second: rate,
@@ -135,6 +138,11 @@ impl Measurement {
             machine: machine::describe(),
         })
     }
+}
+
+/// Sub-steps since time 0, where there are any.
+fn short_steps(sim: &Simulation) -> Option<u64> {
+    sim.sub_steps().map(|(_, total)| total)
 }
 
 fn timers(sim: &Simulation) -> Vec<Duration> {
@@ -151,7 +159,7 @@ fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<System> {
         .collect()
 }
 
-/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not counted.
+/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not counted, and rigid bodies where there are others.
 fn moving(sim: &Simulation) -> Result<(usize, f64), Failure> {
     let (mut sum, mut particles) = (0.0, 0);
     for k in 0..sim.world().bodies().len() {
@@ -161,5 +169,8 @@ fn moving(sim: &Simulation) -> Result<(usize, f64), Failure> {
             particles += count;
         }
     }
-    Ok((particles, if particles > 0 { sum / particles as f64 } else { 0.0 }))
+    Ok(match particles {
+        0 => (sim.world().bodies().iter().map(|body| body.rows.len()).sum(), 0.0),
+        _ => (particles, sum / particles as f64),
+    })
 }

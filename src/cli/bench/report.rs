@@ -10,14 +10,14 @@ use super::measure::Measurement;
 
 /// The benchmarks, one a line.
 pub fn list(cases: &[&BenchCase]) -> String {
-    cases.iter().map(|case| format!("{:<14} {}\n", case.name, case.title)).collect()
+    cases.iter().map(|case| format!("{:<15} {}\n", case.name, case.title)).collect()
 }
 
 /// What is measured, and on what.
 pub fn heading(machine: &Machine) -> String {
     format!(
         "{}, {}, meshless {}\n\
-         {:<14} {:>10} {:>5} {:>7} {:>8} {:>12} {:>14} {:>6} {:>12} {:>11} {:>14}",
+         {:<15} {:>10} {:>5} {:>7} {:>8} {:>9} {:>12} {:>14} {:>6} {:>12} {:>11} {:>14}",
         machine.processor,
         machine.instruction_path,
         machine.version,
@@ -26,6 +26,7 @@ pub fn heading(machine: &Machine) -> String {
         "ranks",
         "threads",
         "neighb.",
+        "sub-steps",
         "M p-steps/s",
         "M pairs/s",
         "busy",
@@ -39,18 +40,20 @@ pub fn heading(machine: &Machine) -> String {
 pub fn text(measured: &Measurement, profile: bool) -> String {
     let bytes = measured.bytes_per_particle.map_or_else(|| "-".to_owned(), |bytes| format!("{bytes:.0}"));
     let busy = measured.busy.map_or_else(|| "-".to_owned(), |busy| format!("{:.0} %", 100.0 * busy));
+    let sub_steps = measured.sub_steps.map_or_else(|| "-".to_owned(), |count| format!("{count:.2}"));
     let (bytes_per_step, exchanges) = (1e-6 * measured.bytes_per_step, measured.exchanges_per_step);
     let exchanged = match measured.ranks {
         1 => "-".to_owned(),
         _ => format!("{bytes_per_step:.2} in {exchanges:.0}"),
     };
     let mut text = format!(
-        "{:<14} {:>10} {:>5} {:>7} {:>8.1} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2} {:>14}",
+        "{:<15} {:>10} {:>5} {:>7} {:>8.1} {:>9} {:>12.3} {:>14.1} {:>6} {:>12} {:>11.2} {:>14}",
         measured.case,
         counted(measured.particles as f64, "").trim_end(),
         measured.ranks,
         measured.threads,
         measured.neighbors,
+        sub_steps,
         1e-6 * measured.particle_steps_per_second,
         1e-6 * measured.directed_pairs_per_second,
         busy,
