@@ -1,4 +1,5 @@
-//! Too much hourglass energy: the control carries load in place of the stress, and the result is too stiff.
+//! Too much hourglass energy: the control carries load in place of the stress, and the result is too stiff; or its viscous part takes the energy that
+//! should deform the body.
 
 use serde::{Deserialize, Serialize};
 
@@ -72,18 +73,30 @@ impl HourglassShare {
             self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume);
         let densest = per_volume.fold(0.0, f64::max);
         for (k, body) in step.world.bodies().iter().enumerate() {
-            let ((hourglass, time), internal) = (self.most[k], self.largest_internal[k]);
-            let small = hourglass <= SHARE * internal || hourglass <= LEAST * self.largest[k];
-            if internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] || small {
+            let internal = self.largest_internal[k];
+            if internal <= 0.0 || internal <= REACHED * densest * self.volumes[k] {
                 continue;
             }
-            step.warnings.push(format!(
-                "the hourglass energy of body `{}` is {:.0} % of its largest strain energy plus plastic work, at \
-                 {}: more particles across the body or a smaller coefficient of the hourglass control would help",
-                body.name,
-                100.0 * hourglass / internal,
-                quantity(time, "s")
-            ));
+            let is_large = |energy: f64| energy > SHARE * internal && energy > LEAST * self.largest[k];
+            let (name, percent) = (&body.name, |energy: f64| 100.0 * energy / internal);
+            let (hourglass, time) = self.most[k];
+            if is_large(hourglass) {
+                step.warnings.push(format!(
+                    "the hourglass energy of body `{name}` is {:.0} % of its largest strain energy plus plastic work, at \
+                     {}: more particles across the body or a smaller coefficient of the hourglass control would help",
+                    percent(hourglass),
+                    quantity(time, "s")
+                ));
+            }
+            let viscous = energy(step.ledger, "hourglass_viscosity", k);
+            if is_large(viscous) {
+                step.warnings.push(format!(
+                    "the viscous part of the hourglass control of body `{name}` has taken {:.0} % of its largest strain energy \
+                     plus plastic work, which it deforms the less by: more particles across the body, or a smaller `chi` or \
+                     `zeta`, would help",
+                    percent(viscous)
+                ));
+            }
         }
     }
 }

@@ -290,6 +290,26 @@ fn hourglass_energy_of_a_body_that_no_wave_has_reached_is_not_judged() {
 }
 
 #[test]
+fn viscous_hourglass_control_that_takes_a_fifth_of_the_internal_energy_is_told() {
+    let is_warned = |share: f64| {
+        let book = |account: &str, energy: f64| format!("Book(account: {account:?}, energy: {energy:?})");
+        let mut sim = blocks_under(
+            0.0,
+            &format!(
+                "conditions: [{}, {}], time: (end: 0.01),",
+                book("plastic_work", 1.0e-3),
+                book("hourglass_viscosity", share * 1.0e-3)
+            ),
+        );
+        sim.run(|_| true).unwrap();
+        let mut told = sim.warnings().iter();
+        told.any(|text| text.contains("viscous part of the hourglass control of body `right`"))
+    };
+    assert!(!is_warned(0.15));
+    assert!(is_warned(0.25));
+}
+
+#[test]
 fn a_flow_under_tension_is_told_what_it_lacks() {
     let advice = |plugins: &str, pressure: f64| {
         let mut sim = simulation(format!(
