@@ -234,6 +234,7 @@ fn what_it_does_not_offer_is_an_error_at_its_place() {
     ] {
         let text = fault(&block(2, formulation, at_rest, ""));
         assert!(text.contains(words), "{text}");
+        assert!(!text.lines().any(|line| line.trim() == "= help:"), "an empty help: {text}");
     }
 }
 

@@ -77,6 +77,27 @@ fn a_metal_strip_breaks_and_the_books_close() {
 }
 
 #[test]
+fn a_failure_strain_that_follows_temperature_is_told_of_a_metal_without_one() {
+    let told = |heating: &str| {
+        let text = format!(
+            r#"(dimension: Two,
+                materials: {{"metal": J2(density: 2700, young: 70e9, poisson: 0.3, hardening: Perfect(yield_stress: 2e8) {heating})}},
+                bodies: [(name: "block", material: "metal", spacing: 1e-3, formulation: Eulerian, shape: Box(min: (0, 0), max: (0.01, 0.01)),
+                          plugins: [failure(criterion: JohnsonCook(d1: 0.1, d2: 1.0, d3: -0.5, d5: 1.6, reference_temperature: 293, melt_temperature: 900))])],
+                time: (end: 1.0))"#
+        );
+        let (scene, source) = parse(Source::new("block.ron", text)).unwrap_or_else(|error| panic!("{error}"));
+        let sim =
+            assembly::build(&scene, &source, &standard_plugins()).unwrap_or_else(|error| panic!("{error}"));
+        sim.warnings()
+            .iter()
+            .any(|text| text.contains("`d5` of the failure strain has no effect in body `block`"))
+    };
+    assert!(told(""));
+    assert!(!told(", heating: (specific_heat: 900)"));
+}
+
+#[test]
 fn fragments_of_a_brittle_bar_do_not_pull_on_each_other() {
     let text = include_str!("../assets/scenes/brittle_bar.ron");
     let text = text

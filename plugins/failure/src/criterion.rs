@@ -38,6 +38,11 @@ impl Criterion {
             Self::JohnsonCook(strain) => strain.check(),
         }
     }
+
+    /// Whether it depends on temperature.
+    pub(crate) fn needs_temperature(&self) -> bool {
+        matches!(self, Self::JohnsonCook(strain) if strain.d5 != 0.0)
+    }
 }
 
 /// A criterion and what it can read of the state of the law.

@@ -20,7 +20,7 @@ use law::FailingLaw;
 use meshless_engine::column;
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::world::BodyId;
+use meshless_engine::world::{BodyId, Column, ColumnSet, Temperature};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -107,6 +107,12 @@ impl Plugin for Failure {
                 }
             };
             let (name, criterion, then) = (body.name.clone(), self.criterion.clone(), self.then);
+            if criterion.needs_temperature() && !has_temperature(sim, id)? {
+                sim.warn(format!(
+                    "`d5` of the failure strain has no effect in body `{name}`, whose material has no temperature: give the material \
+                     `heating`, or leave `d5` out"
+                ));
+            }
             sim.wrap_solid_law(id, |inner| {
                 Ok(FailingLaw::new(WatchedCriterion::new(criterion, &*inner, &name)?, inner, growth, then))
             })?;
@@ -119,4 +125,11 @@ impl Plugin for Failure {
         energy::add_system(sim, bodies);
         Ok(())
     }
+}
+
+/// Whether the material of a body has a temperature.
+fn has_temperature(sim: &SimBuilder<'_>, id: BodyId) -> Result<bool, SetupError> {
+    let mut state = ColumnSet::default();
+    sim.body(id).solid_law()?.state(&mut state);
+    Ok(state.get(Temperature::NAME).is_some())
 }

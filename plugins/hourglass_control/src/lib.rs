@@ -45,10 +45,10 @@ pub struct HourglassControl {
     pub alpha: Option<f64>,
     /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 7 of `Variational`, 10 of `Stiffness`, and 20 of `Combined` and `MohseniMofidi2020`.
     pub xi: Option<f64>,
-    /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`.
-    pub zeta: f64,
-    /// Share chi of the viscous part of `Combined` and `MohseniMofidi2020`, 0 to 1.
-    pub chi: f64,
+    /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`. Default: 10.
+    pub zeta: Option<f64>,
+    /// Share chi of the viscous part of `Combined` and `MohseniMofidi2020`, 0 to 1. Default: 0.5.
+    pub chi: Option<f64>,
     /// What the elastic resistance is in particles that have yielded.
     pub after_yield: AfterYield,
 }
@@ -59,8 +59,8 @@ impl Default for HourglassControl {
             form: Form::Default,
             alpha: None,
             xi: None,
-            zeta: 10.0,
-            chi: 0.5,
+            zeta: None,
+            chi: None,
             after_yield: AfterYield::YieldStress,
         }
     }
@@ -87,6 +87,13 @@ pub enum Form {
     MohseniMofidi2020,
 }
 
+impl Form {
+    /// Whether it has an elastic and a viscous part.
+    fn is_mixed(self) -> bool {
+        matches!(self, Self::Combined | Self::MohseniMofidi2020)
+    }
+}
+
 /// Account of the work of the forms without an energy.
 const WORK: &str = "hourglass_work";
 /// Account of what the viscous form takes.
@@ -95,6 +102,9 @@ const VISCOSITY: &str = "hourglass_viscosity";
 /// twisted by 11 % too small a torque, and a plate of 8 bends by 5 % too much. It goes with the lesser E_i of the pair over Young's modulus: in metal
 /// that flows, neighbours slide past each other, which is no error of theirs.
 const ACROSS: f64 = 0.1;
+/// Coefficient zeta and share chi where the scene gives none.
+const USUAL_ZETA: f64 = 10.0;
+const USUAL_CHI: f64 = 0.5;
 /// Coefficient xi where the scene gives none: of `Variational` alone, and of all other forms, before the share of the viscous part is taken off.
 const USUAL_XI: [f64; 2] = [7.0, 10.0];
 
@@ -106,6 +116,7 @@ impl Plugin for HourglassControl {
         self.check()?;
         let (lagrangian, present) = split(sim)?;
         self.check_fit(&lagrangian, &present, sim)?;
+        self.check_use(&lagrangian, &present, sim)?;
         if !lagrangian.is_empty() {
             self.add_to_lagrangian(lagrangian, sim)?;
         }
@@ -114,6 +125,11 @@ impl Plugin for HourglassControl {
         }
         Ok(())
     }
+}
+
+/// Whether the material of a body flows plastically.
+fn flows(id: BodyId, sim: &SimBuilder<'_>) -> Result<bool, SetupError> {
+    Ok(sim.body(id).solid_law()?.initial_yield_stress().is_some())
 }
 
 /// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their weights are not those of a reference.
@@ -131,12 +147,29 @@ fn split(sim: &SimBuilder<'_>) -> Result<(BodySet, BodySet), SetupError> {
 }
 
 impl HourglassControl {
+    fn zeta(&self) -> f64 {
+        self.zeta.unwrap_or(USUAL_ZETA)
+    }
+
+    fn chi(&self) -> f64 {
+        self.chi.unwrap_or(USUAL_CHI)
+    }
+
+    /// The form of an Eulerian body, or of a Lagrangian one.
+    fn form_of(&self, id: BodyId, is_eulerian: bool, sim: &SimBuilder<'_>) -> Result<Form, SetupError> {
+        Ok(match self.form {
+            Form::Default if is_eulerian && flows(id, sim)? => Form::Combined,
+            Form::Default => Form::Variational,
+            form => form,
+        })
+    }
+
     fn check(&self) -> Result<(), SetupError> {
         ParameterError::require_not_negative("alpha", self.alpha.unwrap_or_default())?;
         ParameterError::require_not_negative("xi", self.xi.unwrap_or_default())?;
-        ParameterError::require_not_negative("zeta", self.zeta)?;
-        if !(0.0..=1.0).contains(&self.chi) {
-            let message = format!("`chi` must be from 0 to 1, found {}", self.chi);
+        ParameterError::require_not_negative("zeta", self.zeta())?;
+        if !(0.0..=1.0).contains(&self.chi()) {
+            let message = format!("`chi` must be from 0 to 1, found {}", self.chi());
             return Err(SetupError::parameter("chi", message, "it is the share of the viscous part"));
         }
         Ok(())
@@ -150,9 +183,10 @@ impl HourglassControl {
         sim: &SimBuilder<'_>,
     ) -> Result<(), SetupError> {
         let (wrong, help) = match self.form {
-            Form::Ganzenmueller2015 => {
-                (eulerian, "such bodies have `Variational`, `Stiffness`, `Viscous` and `Combined`")
-            }
+            Form::Ganzenmueller2015 => (
+                eulerian,
+                "such bodies have `Variational`, `Stiffness`, `Viscous`, `Combined` and `MohseniMofidi2020`",
+            ),
             Form::Stiffness | Form::MohseniMofidi2020 => {
                 (lagrangian, "such bodies have `Variational`, `Ganzenmueller2015`, `Viscous` and `Combined`")
             }
@@ -179,20 +213,46 @@ impl HourglassControl {
         })
     }
 
-    fn add_to_eulerian(&self, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-        let flows = sim.body(id).solid_law()?.initial_yield_stress().is_some();
-        let form = match self.form {
-            Form::Default if flows => Form::Combined,
-            Form::Default => Form::Variational,
-            form => form,
+    /// Whether every coefficient belongs to the form of one of the bodies.
+    fn check_use(
+        &self,
+        lagrangian: &BodySet,
+        eulerian: &BodySet,
+        sim: &SimBuilder<'_>,
+    ) -> Result<(), SetupError> {
+        let of = |bodies: &BodySet, is_eulerian| -> Result<Vec<Form>, SetupError> {
+            bodies.iter().map(|id| self.form_of(id, is_eulerian, sim)).collect()
         };
+        let forms = [of(lagrangian, false)?, of(eulerian, true)?].concat();
+        let given = [
+            ("alpha", self.alpha.is_some(), "an elastic part"),
+            ("xi", self.xi.is_some(), "an elastic part"),
+            ("zeta", self.zeta.is_some(), "a viscous part"),
+            ("chi", self.chi.is_some(), "an elastic and a viscous part"),
+        ];
+        for (name, is_given, part) in given {
+            let uses = |form: &Form| match name {
+                "alpha" | "xi" => *form != Form::Viscous,
+                "zeta" => form.is_mixed() || *form == Form::Viscous,
+                _ => form.is_mixed(),
+            };
+            if let Some(form) = forms.first().filter(|_| is_given && !forms.iter().any(uses)) {
+                let message = format!("`{name}` is of forms with {part}, and `{form:?}` is none of them");
+                return Err(SetupError::parameter(name, message, "leave it out, or give another `form`"));
+            }
+        }
+        Ok(())
+    }
+
+    fn add_to_eulerian(&self, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let (flows, form) = (flows(id, sim)?, self.form_of(id, true, sim)?);
         // Half of twice the coefficient where the other half is viscous.
         let [alone, other] = USUAL_XI;
         let (share, viscous, usual) = match form {
             Form::Variational => (1.0, 0.0, alone),
             Form::Stiffness => (1.0, 0.0, other),
             Form::Viscous => (0.0, 1.0, 0.0),
-            _ => (1.0 - self.chi, self.chi, 2.0 * other),
+            _ => (1.0 - self.chi(), self.chi(), 2.0 * other),
         };
         // With Young's modulus after yield, neighbours that slide past each other would be resisted.
         let slides = flows && self.after_yield == AfterYield::Young;
@@ -203,7 +263,7 @@ impl HourglassControl {
             after_yield: self.after_yield,
             has_energy: !matches!(form, Form::Stiffness | Form::MohseniMofidi2020),
         };
-        eulerian::add(elastic, viscous * self.zeta, id, sim)
+        eulerian::add(elastic, viscous * self.zeta(), id, sim)
     }
 
     fn add_to_lagrangian(&self, bodies: BodySet, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
@@ -211,10 +271,10 @@ impl HourglassControl {
         match self.form {
             Form::Default | Form::Variational => self.add_variational(alpha, bodies, sim),
             Form::Ganzenmueller2015 => self.add_ganzenmueller_2015(alpha, &bodies, sim),
-            Form::Viscous => add_viscous(self.zeta, &bodies, sim),
+            Form::Viscous => add_viscous(self.zeta(), &bodies, sim),
             Form::Combined => {
-                add_viscous(self.chi * self.zeta, &bodies, sim)?;
-                self.add_variational((1.0 - self.chi) * alpha, bodies, sim)
+                add_viscous(self.chi() * self.zeta(), &bodies, sim)?;
+                self.add_variational((1.0 - self.chi()) * alpha, bodies, sim)
             }
             Form::Stiffness | Form::MohseniMofidi2020 => Ok(()),
         }

@@ -50,7 +50,7 @@ impl Problem {
     /// The same with a line that says what would be right.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help.push(help.into());
+        self.help.extend(Some(help.into()).filter(|help| !help.is_empty()));
         self
     }
 
