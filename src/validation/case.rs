@@ -62,6 +62,7 @@ macro_rules! for_each_case {
             S23c solids::pressurised::SPHERE;
             S23d solids::plate_with_hole::CASE;
             S24 solids::taylor_soft::CASE;
+            S25 solids::taylor_sticking::CASE;
             K2U solids::updated_lagrangian::AFFINE;
             K3U solids::updated_lagrangian::GRADIENT;
             K4U solids::updated_lagrangian::PAIR_TERM;

@@ -20,6 +20,7 @@ pub mod taylor;
 pub mod taylor_bars;
 pub mod taylor_plane;
 pub mod taylor_soft;
+pub mod taylor_sticking;
 pub mod tensile_failure;
 pub mod turek_hron;
 pub mod twisting_column;
