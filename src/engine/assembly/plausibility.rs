@@ -1,5 +1,6 @@
 //! Values that are allowed but most likely a slip of units.
 
+use crate::boundaries::LARGEST_MACH;
 use crate::materials::Law;
 use crate::notation::{number, quantity, quantity_to};
 use crate::plugin::{BodyPlan, SimBuilder};
@@ -20,8 +21,6 @@ const LARGEST_GRAVITY: f64 = 5.0e3;
 const EARTH: std::ops::RangeInclusive<f64> = 9.5..=10.5;
 /// Density of the lightest liquid, hydrogen, with room, kg/m3.
 const LIGHTEST_LIQUID: f64 = 50.0;
-/// Largest initial speed, in speeds of sound.
-const LARGEST_MACH: f64 = 10.0;
 /// Distance from the origin in spacings beyond which a double no longer tells neighbours apart well.
 const FARTHEST: f64 = 1.0e10;
 

@@ -42,7 +42,7 @@ pub use pressure::PressureLoad;
 pub use symmetry::{Side, Symmetry};
 pub use traction::Traction;
 pub use turn::PrescribedRotation;
-pub use velocity::PrescribedVelocity;
+pub use velocity::{LARGEST_MACH, PrescribedVelocity};
 
 use crate::plugin::Registry;
 

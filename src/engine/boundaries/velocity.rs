@@ -45,7 +45,7 @@ impl Plugin for PrescribedVelocity {
 }
 
 /// Largest speed of solids that is no slip of units, in speeds of sound.
-pub(super) const LARGEST_MACH: f64 = 10.0;
+pub const LARGEST_MACH: f64 = 10.0;
 /// Times of a run at which it is looked at.
 const TIMES: u32 = 64;
 
