@@ -73,13 +73,9 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
             }
             for lane in 0..EIGHT {
                 let row = rows[lane] as usize;
-                let of_lane = &mut out[row - first];
-                if pass.skips(row) {
-                    *of_lane = [DVec3::ZERO; S];
-                } else {
-                    for n in 0..S {
-                        of_lane[n] = lane_of(sums[n], lane);
-                    }
+                let is_wanted = !pass.skips(row);
+                for n in 0..S {
+                    out[row - first][n] = if is_wanted { lane_of(sums[n], lane) } else { DVec3::ZERO };
                 }
             }
         }
