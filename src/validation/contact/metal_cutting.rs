@@ -1,9 +1,11 @@
 //! C5: orthogonal cutting of aluminium by a rigid tool.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use meshless_engine::plugin::Registry;
 use meshless_engine::simulation::Simulation;
-use meshless_engine::world::{BodyId, Damage, PlasticStrain, ReferencePosition, Temperature};
+use meshless_engine::world::{
+    BodyId, Damage, PlasticStrain, Position, ReferencePosition, ReferenceVolume, Temperature,
+};
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
@@ -18,13 +20,18 @@ pub(crate) const CASE: Case = Case {
     run: metal_cutting,
 };
 
-/// Depth of cut, and place of the cut in the workpiece, m.
+/// Depth of cut, and places of the cut and of the free surface in the workpiece, m.
 const DEPTH: f64 = 2.0e-4;
 const CUT: f64 = 2.0e-4;
+const TOP: f64 = 4.0e-4;
 /// Friction.
 const FRICTION: f64 = 0.2;
-/// Time from which forces are averaged, s: half of the way.
-const FROM: f64 = 1.5e-5;
+/// Times between which forces are averaged, s: the chip is there, and no crack has run through it.
+const PRESSED: [f64; 2] = [1.5e-5, 3.0e-5];
+/// Time from which the chip is measured, s: it is two depths high.
+const CHIP_FROM: f64 = 4.0e-5;
+/// Heights above the free surface between which it is measured, in depths.
+const CHIP: [f64; 2] = [0.25, 1.25];
 
 /// `across` is the number of particles in the depth of cut.
 fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -39,16 +46,26 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     .set("bodies.workpiece.shape.max", format!("({}, 4.0e-4)", 1.0e-3 + held))?
     .build(registry)?;
     let workpiece = body(&simulation, "workpiece")?;
-    let (mut cutting, mut thrust, mut count) = (0.0, 0.0, 0.0);
+    let (mut cutting, mut thrust, mut thickness) =
+        (MeanOverSteps::default(), MeanOverSteps::default(), MeanOverSteps::default());
+    let mut strength = None;
     let balance = run(&mut simulation, |simulation| {
-        if simulation.clock().time > FROM {
+        let time = simulation.clock().time;
+        if (PRESSED[0]..PRESSED[1]).contains(&time) {
             let force = state(simulation, "tool")?.force;
-            (cutting, thrust, count) = (cutting - force.x, thrust + force.y, count + 1.0);
+            cutting.add(-force.x);
+            thrust.add(force.y);
+        } else if time >= PRESSED[1] && strength.is_none() {
+            strength = Some(shear_strength(simulation, workpiece)?);
+        }
+        if time > CHIP_FROM {
+            thickness.add(chip_thickness(simulation, workpiece)?);
         }
         Ok(())
     })?;
-    let (cutting, thrust) = (cutting / count, thrust / count);
-    let expected = shear_strength(&simulation, workpiece)? * force_over_strength();
+    let (cutting, thrust) = (cutting.value(), thrust.value());
+    let expected = strength.context("the run is too short")? * force_over_strength();
+    let shear_angle = (DEPTH / thickness.value()).atan().to_degrees();
     let off = failed_off_the_cut(&simulation, workpiece)? / DEPTH;
     let source = "shear plane between Lee-Shaffer and Merchant";
     Ok(vec![
@@ -61,16 +78,44 @@ fn metal_cutting(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "1",
             "friction",
         ),
+        Check::new(
+            "shear angle by the thickness of the chip",
+            shear_angle,
+            usual_shear_angle().to_degrees(),
+            Tolerance::Relative(0.2),
+            "deg",
+            source,
+        ),
         Check::below("failed particles from the cut, in depths", off, 0.4, "the chip parts along the cut"),
         balance.check(Kind::Abrupt),
     ])
 }
 
-/// d cos(beta) / (sin(phi) cos(phi + beta)), m, with rake 0 and the friction angle beta; phi is half-way between Lee and Shaffer's 45 deg - beta and Merchant's
-/// 45 deg - beta/2.
+/// A mean over steps.
+#[derive(Default)]
+struct MeanOverSteps {
+    sum: f64,
+    count: f64,
+}
+
+impl MeanOverSteps {
+    fn add(&mut self, value: f64) {
+        (self.sum, self.count) = (self.sum + value, self.count + 1.0);
+    }
+
+    fn value(&self) -> f64 {
+        self.sum / self.count
+    }
+}
+
+/// The shear angle phi half-way between Lee and Shaffer's 45 deg - beta and Merchant's 45 deg - beta/2, with rake 0 and the friction angle beta.
+fn usual_shear_angle() -> f64 {
+    std::f64::consts::FRAC_PI_4 - 0.75 * FRICTION.atan()
+}
+
+/// d cos(beta) / (sin(phi) cos(phi + beta)), m.
 fn force_over_strength() -> f64 {
-    let beta = FRICTION.atan();
-    let phi = std::f64::consts::FRAC_PI_4 - 0.75 * beta;
+    let (beta, phi) = (FRICTION.atan(), usual_shear_angle());
     DEPTH * beta.cos() / (phi.sin() * (phi + beta).cos())
 }
 
@@ -86,6 +131,16 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let rate: f64 = 10.0 / (DEPTH / 10.0);
     let flow = (164.0e6 + 211.0e6 * strain.powf(0.465)) * (1.0 + 0.002 * rate.ln()) * (1.0 - hot.powf(1.419));
     Ok(flow / 3f64.sqrt())
+}
+
+/// Area of what was above the cut and is between two heights beside the rake face now, over their distance, m.
+fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
+    let (view, rows) = simulation.world().body_view(workpiece);
+    let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);
+    let volume = view.read::<ReferenceVolume>()?;
+    let [low, high] = CHIP.map(|height| TOP + height * DEPTH);
+    let is_chip = |k: &usize| reference[*k].0.y > CUT && (low..high).contains(&position[*k].0.y);
+    Ok(rows.filter(is_chip).map(|k| volume[k].0).sum::<f64>() / (high - low))
 }
 
 /// Mean distance of failed particles from the cut, in the workpiece as it was, m.
