@@ -177,7 +177,7 @@ impl Rigid {
         let mass = self.mass.unwrap_or(of_shape.mass);
         self.check(plan, mass, &constraint, sim.dimension())?;
         let factor = mass / of_shape.mass;
-        let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing);
+        let nodes = Nodes::new(shape, &*surface, &plan.sites, plan.spacing, sim.dimension());
         let reach_of = |node: &RigidNode| node.point.distance(of_shape.center) + node.radius();
         let reach = nodes.list().iter().map(reach_of).fold(0.0, f64::max);
         let points = of_shape.points * factor;

@@ -2,6 +2,7 @@
 
 mod body;
 mod constraint;
+mod faces;
 mod formulation;
 mod inertia;
 mod nodes;

@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
+use super::faces::NearestFaces;
 use super::inertia::sphere_of;
 use super::outline::{Outline, Rim};
 use crate::shapes::{Shape, Site, Surface};
+use crate::space::Dimension;
 
 /// Cosine of the angle between two normals above which two faces do not touch: some 96 degrees.
 const ACROSS: f64 = -0.1;
@@ -66,8 +68,14 @@ pub struct Nodes {
 
 impl Nodes {
     /// The centre of a sphere or disc. Of other shapes circles where the outline is round, and elsewhere points on sharp edges and corners, and the outermost particles,
-    /// moved to the surface.
-    pub(super) fn new(shape: &Shape, surface: &dyn Surface, sites: &[Site], spacing: f64) -> Self {
+    /// moved to the surface, beside corners to all their faces.
+    pub(super) fn new(
+        shape: &Shape,
+        surface: &dyn Surface,
+        sites: &[Site],
+        spacing: f64,
+        dimension: Dimension,
+    ) -> Self {
         let outline = Outline::of(shape);
         let node = |point, normal, round, size| RigidNode { point, normal, round, size };
         if let Some((center, radius)) = sphere_of(shape) {
@@ -84,10 +92,11 @@ impl Nodes {
         let edges = along(&surface.edges(spacing), spacing);
         let corners = edges.into_iter().filter(|&x| !is_round(x));
         list.extend(corners.map(|x| node(x, DVec3::ZERO, Round::Point, spacing)));
-        for site in sites {
-            let nearest = surface.closest(site.position);
-            if nearest.signed_distance.abs() < 0.75 * spacing && !is_round(nearest.point) {
-                list.push(node(nearest.point, nearest.normal, Round::Point, spacing));
+        let faces = NearestFaces::new(surface, spacing, dimension);
+        let is_outermost = |x: DVec3| surface.closest(x).signed_distance.abs() < 0.75 * spacing;
+        for site in sites.iter().filter(|site| is_outermost(site.position)) {
+            for face in faces.of(site.position).into_iter().filter(|face| !is_round(face.point)) {
+                list.push(node(face.point, face.normal, Round::Point, spacing));
             }
         }
         Self { list, outline }

@@ -159,3 +159,35 @@ fn a_block_that_lands_on_two_tables_rebounds_straight_up() {
     let (_, v) = centre(&sim, 2);
     assert!((v.y - 0.5).abs() < 0.02 && v.x.abs() < 1e-6, "{v}");
 }
+
+/// Points of a face are the same on both sides of a block, wherever it is: round-off decided which face of a corner the particle beside it had a point on, and the block rocked as it sprang.
+#[test]
+fn a_block_that_lands_flat_does_not_turn() {
+    for (dimension, x, y) in [("Two", 0.0, 0.0), ("Two", 0.04, 0.0), ("Two", -0.1, 1e-7), ("Three", 0.0, 0.0)]
+    {
+        let at = |x: f64, y: f64| {
+            if dimension == "Two" { format!("({x}, {y})") } else { format!("({x}, {y}, {x})") }
+        };
+        let down = if dimension == "Two" { "(0, -9.81)" } else { "(0, -9.81, 0)" };
+        let mut sim = simulation(&format!(
+            r#"(dimension: {dimension}, gravity: {down}, materials: {{"stone": StVenantKirchhoff(density: 1000, young: 1e8, poisson: 0.3)}},
+                bodies: [
+                    (name: "floor", material: "stone", shape: Box(min: {}, max: {}), spacing: 0.02, formulation: Rigid()),
+                    (name: "block", material: "stone", shape: Box(min: {}, max: {}), spacing: 0.02, formulation: Rigid()),
+                ],
+                conditions: [Fix(on: Select(body: "floor"))],
+                contacts: [Contact(between: ("block", "floor"), friction: 0.5)],
+                time: (end: 3e-3))"#,
+            at(-0.2, -0.1),
+            at(0.4, 0.0),
+            at(x, y),
+            at(x + 0.2, y + 0.1),
+        ));
+        sim.run(|_| true).expect("a run");
+        let bodies = sim.resources().get::<RigidBodies>();
+        let block = bodies.iter().find(|body| body.mass < 30.0).expect("the block");
+        let turned = block.state.rotation.xyz().length();
+        let slipped = sim.ledger().total_named("friction");
+        assert!(turned < 1e-12 && slipped.abs() < 1e-12, "{dimension} {x} {y}: {turned} {slipped}");
+    }
+}

@@ -1,0 +1,83 @@
+//! The faces of a surface that a particle beside a corner or an edge is equally near to.
+//!
+//! Which of them the nearest point of the surface belongs to, round-off decides. A body that took that one alone had points on one side of a corner or on the other, and a block that landed flat on a floor began to
+//! rock; of a plate of one layer each particle had a point above or below.
+
+use glam::{DQuat, DVec3};
+
+use crate::shapes::{Surface, SurfacePoint};
+use crate::space::Dimension;
+
+/// Cosine of the angle between normals from which on they belong to one face.
+const SAME: f64 = 0.9;
+/// How far beside the particle another face counts as equally near, over the spacing.
+const ASIDE: f64 = 1e-3;
+
+/// Finds the faces near particles.
+pub(super) struct NearestFaces<'a> {
+    surface: &'a dyn Surface,
+    /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a corner are alike.
+    beside: Vec<DVec3>,
+}
+
+impl<'a> NearestFaces<'a> {
+    /// Of a surface about particles of that spacing, m.
+    pub fn new(surface: &'a dyn Surface, spacing: f64, dimension: Dimension) -> Self {
+        let (skew, axes): (DQuat, &[i8]) = match dimension {
+            Dimension::Two => (DQuat::from_rotation_z(0.3), &[0]),
+            Dimension::Three => (DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.2, 0.5), &[-1, 0, 1]),
+        };
+        let plane = [-1, 0, 1].into_iter().flat_map(|x| [-1, 0, 1].map(|y| (x, y)));
+        let all = plane.flat_map(|(x, y)| axes.iter().map(move |&z| DVec3::from([x, y, z].map(f64::from))));
+        let beside = all.filter_map(DVec3::try_normalize).map(|way| ASIDE * spacing * (skew * way)).collect();
+        Self { surface, beside }
+    }
+
+    /// The foot of a place on every face that it is nearest to.
+    pub fn of(&self, place: DVec3) -> Vec<SurfacePoint> {
+        let mut faces = vec![self.surface.closest(place)];
+        for &way in &self.beside {
+            let near = self.surface.closest(place + way);
+            if faces.iter().all(|face| face.normal.dot(near.normal) < SAME) {
+                let along = way - way.dot(near.normal) * near.normal;
+                faces.push(SurfacePoint { point: near.point - along, ..near });
+            }
+        }
+        faces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::shapes::Shape;
+
+    #[test]
+    fn a_place_beside_a_corner_is_near_to_all_its_faces() {
+        let block = "Box(min: (0, 0, 0), max: (0.1, 0.1, 0.01))";
+        for (degrees, axis) in [(0.0, "(0, 0, 1)"), (45.0, "(0, 0, 1)"), (37.0, "(1, 2, 3)")] {
+            let text =
+                format!("Rotate(shape: {block}, axis: {axis}, angle_degrees: {degrees:?}, about: (0, 0, 0))");
+            let shape: Shape = ron::from_str(&text).expect("a shape");
+            let surface = shape.surface(Dimension::Three, Path::new("."), "shape").expect("a surface");
+            let axis = ron::from_str::<(f64, f64, f64)>(axis).expect("an axis");
+            let turn = DQuat::from_axis_angle(DVec3::from(axis).normalize(), f64::to_radians(degrees));
+            let faces = NearestFaces::new(&*surface, 0.01, Dimension::Three);
+            for (place, count) in [((0.005, 0.005), 4), ((0.005, 0.035), 3), ((0.035, 0.045), 2)] {
+                let place = DVec3::new(place.0, place.1, 0.005);
+                let found = faces.of(turn * place);
+                assert_eq!(found.len(), count, "{degrees} {place}");
+                for face in found {
+                    let normal = turn.inverse() * face.normal;
+                    let foot = turn.inverse() * face.point - (place + 0.005 * normal);
+                    assert!(
+                        normal.abs().max_element() > 1.0 - 1e-12 && foot.length() < 1e-12,
+                        "{place} {foot}"
+                    );
+                }
+            }
+        }
+    }
+}
