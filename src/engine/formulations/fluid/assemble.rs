@@ -209,6 +209,7 @@ fn cloud(
         near: NearRows::default(),
         near_boundary: NearRows::default(),
         compression: Vec::new(),
+        boundary_compression: Vec::new(),
         is_close: Vec::new(),
         reach,
         repelled: Vec::new(),

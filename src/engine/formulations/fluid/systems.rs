@@ -11,7 +11,7 @@ use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, re
 use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
-    GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallState,
+    GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -25,6 +25,8 @@ use crate::world::{
 
 /// Label of the system that finds who is near, and how fast fluids are compressed.
 const COMPRESSION: &str = "fluid_compression";
+/// Label of the system that lets fluids follow the compression beside walls that pull.
+const WALL_COMPRESSION: &str = "wall_compression";
 /// Label of the system that gives walls their pressure.
 const WALL_PRESSURE: &str = "wall_pressure";
 
@@ -92,7 +94,7 @@ pub fn add(
                 .after(COMPRESSION),
         );
     }
-    add_stretching(sim, fluid, &boundaries);
+    add_boundary_rates(sim, groups, fluid, &boundaries);
     add_state(sim, fluid, account);
     add_force(sim, groups, fluid, FLUID_FORCE, terms);
     if spin {
@@ -106,16 +108,26 @@ pub fn add(
     Ok(())
 }
 
-/// Adds what the stretching of deformable bodies does to the compression of the fluid, where there are any.
-fn add_stretching(sim: &mut SimBuilder<'_>, fluid: PhaseId, boundaries: &[PhaseId]) {
+/// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the compression of the fluid, where there are any.
+fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
+    if groups.iter().any(Group::pulls) {
+        sim.add_system(
+            System::new(Stage::Neighbors, WALL_COMPRESSION, WallCompression::default())
+                .on_phases([fluid])
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(COMPRESSION_RATES, Mode::Writes)
+                .after(COMPRESSION),
+        );
+    }
     let is_soft = |body: &BodyPlan| body.kind == BodyKind::Solid && boundaries.contains(&body.phase);
     if sim.bodies().iter().any(is_soft) {
+        let before = if groups.iter().any(Group::pulls) { WALL_COMPRESSION } else { COMPRESSION };
         sim.add_system(
             System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
                 .on_phases([fluid])
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
-                .after(COMPRESSION),
+                .after(before),
         );
     }
 }

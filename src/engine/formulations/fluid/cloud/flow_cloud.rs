@@ -1,8 +1,10 @@
 //! All particles of a flow as one cloud: the fluids first, then the boundary particles.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use super::group::{FluidState, Group, Role};
+use super::group::{FluidState, Group};
 use super::neighborhood::Neighborhood;
 use super::repelled::Repelled;
 use super::viscosities::Viscosities;
@@ -12,6 +14,9 @@ use crate::formulations::fluid::lists::{FlowPairs, NearRows};
 use crate::parallel::{EIGHT, Lanes4};
 use crate::scene::Precision;
 use crate::world::BodyId;
+
+/// Least sum of V_f W for which there is fluid beside a boundary.
+pub const LEAST_SHARE: f64 = 1e-10;
 
 /// A neighbour of a fluid particle.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +58,8 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(in crate::formulations::fluid) compression: Vec<f64>,
+    /// The part of D that the pressure of boundaries answers for, 1/s; empty where none pulls.
+    pub(in crate::formulations::fluid) boundary_compression: Vec<f64>,
     /// Whether every fluid particle is within `reach` of a boundary particle, 1 if so.
     pub(in crate::formulations::fluid) is_close: Vec<u8>,
     /// Distance within which a fluid particle that a boundary repels has a particle of it, m.
@@ -72,6 +79,11 @@ pub struct FlowCloud {
 }
 
 impl FlowCloud {
+    /// Rows of each fluid.
+    pub(in crate::formulations::fluid) fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
+        self.groups.iter().map(|group| group.cloud.clone()).take_while(|rows| rows.end <= self.fluid)
+    }
+
     /// Arithmetic of the sums over neighbours.
     pub fn precision(&self) -> Precision {
         if self.blocks.is_some() { Precision::Mixed } else { Precision::Double }
@@ -84,7 +96,7 @@ impl FlowCloud {
 
     /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
     pub fn is_confined(&self) -> bool {
-        self.groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.suction))
+        self.groups.iter().any(Group::pulls)
     }
 
     /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.

@@ -77,6 +77,11 @@ pub struct Group {
 }
 
 impl Group {
+    /// Whether it is a boundary that can pull at the fluid.
+    pub fn pulls(&self) -> bool {
+        matches!(&self.role, Role::Boundary(surface) if surface.suction)
+    }
+
     /// The state of a fluid.
     pub fn fluid(&self) -> Option<&FluidState> {
         match &self.role {

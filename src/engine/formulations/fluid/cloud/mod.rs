@@ -35,7 +35,7 @@ mod sort;
 mod neighbors;
 
 pub use arrangement::ArrangementPass;
-pub use flow_cloud::{FlowCloud, Near};
+pub use flow_cloud::{FlowCloud, LEAST_SHARE, Near};
 pub use group::{BoundarySurface, FluidState, Group, Role};
 pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};

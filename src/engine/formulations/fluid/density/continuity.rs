@@ -1,6 +1,6 @@
 //! The density of fluids at the end of the step, by continuity.
 
-use crate::formulations::fluid::cloud::{FlowCloud, FluidState};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState};
 use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
@@ -28,6 +28,8 @@ pub struct Change {
     dissipated: f64,
     /// Energy of compression that displacements take out, J.
     shifted: f64,
+    /// Energy of compression that the pressure of boundaries answers for, taken out of the fluid, J.
+    by_boundaries: f64,
     /// Energy of compression that leaves with removed particles, J.
     removed: f64,
     /// First row, counted from one, whose density is not above zero.
@@ -38,6 +40,7 @@ impl BlockSum for Change {
     fn add(&mut self, next: &Self) {
         self.dissipated += next.dissipated;
         self.shifted += next.shifted;
+        self.by_boundaries += next.by_boundaries;
         self.removed += next.removed;
         if self.broken == 0 {
             self.broken = next.broken;
@@ -62,6 +65,7 @@ impl Run for Continuity {
             let rows = group.rows.clone();
             let shift = if view.has::<DensityShift>() { Some(view.read::<DensityShift>()?) } else { None };
             let shift = shift.as_ref().map(|shift| &shift[rows.clone()]);
+            let of_boundaries = cloud.boundary_compression.get(group.cloud.clone());
             let slices = (
                 &mut density[rows.clone()],
                 &cloud.compression[group.cloud.clone()],
@@ -70,7 +74,7 @@ impl Run for Continuity {
                 &removed[rows],
             );
             let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
-                run_hot(AdvanceDensity { state, dt, by_terms, shift, first, rows })
+                run_hot(AdvanceDensity { state, dt, by_terms, shift, of_boundaries, first, rows })
             });
             if change.broken > 0 {
                 return Err(step.unstable("the density must be positive", group.body, change.broken - 1));
@@ -82,6 +86,10 @@ impl Run for Continuity {
             if shift.is_some() {
                 let account = step.ledger.account(SHIFTING_ENERGY, AccountKind::Dissipated);
                 step.ledger.add(account, group.body, change.shifted);
+            }
+            if of_boundaries.is_some() {
+                let account = step.ledger.account(ACCOUNTS[1], AccountKind::Dissipated);
+                step.ledger.add(account, group.body, change.by_boundaries);
             }
             if let Some(name) = &self.account {
                 let account = step.ledger.account(name, AccountKind::Dissipated);
@@ -100,6 +108,8 @@ struct AdvanceDensity<'a> {
     dt: f64,
     by_terms: bool,
     shift: Option<&'a [DensityShift]>,
+    /// The part of the rate of compression that the pressure of boundaries answers for.
+    of_boundaries: Option<&'a [f64]>,
     first: usize,
     rows: Rows<'a>,
 }
@@ -109,7 +119,7 @@ impl HotLoop for AdvanceDensity<'_> {
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> Change {
-        let Self { state, dt, by_terms, shift, first, rows } = self;
+        let Self { state, dt, by_terms, shift, of_boundaries, first, rows } = self;
         let (density, compression, rate, mass, removed) = rows;
         let (mut change, mut least, mut sum) = (Change::default(), f64::INFINITY, 0.0);
         let count = density.len();
@@ -138,7 +148,14 @@ impl HotLoop for AdvanceDensity<'_> {
                 change.dissipated += mass[k].0
                     * (state.released(rho.0, before - shift) + state.released(middle, middle + by_terms));
             }
-            rho.0 = after + shift + by_terms;
+            let end = after + shift + by_terms;
+            let of_boundaries = of_boundaries.map_or(0.0, |rates| rates[first + k]);
+            if of_boundaries != 0.0 {
+                // The mean of the pressures of the two kicks, which do the work.
+                let volume = mass[k].0 / (before * after).sqrt();
+                change.by_boundaries += state.mean_pressure(rho.0, end) * volume * of_boundaries * dt;
+            }
+            rho.0 = end;
             least = if rho.0 < least { rho.0 } else { least };
             sum += rho.0;
         }
@@ -152,6 +169,13 @@ impl HotLoop for AdvanceDensity<'_> {
 }
 
 impl FluidState {
+    /// Mean of the pressures at two densities, Pa.
+    #[inline(always)]
+    fn mean_pressure(&self, from: f64, to: f64) -> f64 {
+        let pressure = |rho| self.eos.pressure(rho, self.density, self.sound_speed);
+        0.5 * (pressure(from) + pressure(to))
+    }
+
     /// Energy of compression that is released from one density to another, J/kg.
     #[inline(always)]
     fn released(&self, from: f64, to: f64) -> f64 {

@@ -3,8 +3,6 @@
 //! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
 //! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
 
-use std::ops::Range;
-
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{
     BATCH, Batch, FluidKernel, Four, MASKS, OwnRecord, as_rows, dot, filled_up,
@@ -58,13 +56,6 @@ impl FlowCloud {
             [(lists.fluid.row(i), &[]), (lists.walls.row(i), &[])]
         });
         (self.near, self.compression, self.is_close) = (near, rates, is_close);
-    }
-}
-
-impl FlowCloud {
-    /// Rows of each fluid.
-    pub(super) fn fluids(&self) -> impl Iterator<Item = Range<usize>> + Clone {
-        self.groups.iter().map(|group| group.cloud.clone()).take_while(|rows| rows.end <= self.fluid)
     }
 }
 

@@ -91,7 +91,7 @@ fn a_fluid_sticks_to_walls_or_slides_along_them() {
     slides.run(|sim| sim.clock().time < 1.0).expect("a run");
     let error = error(&slides, |_, _| 1.0);
     // Particles of a wall are bumps, which the fluid hardly feels.
-    assert!(error < 1e-5, "walls without friction took {error} of the speed");
+    assert!(error < 2e-5, "walls without friction took {error} of the speed");
 }
 
 /// A viscous fluid that slides along a wall because nobody has said what it does is warned of, and so is a belt that it does not feel.

@@ -12,6 +12,8 @@ mod soft_pressure;
 
 mod channel;
 
+mod vessels;
+
 mod loads;
 
 mod rest;

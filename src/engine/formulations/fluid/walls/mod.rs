@@ -8,6 +8,8 @@ mod surface_distance;
 
 mod repulsion;
 
+mod wall_compression;
+
 mod wall_pressure;
 
 mod wall_state;
@@ -18,4 +20,5 @@ pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;
 pub use wall::{PreviousVelocity, Slip, Wall, WallBody};
+pub use wall_compression::WallCompression;
 pub use wall_state::WallState;

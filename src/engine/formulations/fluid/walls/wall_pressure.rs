@@ -9,16 +9,13 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::FlowCloud;
+use crate::formulations::fluid::cloud::{FlowCloud, LEAST_SHARE};
 use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up, sums};
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
 use crate::parallel::{
     FourLanes, Lanes4, PlaneOrSpace, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
 };
 use crate::ranks;
-
-/// Least sum of V_f W for which there is fluid beside a wall.
-const LEAST_SHARE: f64 = 1e-10;
 
 /// The fluid beside a particle of a boundary.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -67,8 +64,8 @@ impl WallPressure<'_> {
     }
 }
 
-/// Gives all ranks what is beside the particles of boundaries that have fluid in their lists; beside the others there is nothing.
-fn share_wetted(cloud: &FlowCloud, out: &mut [FluidBeside]) {
+/// Gives all ranks what was found beside the particles of boundaries that have fluid in their lists; beside the others there is nothing.
+pub fn share_wetted<T: Pod + Default>(cloud: &FlowCloud, out: &mut [T]) {
     if !ranks::has_several() {
         return;
     }
@@ -79,9 +76,9 @@ fn share_wetted(cloud: &FlowCloud, out: &mut [FluidBeside]) {
         let rows = start - cloud.fluid..end - cloud.fluid;
         let wetted: Vec<u32> =
             rows.clone().filter(|&row| !lists.row(row).is_empty()).map(|row| row as u32).collect();
-        let mut beside: Vec<FluidBeside> = wetted.iter().map(|&row| out[row as usize]).collect();
+        let mut beside: Vec<T> = wetted.iter().map(|&row| out[row as usize]).collect();
         share_picked(&mut beside, &wetted, &rows);
-        out[rows].fill(FluidBeside::default());
+        out[rows].fill(T::default());
         wetted.iter().zip(beside).for_each(|(&row, beside)| out[row as usize] = beside);
     }
 }

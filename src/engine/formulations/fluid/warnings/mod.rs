@@ -8,6 +8,8 @@ mod intrusion;
 
 mod passing;
 
+mod closed;
+
 mod compression;
 
 mod filling;

@@ -1,5 +1,6 @@
 //! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps and swelling, rows that break up.
 
+use super::closed;
 use super::compression::CompressionWatch;
 use super::filling::FillingWatch;
 use super::fit;
@@ -26,6 +27,8 @@ struct FlowWatch {
     is_through: bool,
     /// The same of a body beside a gap without pressure.
     lies: bool,
+    /// The same of walls that take work from a closed fluid.
+    takes: bool,
     held_down: HeldDown,
     /// Spacing of the fluid, m.
     spacing: f64,
@@ -49,6 +52,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
         passing: PassingWalls::new(sim),
         is_through: false,
         lies: false,
+        takes: false,
         held_down: HeldDown::new(sim.gravity(), spacing),
         spacing,
         compression: CompressionWatch::default(),
@@ -91,6 +95,7 @@ impl Run for FlowWatch {
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
+            closed::look(&mut self.takes, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
         }
         Ok(())
@@ -98,7 +103,7 @@ impl Run for FlowWatch {
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let bodies = (self.is_through, self.lies, &self.held_down.seen);
+        let bodies = (self.is_through, self.lies, self.takes, &self.held_down.seen);
         postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
             .unwrap_or_default()
     }
@@ -107,7 +112,7 @@ impl Run for FlowWatch {
         let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
             return false;
         };
-        (self.is_through, self.lies, self.held_down.seen) = bodies;
+        (self.is_through, self.lies, self.takes, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);
