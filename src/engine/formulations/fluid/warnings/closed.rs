@@ -27,7 +27,7 @@ pub fn look(is_told: &mut bool, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>
     *is_told = true;
     let name = &step.world.body(cloud.groups[0].body).name;
     step.warnings.push(format!(
-        "walls have taken {} of the work on `{name}`, which has no free surface, by {}, {:.0} % of what compresses it: its pressure is too low by as much, \
+        "walls have taken {} of the work on `{name}`, which has no free surface, by {}, {:.0} % of what compresses it: its pressure is too low by about as much, \
          as the fluid beside them feels half of their motion; give them `Wall(suction: true)`",
         quantity(taken, "J"),
         quantity(step.clock.time, "s"),

@@ -95,7 +95,10 @@ impl Run for FlowWatch {
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
-            closed::look(&mut self.takes, &cloud, &mut self.scratch, step);
+            // At the start there is hardly any energy to compare with.
+            if at_end {
+                closed::look(&mut self.takes, &cloud, &mut self.scratch, step);
+            }
             self.unevenness.look(&cloud, &mut self.friction, step);
         }
         Ok(())
