@@ -58,7 +58,7 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) near_boundary: NearRows,
     /// Rate of compression D of every fluid particle at the middle of the step, 1/s.
     pub(in crate::formulations::fluid) compression: Vec<f64>,
-    /// The part of D that the pressure of boundaries answers for, 1/s; empty where none pulls.
+    /// The part of D that the pressure of boundaries answers for, 1/s; zero or empty where none pulls.
     pub(in crate::formulations::fluid) boundary_compression: Vec<f64>,
     /// Whether every fluid particle is within `reach` of a boundary particle, 1 if so.
     pub(in crate::formulations::fluid) is_close: Vec<u8>,

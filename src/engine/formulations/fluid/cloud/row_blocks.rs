@@ -8,7 +8,7 @@ use super::row_pass::{NearPairs, RowPass};
 use crate::formulations::fluid::lists::blocks::{Blocks, OwnBlock, Rows, SEEN, dot};
 use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, Number, Vector};
 
-/// Some particles of a fluid, from row `first` of the cloud on, which fill whole blocks.
+/// Some particles of a fluid, from row `first` of the cloud on.
 pub(super) struct RowPassBlocks<'a, const R: usize, const S: usize, P: RowPass<R, S>> {
     pub cloud: &'a FlowCloud,
     pub blocks: &'a Blocks,
@@ -72,10 +72,12 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                 }
             }
             for lane in 0..EIGHT {
+                // Blocks at the ends may have others as well.
                 let row = rows[lane] as usize;
+                let Some(out) = out.get_mut(row.wrapping_sub(first)) else { continue };
                 let is_wanted = !pass.skips(row);
                 for n in 0..S {
-                    out[row - first][n] = if is_wanted { lane_of(sums[n], lane) } else { DVec3::ZERO };
+                    out[n] = if is_wanted { lane_of(sums[n], lane) } else { DVec3::ZERO };
                 }
             }
         }

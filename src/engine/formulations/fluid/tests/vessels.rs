@@ -92,8 +92,28 @@ fn a_closed_vessel_whose_walls_do_not_pull_is_warned_of() {
     let domain = "domain: (min: (-2, 0), max: (3, 1), periodic: [Y]),";
     let told = |wall: &str| {
         let sim = vessel_with(wall, domain, "", "min: (1, 0), max: (1.5, 1)");
-        sim.warnings().iter().any(|text| text.contains("give them `Wall(suction: true)`"))
+        sim.warnings().iter().any(|text| text.contains("give the walls `Wall(suction: true)`"))
     };
     assert!(told("slip: Free"));
     assert!(!told("slip: Free, suction: true"));
+}
+
+/// At a free surface walls that pull compress what slides along them, and the run says so.
+#[test]
+fn walls_that_pull_at_a_free_surface_are_warned_of() {
+    let told = |suction: bool| {
+        let tank = format!(
+            r#"(dimension: Two, gravity: (0, -9.81), materials: {{"water": Fluid(density: 1000.0, sound_speed: 40.0)}},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.05, formulation: Fluid, shape: Box(min: (0, 0), max: (1, 0.5))),
+                (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: Free, suction: {suction}),
+                 shape: Difference(Box(min: (-0.2, -0.2), max: (1.2, 0.8)), Box(min: (0, 0), max: (1, 1)))),
+            ], time: (end: 0.02))"#
+        );
+        let mut sim = simulation(&tank);
+        sim.run(|_| true).expect("a run");
+        sim.warnings().iter().any(|text| text.contains("leave `suction` out"))
+    };
+    assert!(told(true));
+    assert!(!told(false));
 }

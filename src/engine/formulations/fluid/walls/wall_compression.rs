@@ -6,7 +6,7 @@
 //! `D_w = sum_f V_f w_wf v_wf.x_wf`,
 //!
 //! so that of fluid particle i is greater by `sum_w V_w W_iw D_w / S_w`: the force is the adjoint of the rate of compression. The fluid loses what it does to its boundaries, the volume that it loses in all is
-//! what they take, and it sees itself stretch along a wall on which it slides.
+//! that through which the force on them works, and it sees itself stretch along a wall on which it slides.
 //!
 //! Boundaries that do not pull have no such part: their pressure is cut off at zero, and at the edge of a free surface on a wall the fluid ahead of a particle is missing, so that sliding would compress it.
 

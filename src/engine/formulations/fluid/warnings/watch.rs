@@ -1,6 +1,6 @@
 //! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps and swelling, rows that break up.
 
-use super::closed;
+use super::closed::ClosedWatch;
 use super::compression::CompressionWatch;
 use super::filling::FillingWatch;
 use super::fit;
@@ -27,8 +27,7 @@ struct FlowWatch {
     is_through: bool,
     /// The same of a body beside a gap without pressure.
     lies: bool,
-    /// The same of walls that take work from a closed fluid.
-    takes: bool,
+    closed: ClosedWatch,
     held_down: HeldDown,
     /// Spacing of the fluid, m.
     spacing: f64,
@@ -52,7 +51,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
         passing: PassingWalls::new(sim),
         is_through: false,
         lies: false,
-        takes: false,
+        closed: ClosedWatch::default(),
         held_down: HeldDown::new(sim.gravity(), spacing),
         spacing,
         compression: CompressionWatch::default(),
@@ -95,10 +94,7 @@ impl Run for FlowWatch {
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
-            // At the start there is hardly any energy to compare with.
-            if at_end {
-                closed::look(&mut self.takes, &cloud, &mut self.scratch, step);
-            }
+            self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
         }
         Ok(())
@@ -106,7 +102,7 @@ impl Run for FlowWatch {
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let bodies = (self.is_through, self.lies, self.takes, &self.held_down.seen);
+        let bodies = (self.is_through, self.lies, self.closed, &self.held_down.seen);
         postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
             .unwrap_or_default()
     }
@@ -115,7 +111,7 @@ impl Run for FlowWatch {
         let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
             return false;
         };
-        (self.is_through, self.lies, self.takes, self.held_down.seen) = bodies;
+        (self.is_through, self.lies, self.closed, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);

@@ -1,7 +1,7 @@
 //! Which particles are a block: eight that are near each other.
 //!
 //! The rows of a fluid lie along a space-filling curve. Those that loops take at a time, 64 in sequence, are halved along the longest side of their box until eight are left:
-//! compact boxes have few neighbours in common, and the sums of a block are those of rows of one loop. Blocks are made with the lists.
+//! the particles of a compact box have most of their neighbours in common, and the sums of a block are those of rows of one loop. Blocks are made with the lists.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use crate::neighbors::Periodic;
 use crate::parallel::{BLOCK, EIGHT, Split};
 
-/// Length of a box over the support, at most; where particles are farther apart, lanes of a block are left without one. Two halves of a block have as many pairs as the whole, or
-/// more; only the search around a box is longer the larger it is.
+/// Length of a box over the support, at most; where particles are farther apart, lanes of a block are left without one. The limit is there for the search, which gets longer with
+/// the box: the halves of a block have together no fewer pairs than the whole.
 const LONGEST: f64 = 2.0;
 
 /// Rows of the particles of a block; lanes without a particle repeat the last one.
@@ -118,19 +118,20 @@ impl BlockTable {
         (place / EIGHT, place % EIGHT)
     }
 
-    /// The blocks of some rows of a fluid, which start and end with 64 rows of it, or at its end.
+    /// The blocks that some rows of a fluid are in.
     #[inline]
     pub fn of_rows(&self, rows: &Range<usize>) -> Range<usize> {
         let starts = self.starts_of(rows);
         starts[0]..starts[starts.len() - 1]
     }
 
-    /// For every 64 of such rows, where their blocks start, and where the last end.
+    /// For every 64 rows of a fluid that some are among, where their blocks start, and where the last end.
     fn starts_of(&self, rows: &Range<usize>) -> &[usize] {
         let n = self.fluids.partition_point(|(fluid, _)| fluid.start <= rows.start) - 1;
         let (fluid, first) = &self.fluids[n];
-        let run = |row: usize| first + (row - fluid.start).div_ceil(BLOCK);
-        &self.starts[run(rows.start)..=run(rows.end)]
+        let from = (rows.start - fluid.start) / BLOCK;
+        let to = (rows.end - fluid.start).div_ceil(BLOCK);
+        &self.starts[first + from..=first + to]
     }
 
     /// What belongs to the blocks of a fluid, to be cut where its rows are.
@@ -213,6 +214,7 @@ mod tests {
             let start = row - (row - body.start) % BLOCK;
             assert!(table.of_rows(&(start..(start + BLOCK).min(body.end))).contains(&block));
             assert!(table.of_rows(&body).contains(&block));
+            assert!(table.of_rows(&(row..row + 1)).contains(&block));
         }
         let longest = |half: &DVec3| 2.0 * half.max_element();
         assert!(table.halves.iter().all(|half| longest(half) <= 2.0 * 2.6 + 1e-6));
