@@ -71,15 +71,25 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
                     pass.add(&pairs, &of_i, &of_j, &mut sums);
                 }
             }
-            for lane in 0..EIGHT {
-                // Blocks at the ends may have others as well.
-                let row = rows[lane] as usize;
-                let Some(out) = out.get_mut(row.wrapping_sub(first)) else { continue };
-                let is_wanted = !pass.skips(row);
-                for n in 0..S {
-                    out[n] = if is_wanted { lane_of(sums[n], lane) } else { DVec3::ZERO };
-                }
-            }
+            put(pass, rows, &sums, (first, out));
+        }
+    }
+}
+
+/// Writes the sums of a block to those of its rows that are wanted: blocks at the ends may have others as well.
+#[inline(always)]
+fn put<A: EightLanes, const R: usize, const S: usize, P: RowPass<R, S>>(
+    pass: &P,
+    rows: &Rows,
+    sums: &[Vector<A>; S],
+    (first, out): (usize, &mut [[DVec3; S]]),
+) {
+    for lane in 0..EIGHT {
+        let row = rows[lane] as usize;
+        let Some(out) = out.get_mut(row.wrapping_sub(first)) else { continue };
+        let is_wanted = !pass.skips(row);
+        for n in 0..S {
+            out[n] = if is_wanted { lane_of(sums[n], lane) } else { DVec3::ZERO };
         }
     }
 }
