@@ -110,7 +110,8 @@ pub fn add(
 
 /// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
-    if groups.iter().any(Group::pulls) {
+    let pulls = groups.iter().any(Group::pulls);
+    if pulls {
         sim.add_system(
             System::new(Stage::Neighbors, WALL_COMPRESSION, WallCompression::default())
                 .on_phases([fluid])
@@ -121,7 +122,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
     }
     let is_soft = |body: &BodyPlan| body.kind == BodyKind::Solid && boundaries.contains(&body.phase);
     if sim.bodies().iter().any(is_soft) {
-        let before = if groups.iter().any(Group::pulls) { WALL_COMPRESSION } else { COMPRESSION };
+        let before = if pulls { WALL_COMPRESSION } else { COMPRESSION };
         sim.add_system(
             System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
                 .on_phases([fluid])
