@@ -33,9 +33,9 @@ impl<'a> NearestFaces<'a> {
         Self { surface, beside }
     }
 
-    /// The foot of a place on every face that it is nearest to.
-    pub fn of(&self, place: DVec3) -> Vec<SurfacePoint> {
-        let mut faces = vec![self.surface.closest(place)];
+    /// The foot of a place on every face that it is nearest to, from the nearest point of the surface.
+    pub fn of(&self, place: DVec3, nearest: SurfacePoint) -> Vec<SurfacePoint> {
+        let mut faces = vec![nearest];
         for &way in &self.beside {
             let near = self.surface.closest(place + way);
             if faces.iter().all(|face| face.normal.dot(near.normal) < SAME) {
@@ -67,7 +67,7 @@ mod tests {
             let faces = NearestFaces::new(&*surface, 0.01, Dimension::Three);
             for (place, count) in [((0.005, 0.005), 4), ((0.005, 0.035), 3), ((0.035, 0.045), 2)] {
                 let place = DVec3::new(place.0, place.1, 0.005);
-                let found = faces.of(turn * place);
+                let found = faces.of(turn * place, surface.closest(turn * place));
                 assert_eq!(found.len(), count, "{degrees} {place}");
                 for face in found {
                     let normal = turn.inverse() * face.normal;

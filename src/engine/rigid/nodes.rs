@@ -93,9 +93,12 @@ impl Nodes {
         let corners = edges.into_iter().filter(|&x| !is_round(x));
         list.extend(corners.map(|x| node(x, DVec3::ZERO, Round::Point, spacing)));
         let faces = NearestFaces::new(surface, spacing, dimension);
-        let is_outermost = |x: DVec3| surface.closest(x).signed_distance.abs() < 0.75 * spacing;
-        for site in sites.iter().filter(|site| is_outermost(site.position)) {
-            for face in faces.of(site.position).into_iter().filter(|face| !is_round(face.point)) {
+        for site in sites {
+            let nearest = surface.closest(site.position);
+            if nearest.signed_distance.abs() >= 0.75 * spacing {
+                continue;
+            }
+            for face in faces.of(site.position, nearest).into_iter().filter(|face| !is_round(face.point)) {
                 list.push(node(face.point, face.normal, Round::Point, spacing));
             }
         }
