@@ -82,6 +82,11 @@ impl Group {
         matches!(&self.role, Role::Boundary(surface) if surface.suction)
     }
 
+    /// Whether it is a boundary to which the fluid sticks.
+    pub fn sticks(&self) -> bool {
+        matches!(&self.role, Role::Boundary(surface) if surface.no_slip)
+    }
+
     /// The state of a fluid.
     pub fn fluid(&self) -> Option<&FluidState> {
         match &self.role {

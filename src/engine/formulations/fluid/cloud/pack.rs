@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
 use crate::formulations::fluid::lanes::FlowParticle;
-use crate::formulations::fluid::lists::blocks::pack_states;
+use crate::formulations::fluid::lists::blocks::{Packed, Units, pack_states};
 use crate::formulations::fluid::lists::{DisplacementBounds, Growing};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
 use crate::world::{
@@ -21,6 +21,10 @@ impl FlowCloud {
         world: &World,
     ) -> Result<DisplacementBounds, MissingColumn> {
         let mut moved = DisplacementBounds::NONE;
+        let mut blocks = self.blocks.as_mut();
+        if let Some(blocks) = &mut blocks {
+            blocks.packed.resize(self.records.len(), Packed::default());
+        }
         for group in &self.groups {
             let (view, rows) = (world.phase(group.phase), group.rows.clone());
             let (x, v, removed) =
@@ -31,17 +35,22 @@ impl FlowCloud {
                 &v[rows.clone()],
                 &removed[rows.clone()],
             );
+            let (units, packed) = match &mut blocks {
+                Some(blocks) => (Some(&blocks.units), Some(&mut blocks.packed[group.cloud.clone()])),
+                None => (None, None),
+            };
             moved = moved.with(if group.fluid().is_some() {
                 let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
                 let pressure = view.read::<Pressure>()?;
                 let fluid = (&mass[rows.clone()], &density[rows.clone()], &pressure[rows]);
-                sum_over_blocks((common, fluid), &|_, rows: (Common<'_>, Fluids<'_>)| {
-                    run_hot(PackFluid(rows.0, rows.1))
+                sum_over_blocks((common, fluid, packed), &|_, (common, fluid, packed): WithPacked<_>| {
+                    run_hot(PackFluid(common, fluid, packed, units))
                 })
             } else {
                 let volume = view.read::<ReferenceVolume>()?;
-                sum_over_blocks((common, &volume[rows]), &|_, rows: (Common<'_>, &[ReferenceVolume])| {
-                    run_hot(PackBoundary(rows.0, rows.1))
+                let volume = &volume[rows];
+                sum_over_blocks((common, volume, packed), &|_, (common, volume, packed): WithPacked<_>| {
+                    run_hot(PackBoundary(common, volume, packed, units))
                 })
             });
         }
@@ -70,40 +79,52 @@ impl FlowCloud {
 
 type Common<'a> = (&'a mut [FlowParticle], &'a [Position], &'a [Velocity], &'a [Removed]);
 type Fluids<'a> = (&'a [Mass], &'a [Density], &'a [Pressure]);
+/// Records, what their volumes and pressures are made of, and what blocks know of the same particles.
+type WithPacked<'a, T> = (Common<'a>, T, Option<&'a mut [Packed]>);
 
-struct PackFluid<'a>(Common<'a>, Fluids<'a>);
+struct PackFluid<'a>(Common<'a>, Fluids<'a>, Option<&'a mut [Packed]>, Option<&'a Units>);
 
 impl HotLoop for PackFluid<'_> {
     type Output = DisplacementBounds;
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
-        let Self((records, x, v, removed), (mass, density, pressure)) = self;
+        let Self((records, x, v, removed), (mass, density, pressure), packed, units) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
             let volume = if removed[k] == Removed::NO { mass[k].0 / density[k].0 } else { 0.0 };
             write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
             record.motion = Lanes4::new(v[k].0, pressure[k].0);
         }
+        pack_block(packed, records, units);
         moved.end()
     }
 }
 
-struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume]);
+struct PackBoundary<'a>(Common<'a>, &'a [ReferenceVolume], Option<&'a mut [Packed]>, Option<&'a Units>);
 
 impl HotLoop for PackBoundary<'_> {
     type Output = DisplacementBounds;
 
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> DisplacementBounds {
-        let Self((records, x, v, removed), volume) = self;
+        let Self((records, x, v, removed), volume, packed, units) = self;
         let mut moved = Growing::new();
         for (k, record) in records.iter_mut().enumerate() {
             let volume = if removed[k] == Removed::NO { volume[k].0 } else { 0.0 };
             write(a, record, Lanes4::new(x[k].0, volume), &mut moved);
             record.motion = Lanes4::new(v[k].0, 0.0);
         }
+        pack_block(packed, records, units);
         moved.end()
+    }
+}
+
+/// Packs a block for sums in single precision, while its records are in the cache.
+#[inline(always)]
+fn pack_block(packed: Option<&mut [Packed]>, records: &[FlowParticle], units: Option<&Units>) {
+    if let (Some(packed), Some(units)) = (packed, units) {
+        packed.iter_mut().zip(records).for_each(|(packed, record)| packed.take(record, units));
     }
 }
 

@@ -13,6 +13,7 @@ use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
+use crate::formulations::fluid::lists::blocks::pack_states;
 use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::formulations::fluid::passes::{PairForce, reads_flow};
 use crate::parallel::{Lanes4, for_each_block};
@@ -96,7 +97,7 @@ impl FlowCloud {
         if dt == 0.0 {
             return;
         }
-        let Self { groups, records, before, fluid, .. } = self;
+        let Self { groups, records, before, fluid, blocks, .. } = self;
         for group in groups.iter().filter(|group| group.short) {
             let before = &before[group.cloud.start - *fluid..group.cloud.end - *fluid];
             let slices = (&mut records[group.cloud.clone()], before);
@@ -106,6 +107,9 @@ impl FlowCloud {
                     record.motion = Lanes4::new((record.position() - *before) / dt, 0.0);
                 }
             });
+            if let Some(blocks) = blocks {
+                pack_states(&mut blocks.packed[group.cloud.clone()], &records[group.cloud.clone()]);
+            }
         }
     }
 }

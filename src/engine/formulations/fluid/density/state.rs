@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::mach::{Mach, relative_speed, wall_frame};
 use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
+use crate::formulations::fluid::lists::blocks::Packed;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
@@ -43,11 +44,13 @@ impl BlockSum for StateSum {
 }
 
 type Rows<'a> = (&'a mut [Pressure], &'a mut [FlowParticle], &'a [Density], &'a [Mass], &'a [Removed]);
+/// With what blocks know of the same particles, if there are any.
+type RowsAndPacked<'a> = (Rows<'a>, Option<&'a mut [Packed]>);
 
 impl Run for ApplyState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
-        let FlowCloud { groups, records, kernel, viscosities, .. } = &mut *cloud;
+        let FlowCloud { groups, records, kernel, viscosities, blocks, .. } = &mut *cloud;
         let h = kernel.smoothing_length();
         let viscous = VISCOUS / viscosities.factor() * h * h;
         let account = step.ledger.account("compression", AccountKind::Stored);
@@ -69,8 +72,9 @@ impl Run for ApplyState {
                 &mass[rows.clone()],
                 &removed[rows],
             );
-            let sum = for_each_block(slices, &mut self.sums, &|_, rows: Rows<'_>| {
-                run_hot(Apply { state, frame, rows })
+            let packed = blocks.as_mut().map(|blocks| &mut blocks.packed[group.cloud.clone()]);
+            let sum = for_each_block((slices, packed), &mut self.sums, &|_, rows: RowsAndPacked<'_>| {
+                run_hot(Apply { state, frame, rows: rows.0, packed: rows.1 })
             });
             step.ledger.set(account, group.body, sum.energy);
             let speed = relative_speed(sum.speed_squared.sqrt(), frame, group, groups, records);
@@ -85,8 +89,6 @@ impl Run for ApplyState {
                 step.limits.propose(limit, format_args!("viscosity of `{name}`"));
             }
         }
-        let fluid = cloud.fluid;
-        cloud.pack_states(0..fluid);
         Ok(())
     }
 
@@ -107,6 +109,7 @@ struct Apply<'a> {
     /// Velocity that speeds are measured against, m/s.
     frame: DVec3,
     rows: Rows<'a>,
+    packed: Option<&'a mut [Packed]>,
 }
 
 impl HotLoop for Apply<'_> {
@@ -133,6 +136,9 @@ impl HotLoop for Apply<'_> {
             sum.energy = a.mul_add(mass[k].0, eos.energy(rho, rho_0, sound_speed), sum.energy);
             let square = a.mul_add(x, x, a.mul_add(y, y, z * z));
             sum.speed_squared = if square > sum.speed_squared { square } else { sum.speed_squared };
+        }
+        if let Some(packed) = self.packed {
+            packed.iter_mut().zip(&*records).for_each(|(packed, record)| packed.take_state(record));
         }
         sum
     }

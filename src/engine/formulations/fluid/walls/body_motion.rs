@@ -1,6 +1,7 @@
 //! The motion of a whole body, where it is one affine map: of a wall or a rigid body that moves and turns.
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use crate::linalg::dyad;
 use crate::neighbors::Periodic;
@@ -9,6 +10,8 @@ use crate::neighbors::Periodic;
 const MARGIN: f64 = 1e-6;
 /// Least determinant of the moments of a body that fixes a map, over that of a body of equal width along all axes.
 const FLAT: f64 = 1e-9;
+/// Particles that are looked at one after the other.
+const PER_TASK: usize = 4096;
 
 /// `X = home + map (x - now)`: from a place to where it is in the body as the scene has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,20 +22,30 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// That of particles at `x` that were at `reference`, m, if one map fits all of them.
+    /// That of so many particles, if one map fits all of them; `places` gives where a particle is and where it was at first, m.
     pub fn new(
-        x: impl Iterator<Item = DVec3> + Clone,
-        reference: impl Iterator<Item = DVec3> + Clone,
+        particles: usize,
+        places: impl Fn(usize) -> (DVec3, DVec3) + Sync,
         spacing: f64,
         plane: bool,
     ) -> Option<Self> {
-        let pairs = || x.clone().zip(reference.clone());
-        let margin = MARGIN * spacing;
-        let (now, home) = pairs().next()?;
+        if particles == 0 {
+            return None;
+        }
+        let square = (MARGIN * spacing).powi(2);
+        let fits = |motion: &Self| {
+            let is_near = |k: usize| {
+                let (x, home) = places(k);
+                motion.home(x).distance_squared(home) <= square
+            };
+            (0..particles).into_par_iter().with_min_len(PER_TASK).all(is_near)
+        };
+        let (now, home) = places(0);
         let moved = Self { now, home, map: DMat3::IDENTITY };
-        if pairs().all(|(x, home)| moved.home(x).distance(home) <= margin) {
+        if fits(&moved) {
             return Some(moved);
         }
+        let pairs = || (0..particles).map(&places);
         let (mut count, mut now, mut home) = (0.0, DVec3::ZERO, DVec3::ZERO);
         for (x, origin) in pairs() {
             count += 1.0;
@@ -53,7 +66,7 @@ impl BodyMotion {
             return None;
         }
         let fitted = Self { now, home, map: cross * moment.inverse() };
-        pairs().all(|(x, home)| fitted.home(x).distance(home) <= margin).then_some(fitted)
+        fits(&fitted).then_some(fitted)
     }
 
     /// Whether periodic images stay images of each other: nothing turns out of a periodic axis.
@@ -81,7 +94,7 @@ mod tests {
     }
 
     fn motion(now: &[DVec3], home: &[DVec3], plane: bool) -> Option<BodyMotion> {
-        BodyMotion::new(now.iter().copied(), home.iter().copied(), 0.01, plane)
+        BodyMotion::new(now.len(), |k| (now[k], home[k]), 0.01, plane)
     }
 
     #[test]

@@ -7,10 +7,10 @@
 //! two of them in the plane or four in space, and end before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 use super::body_motion::BodyMotion;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
-use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
@@ -52,15 +52,16 @@ impl BoundaryShape {
     /// Takes notice of the first particle that is gone.
     pub fn wear(&mut self, cloud: &FlowCloud) {
         if !self.is_worn {
-            self.is_worn =
-                cloud.records[self.group.cloud.clone()].iter().any(|record| record.volume() <= 0.0);
+            let records = cloud.records[self.group.cloud.clone()].par_iter().with_min_len(4096);
+            self.is_worn = records.any(|record| record.volume() <= 0.0);
         }
     }
 
     /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
     pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
-        let now = cloud.records[self.group.cloud.clone()].iter().map(FlowParticle::position);
-        BodyMotion::new(now, reference.iter().map(|x| x.0), self.spacing, cloud.plane)
+        let records = &cloud.records[self.group.cloud.clone()];
+        let places = |k: usize| (records[k].position(), reference[k].0);
+        BodyMotion::new(records.len(), places, self.spacing, cloud.plane)
     }
 
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.

@@ -25,9 +25,9 @@ pub struct FluidBeside {
     pub pressure: f64,
     /// Mean of rho_f x_wf, kg/m2.
     pub moment: DVec3,
-    /// Mean velocity, less that of the particle, m/s.
+    /// Mean velocity, less that of the particle, m/s; zero beside a boundary to which the fluid does not stick.
     pub velocity: DVec3,
-    /// Mean place, less that of the particle, m.
+    /// Mean place, less that of the particle, m; zero likewise.
     pub offset: DVec3,
 }
 
@@ -44,14 +44,14 @@ impl WallPressure<'_> {
         let looks_at_all = !cloud.pairs.gaps.particles.is_empty();
         let bodies = cloud.groups.iter().filter(|group| group.fluid().is_none());
         let mut rest = (&mut *out, near.writer());
-        for Range { start, end } in bodies.map(|group| group.cloud.clone()) {
+        for group in bodies {
+            let Range { start, end } = group.cloud;
             let (rows, behind) = rest.split(end - start);
             rest = behind;
+            let sticks = group.sticks();
             let body = |first, (out, near): (&mut [FluidBeside], NearWriter<'_>)| {
-                run_hot_in(
-                    cloud.plane,
-                    WallPressureRows { cloud, first: start - cloud.fluid + first, out, near },
-                );
+                let first = start - cloud.fluid + first;
+                run_hot_in(cloud.plane, WallPressureRows { cloud, sticks, first, out, near });
             };
             match looks_at_all {
                 true => for_each_block(rows, &mut Vec::new(), &body),
@@ -85,6 +85,8 @@ pub fn share_wetted<T: Pod + Default>(cloud: &FlowCloud, out: &mut [T]) {
 
 struct WallPressureRows<'a> {
     cloud: &'a FlowCloud,
+    /// Whether the fluid sticks to the body.
+    sticks: bool,
     first: usize,
     out: &'a mut [FluidBeside],
     near: NearWriter<'a>,
@@ -93,20 +95,31 @@ struct WallPressureRows<'a> {
 impl PlaneOrSpace for WallPressureRows<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        if self.cloud.periods.any() { self.rows::<A, D, true>(a) } else { self.rows::<A, D, false>(a) }
+        match (self.cloud.periods.any(), self.sticks) {
+            (false, false) => self.rows::<A, D, false, false>(a),
+            (false, true) => self.rows::<A, D, false, true>(a),
+            (true, false) => self.rows::<A, D, true, false>(a),
+            (true, true) => self.rows::<A, D, true, true>(a),
+        }
     }
 }
 
 impl WallPressureRows<'_> {
+    /// `P`: with periods. `STICKS`: with the velocity of the fluid.
     #[inline(always)]
-    fn rows<A: FourLanes, const D: usize, const P: bool>(mut self, a: A) {
+    fn rows<A: FourLanes, const D: usize, const P: bool, const STICKS: bool>(mut self, a: A) {
         let (cloud, kernel) = (self.cloud, self.cloud.kernel);
         let limit = Lanes4::splat(kernel.support * kernel.support);
         for (k, out) in self.out.iter_mut().enumerate() {
-            let i = cloud.fluid + self.first + k;
-            let own = OwnRecord::<D>::new(&cloud.records[i]);
+            *out = FluidBeside::default();
             let mut near = self.near.row(k);
             let mut rest = cloud.pairs.boundary.row(self.first + k);
+            // Most particles of a wall are dry, or behind others.
+            if rest.is_empty() {
+                near.close();
+                continue;
+            }
+            let own = OwnRecord::<D>::new(&cloud.records[cloud.fluid + self.first + k]);
             let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
             let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
             let mut offset = [Lanes4::ZERO; D];
@@ -141,20 +154,23 @@ impl WallPressureRows<'_> {
                     }
                     for axis in 0..D {
                         moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
-                        offset[axis] = a.times_add(value, four.x[axis], offset[axis]);
-                        velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
+                        if STICKS {
+                            offset[axis] = a.times_add(value, four.x[axis], offset[axis]);
+                            velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
+                        }
                     }
                 }
             }
             near.close();
             let total = total.sum();
-            *out = FluidBeside::default();
             if total > LEAST_SHARE {
                 let mean = 1.0 / total;
                 out.pressure = pressure.sum() * mean;
                 out.moment = sums(a, &moment) * mean;
-                out.velocity = sums(a, &velocity) * mean;
-                out.offset = sums(a, &offset) * mean;
+                if STICKS {
+                    out.velocity = sums(a, &velocity) * mean;
+                    out.offset = sums(a, &offset) * mean;
+                }
             }
         }
     }

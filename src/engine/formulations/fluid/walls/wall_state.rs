@@ -27,7 +27,7 @@ impl Run for WallState {
         WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
         cloud.near_boundary = near;
         let first = cloud.fluid;
-        for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
+        for group in cloud.groups.iter().filter(|group| group.sticks()) {
             // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or are sheared alike.
             let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
             cloud.for_each_gradient(group, beside, |fluid, gradient| {

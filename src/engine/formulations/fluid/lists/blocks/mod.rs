@@ -12,6 +12,6 @@ mod memory;
 
 pub use lists::{BlockLists, ListSources};
 pub use memory::Blocks;
-pub use record::{Other, OwnBlock, Packed, Units, dot, pack, pack_states};
+pub use record::{Other, OwnBlock, Packed, Units, dot, pack_states};
 pub use seen::SEEN;
 pub use table::{OfBlocks, Rows};

@@ -58,17 +58,6 @@ impl Units {
 
 type Slices<'a> = (&'a mut [Packed], &'a [FlowParticle]);
 
-/// Packs all particles.
-pub fn pack(packed: &mut Vec<Packed>, records: &[FlowParticle], units: &Units) {
-    packed.resize(records.len(), Packed::default());
-    for_each_block((&mut packed[..], records), &mut Vec::new(), &|_, (packed, records): Slices<'_>| {
-        for (packed, record) in packed.iter_mut().zip(records) {
-            packed.place = units.place(record.position());
-            packed.take_state(record);
-        }
-    });
-}
-
 /// Packs places alone.
 pub fn pack_places(packed: &mut Vec<Packed>, positions: &[DVec3], units: &Units) {
     packed.resize(positions.len(), Packed::default());
@@ -88,8 +77,16 @@ pub fn pack_states(packed: &mut [Packed], records: &[FlowParticle]) {
 }
 
 impl Packed {
+    /// Takes place, volume, velocity and pressure.
     #[inline(always)]
-    fn take_state(&mut self, record: &FlowParticle) {
+    pub fn take(&mut self, record: &FlowParticle, units: &Units) {
+        self.place = units.place(record.position());
+        self.take_state(record);
+    }
+
+    /// Takes volume, velocity and pressure anew.
+    #[inline(always)]
+    pub fn take_state(&mut self, record: &FlowParticle) {
         self.volume = record.volume() as f32;
         let [x, y, z, pressure] = record.motion.0;
         self.velocity = [x as f32, y as f32, z as f32];

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
 use crate::formulations::fluid::lists::blocks::{
-    BlockLists, Blocks, OfBlocks, OwnBlock, Packed, SEEN, dot, pack,
+    BlockLists, Blocks, OfBlocks, OwnBlock, Packed, SEEN, dot,
 };
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
@@ -17,7 +17,6 @@ impl FlowCloud {
     /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
     pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
         let Blocks { lists, units, packed, near, hides } = blocks;
-        pack(packed, &self.records, units);
         let (mut rates, mut is_close) =
             (std::mem::take(&mut self.compression), std::mem::take(&mut self.is_close));
         rates.resize(self.fluid, 0.0);
