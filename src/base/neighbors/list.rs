@@ -50,25 +50,24 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
-    /// Becomes the list of sets of rows of `other`: what any of a set has for a neighbour, ascending.
-    pub fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self) {
+    /// Becomes the list of sets of rows of `other`: what any of a set has for a neighbour, ascending. `last` is memory that is kept.
+    pub fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self, last: &mut Vec<u32>) {
         self.offsets.clear();
         self.offsets.push(0);
         self.indices.clear();
-        for set in sets {
+        // For every neighbour the number, from one on, of the last set that has it: most are in several lists of a set.
+        last.clear();
+        last.resize(other.indices.iter().max().map_or(0, |&most| most as usize + 1), 0);
+        for (set, number) in sets.iter().zip(1..) {
             let start = self.indices.len();
-            set.iter().for_each(|&row| self.indices.extend_from_slice(other.row(row as usize)));
-            let row = &mut self.indices[start..];
-            row.sort_unstable();
-            let mut kept = start;
-            for k in start..self.indices.len() {
-                if kept == start || self.indices[k] != self.indices[kept - 1] {
-                    self.indices[kept] = self.indices[k];
-                    kept += 1;
+            for &j in set.iter().flat_map(|&row| other.row(row as usize)) {
+                if last[j as usize] != number {
+                    last[j as usize] = number;
+                    self.indices.push(j);
                 }
             }
-            self.indices.truncate(kept);
-            self.offsets.push(kept);
+            self.indices[start..].sort_unstable();
+            self.offsets.push(self.indices.len());
         }
     }
 

@@ -152,7 +152,7 @@ pub struct NearRow<'a> {
     count: &'a mut u32,
 }
 
-impl NearRow<'_> {
+impl<'a> NearRow<'a> {
     /// Appends those of four rows whose bits are set.
     #[inline(always)]
     pub fn push<A: FourLanes>(&mut self, a: A, four: [u32; 4], bits: usize) {
@@ -174,9 +174,10 @@ impl NearRow<'_> {
         self.used += usize::from(bits != 0);
     }
 
-    /// Ends the row.
+    /// Ends the row, and gives it.
     #[inline(always)]
-    pub fn close(self) {
+    pub fn close(self) -> &'a [u32] {
         *self.count = self.used as u32;
+        &self.room[..self.used]
     }
 }

@@ -9,9 +9,11 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, LEAST_SHARE};
-use crate::formulations::fluid::lanes::{Four, MASKS, OwnRecord, as_rows, dot, filled_up, sums};
-use crate::formulations::fluid::lists::{NearRows, NearWriter};
+use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take_until};
+use crate::formulations::fluid::lanes::{
+    FlowParticle, Four, FourPlaces, MASKS, OwnRecord, as_rows, dot, filled_up, sums,
+};
+use crate::formulations::fluid::lists::{NearRow, NearRows, NearWriter};
 use crate::parallel::{
     FourLanes, Lanes4, PlaneOrSpace, Split, for_each_block, for_each_own_block, run_hot_in, share_picked,
 };
@@ -108,69 +110,107 @@ impl WallPressureRows<'_> {
     /// `P`: with periods. `STICKS`: with the velocity of the fluid.
     #[inline(always)]
     fn rows<A: FourLanes, const D: usize, const P: bool, const STICKS: bool>(mut self, a: A) {
-        let (cloud, kernel) = (self.cloud, self.cloud.kernel);
-        let limit = Lanes4::splat(kernel.support * kernel.support);
+        let Self { cloud, first, .. } = self;
         for (k, out) in self.out.iter_mut().enumerate() {
+            let (i, list) = (cloud.fluid + first + k, cloud.pairs.boundary.row(first + k));
+            let mut rest = take_near(a, cloud, &cloud.records[i], list, self.near.row(k));
             *out = FluidBeside::default();
-            let mut near = self.near.row(k);
-            let mut rest = cloud.pairs.boundary.row(self.first + k);
-            // Most particles of a wall are dry, or behind others.
-            if rest.is_empty() {
-                near.close();
-                continue;
-            }
-            let own = OwnRecord::<D>::new(&cloud.records[cloud.fluid + self.first + k]);
-            let (mut total, mut pressure) = (Lanes4::ZERO, Lanes4::ZERO);
-            let (mut moment, mut velocity) = ([Lanes4::ZERO; D], [Lanes4::ZERO; D]);
-            let mut offset = [Lanes4::ZERO; D];
-            for group in &cloud.groups {
-                let Some(state) = group.fluid() else { break };
-                let end = group.cloud.end as u32;
-                let (row, tail) = rest.split_at(rest.partition_point(|&j| j < end));
-                rest = tail;
-                let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
-                for chunk in row.chunks(4) {
-                    let rows = filled_up(chunk);
-                    let four =
-                        Four::<D>::gather::<A, P>(a, &cloud.records, &own, as_rows(rows), &cloud.periods);
-                    let square = dot(a, &four.x, &four.x);
-                    let within = a.below(square, limit) & ((1 << chunk.len()) - 1);
-                    // Half of the lists of boundaries, along which fluids slide, is skin.
-                    if within == 0 {
-                        continue;
-                    }
-                    near.push(a, rows, within);
-                    let distance = a.sqrt(square);
-                    let volume = a.times(four.volume, MASKS[chunk.len()]);
-                    let value = a.times(kernel.values(a, distance), volume);
-                    // rho = rho_0 + p / c_0^2 to first order in the compression.
-                    let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
-                    total = a.plus(total, value);
-                    pressure = a.times_add(value, four.pressure, pressure);
-                    let weighed = a.times(value, density);
-                    if !cloud.loads.is_empty() {
-                        let along = along_loads::<A, D>(a, cloud, rows, &four.x);
-                        pressure = a.minus(pressure, a.times(weighed, along));
-                    }
-                    for axis in 0..D {
-                        moment[axis] = a.times_add(weighed, four.x[axis], moment[axis]);
-                        if STICKS {
-                            offset[axis] = a.times_add(value, four.x[axis], offset[axis]);
-                            velocity[axis] = a.times_add(value, four.v[axis], velocity[axis]);
-                        }
-                    }
+            let own = OwnRecord::<D>::new(&cloud.records[i]);
+            let mut sums = SumsBeside::<D>::ZERO;
+            // By number: zipped iterators would be called.
+            for n in 0..cloud.groups.len() {
+                let Some(state) = cloud.groups[n].fluid().filter(|_| !rest.is_empty()) else { break };
+                for chunk in take_until(&mut rest, cloud.groups[n].cloud.end).chunks(4) {
+                    sums.add::<A, P, STICKS>(a, cloud, (&own, state), chunk);
                 }
             }
-            near.close();
-            let total = total.sum();
-            if total > LEAST_SHARE {
-                let mean = 1.0 / total;
-                out.pressure = pressure.sum() * mean;
-                out.moment = sums(a, &moment) * mean;
-                if STICKS {
-                    out.velocity = sums(a, &velocity) * mean;
-                    out.offset = sums(a, &offset) * mean;
-                }
+            if !list.is_empty() {
+                sums.mean::<A, STICKS>(a, out);
+            }
+        }
+    }
+}
+
+/// Writes down those of a list that are within the support of a particle. Half of the lists of boundaries, along which fluids slide, is skin.
+#[inline(always)]
+fn take_near<'a, A: FourLanes>(
+    a: A,
+    cloud: &FlowCloud,
+    own: &FlowParticle,
+    list: &[u32],
+    mut near: NearRow<'a>,
+) -> &'a [u32] {
+    let limit = Lanes4::splat(cloud.kernel.support * cloud.kernel.support);
+    for chunk in list.chunks(4) {
+        let rows = filled_up(chunk);
+        let FourPlaces { x, .. } = FourPlaces::gather(a, &cloud.records, own, as_rows(rows), &cloud.periods);
+        near.push(a, rows, a.below(dot(a, &x, &x), limit) & ((1 << chunk.len()) - 1));
+    }
+    near.close()
+}
+
+/// Sums over the fluid beside a particle, in the lanes of the fours.
+struct SumsBeside<const D: usize> {
+    total: Lanes4,
+    pressure: Lanes4,
+    moment: [Lanes4; D],
+    velocity: [Lanes4; D],
+    offset: [Lanes4; D],
+}
+
+impl<const D: usize> SumsBeside<D> {
+    const ZERO: Self = Self {
+        total: Lanes4::ZERO,
+        pressure: Lanes4::ZERO,
+        moment: [Lanes4::ZERO; D],
+        velocity: [Lanes4::ZERO; D],
+        offset: [Lanes4::ZERO; D],
+    };
+
+    /// Adds up to four particles of a fluid.
+    #[inline(always)]
+    fn add<A: FourLanes, const P: bool, const STICKS: bool>(
+        &mut self,
+        a: A,
+        cloud: &FlowCloud,
+        (own, state): (&OwnRecord<D>, &FluidState),
+        chunk: &[u32],
+    ) {
+        let rows = filled_up(chunk);
+        let four = Four::<D>::gather::<A, P>(a, &cloud.records, own, as_rows(rows), &cloud.periods);
+        let distance = a.sqrt(dot(a, &four.x, &four.x));
+        let volume = a.times(four.volume, MASKS[chunk.len()]);
+        let value = a.times(cloud.kernel.values(a, distance), volume);
+        // rho = rho_0 + p / c_0^2 to first order in the compression.
+        let per_pressure = 1.0 / (state.sound_speed * state.sound_speed);
+        let density = a.scale_add(per_pressure, four.pressure, Lanes4::splat(state.density));
+        self.total = a.plus(self.total, value);
+        self.pressure = a.times_add(value, four.pressure, self.pressure);
+        let weighed = a.times(value, density);
+        if !cloud.loads.is_empty() {
+            let along = along_loads::<A, D>(a, cloud, rows, &four.x);
+            self.pressure = a.minus(self.pressure, a.times(weighed, along));
+        }
+        for axis in 0..D {
+            self.moment[axis] = a.times_add(weighed, four.x[axis], self.moment[axis]);
+            if STICKS {
+                self.offset[axis] = a.times_add(value, four.x[axis], self.offset[axis]);
+                self.velocity[axis] = a.times_add(value, four.v[axis], self.velocity[axis]);
+            }
+        }
+    }
+
+    /// Writes the means, where there is fluid.
+    #[inline(always)]
+    fn mean<A: FourLanes, const STICKS: bool>(&self, a: A, out: &mut FluidBeside) {
+        let total = self.total.sum();
+        if total > LEAST_SHARE {
+            let mean = 1.0 / total;
+            out.pressure = self.pressure.sum() * mean;
+            out.moment = sums(a, &self.moment) * mean;
+            if STICKS {
+                out.velocity = sums(a, &self.velocity) * mean;
+                out.offset = sums(a, &self.offset) * mean;
             }
         }
     }

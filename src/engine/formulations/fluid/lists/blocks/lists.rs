@@ -31,6 +31,8 @@ pub struct BlockLists {
     /// What is near the boxes.
     candidates: NeighborList,
     places: Vec<Packed>,
+    /// Which neighbours a block has already, while lists are joined.
+    joined: Vec<u32>,
 }
 
 /// What lists are built from.
@@ -60,6 +62,7 @@ impl BlockLists {
             counts: Vec::new(),
             candidates: NeighborList::default(),
             places: Vec::new(),
+            joined: Vec::new(),
         }
     }
 
@@ -77,10 +80,11 @@ impl BlockLists {
         walls: &NeighborList,
     ) -> Result<(), NeighborError> {
         let ListSources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
-        let Self { table, fluid, walls: of_blocks, seen_walls, units, counts, candidates, places } = self;
+        let Self { table, fluid, walls: of_blocks, seen_walls, units, counts, candidates, places, joined } =
+            self;
         table.build(positions, fluids, support, periodic);
         search.of_boxes((&table.centers, &table.halves, groups), skin, periodic, candidates)?;
-        of_blocks.join(&table.rows, walls);
+        of_blocks.join(&table.rows, walls, joined);
         pack_places(places, positions, units);
         fluid.make_room(&[candidates]);
         if sides.is_some() {

@@ -4,9 +4,7 @@ use std::ops::Range;
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
-use crate::formulations::fluid::lists::blocks::{
-    BlockLists, Blocks, OfBlocks, OwnBlock, Packed, SEEN, dot,
-};
+use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OfBlocks, OwnBlock, Packed, SEEN, dot};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
     BlockLoop, EIGHT, EightLanes, Lanes8, Split, for_each_own_block, others_rows, run_blocks_on,
