@@ -8,6 +8,7 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::{FluidState, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::schedule::{Step, StepError, warn_anew};
 
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is chosen for. The density then changes by 4 %.
@@ -29,9 +30,32 @@ fn rows<'a>(group: &Group, records: &'a [FlowParticle]) -> impl Iterator<Item = 
     records[group.cloud.clone()].iter().filter(|record| record.volume() > 0.0)
 }
 
+/// Sum of the velocities of some particles, m/s, and their number.
+#[derive(Clone, Copy, Default)]
+struct VelocitySum {
+    velocity: DVec3,
+    count: f64,
+}
+
+impl BlockSum for VelocitySum {
+    fn add(&mut self, next: &Self) {
+        self.velocity += next.velocity;
+        self.count += next.count;
+    }
+}
+
 fn mean_velocity(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
-    let all = || groups.iter().flat_map(|group| rows(group, records));
-    all().map(FlowParticle::velocity).sum::<DVec3>() / all().count().max(1) as f64
+    let mut all = VelocitySum::default();
+    for group in groups {
+        all.add(&sum_over_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
+            let here = records.iter().filter(|record| record.volume() > 0.0);
+            here.fold(VelocitySum::default(), |mut sum, record| {
+                sum.add(&VelocitySum { velocity: record.velocity(), count: 1.0 });
+                sum
+            })
+        }));
+    }
+    all.velocity / all.count.max(1.0)
 }
 
 /// Largest speed of a fluid against the frame of its flow, m/s; `at_first` is the one against `base`, the [`wall_frame`]. At the speeds of fluids that are no warning

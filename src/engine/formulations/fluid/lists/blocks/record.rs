@@ -189,8 +189,8 @@ mod tests {
             let record =
                 |k: u32| FlowParticle { place: Lanes4::new(place(k), 1e-3), ..FlowParticle::default() };
             let records: Vec<FlowParticle> = (0..8).map(record).collect();
-            let mut packed = Vec::new();
-            pack(&mut packed, &records, &units);
+            let mut packed = [Packed::default(); 8];
+            packed.iter_mut().zip(&records).for_each(|(packed, record)| packed.take(record, &units));
             let x = run_blocks_on(false, Differences(&packed, &units));
             for j in 0..8 {
                 for i in 0..8 {
