@@ -50,8 +50,13 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
-    /// Becomes the list of sets of rows of `other`: what any of a set has for a neighbour, ascending. `last` is memory that is kept.
-    pub fn join<const N: usize>(&mut self, sets: &[[u32; N]], other: &Self, last: &mut Vec<u32>) {
+    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a set has for a neighbour, ascending. `last` is memory that is kept.
+    pub fn join<const N: usize>(
+        &mut self,
+        sets: &[[u32; N]],
+        (other, first): (&Self, u32),
+        last: &mut Vec<u32>,
+    ) {
         self.offsets.clear();
         self.offsets.push(0);
         self.indices.clear();
@@ -60,7 +65,7 @@ impl NeighborList {
         last.resize(other.indices.iter().max().map_or(0, |&most| most as usize + 1), 0);
         for (set, number) in sets.iter().zip(1..) {
             let start = self.indices.len();
-            for &j in set.iter().flat_map(|&row| other.row(row as usize)) {
+            for &j in set.iter().flat_map(|&row| other.row((row - first) as usize)) {
                 if last[j as usize] != number {
                     last[j as usize] = number;
                     self.indices.push(j);

@@ -20,11 +20,18 @@ impl FlowCloud {
     /// The neighbours of particle `i` within the support: rows of the cloud, ordered by bodies. With sums in single precision they may hold the particle itself, and others beyond the support.
     #[inline(always)]
     pub(in crate::formulations::fluid) fn near_row(&self, i: usize) -> &[u32] {
-        if i >= self.fluid {
-            return self.near_boundary.row(i - self.fluid);
-        }
         let shared = self.blocks.as_ref().and_then(|blocks| blocks.shared_row(i));
-        shared.unwrap_or_else(|| self.near.row(i))
+        shared.unwrap_or_else(|| match i.checked_sub(self.fluid) {
+            Some(row) => self.near_boundary.row(row),
+            None => self.near.row(i),
+        })
+    }
+
+    /// Whether fluid is within the support of a boundary particle.
+    pub(in crate::formulations::fluid) fn is_wet(&self, i: usize) -> bool {
+        let (own, limit) = (self.records[i].position(), self.kernel.support * self.kernel.support);
+        let square = |j: u32| self.offset(own, self.records[j as usize].position()).length_squared();
+        self.near_row(i).iter().any(|&j| square(j) < limit)
     }
 
     /// Up to four neighbours of particle `i` in that body.

@@ -39,7 +39,9 @@ impl FlowCloud {
             Some(blocks) => blocks.make_room(near),
             None => near.make_room(&[&pairs.fluid, &pairs.walls]),
         }
-        near_boundary.make_room(&[&pairs.boundary]);
+        if blocks.as_ref().is_none_or(|blocks| blocks.hides) {
+            near_boundary.make_room(&[&pairs.boundary]);
+        }
         Ok(())
     }
 

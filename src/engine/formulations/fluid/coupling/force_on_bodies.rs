@@ -15,7 +15,7 @@ use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, 
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
 use crate::formulations::fluid::moments::SurfaceMoments;
-use crate::formulations::fluid::passes::{PairForce, reads_flow};
+use crate::formulations::fluid::passes::reads_flow;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
 use crate::rigid::RigidBodies;
@@ -143,7 +143,7 @@ impl Coupling {
                 if side == 0 { (&mut *total, &mut *parts) } else { (other_total, other_parts) };
             to.resize(group.rows.len(), Force::default());
             parts_to.resize(PARTS * group.rows.len(), DVec3::ZERO);
-            PairForce { cloud, group, adds: false }.run(to, parts_to);
+            cloud.force(group, to, parts_to);
             moments.add(cloud, group, to, parts_to);
             cloud.repel(group, to, parts_to);
             cloud.press_gaps(group, to, parts_to);

@@ -117,7 +117,7 @@ impl FlowPairs {
         if let Some(lists) = blocks {
             let ends = &self.groups;
             let sources = ListSources {
-                positions: &positions[..fluid],
+                positions,
                 fluids: &ends[..ends.partition_point(|&end| end as usize <= fluid)],
                 support,
                 skin,
@@ -125,7 +125,8 @@ impl FlowPairs {
                 periodic: &self.periodic,
                 sides: hides,
             };
-            lists.build(&sources, (&mut self.search, &self.groups), &self.walls)?;
+            let near_boundaries = (&self.walls, &self.boundary);
+            lists.build(&sources, (&mut self.search, &self.groups), near_boundaries)?;
         }
         // The particles may have moved already: those of an interrupted run have.
         self.room = f64::NEG_INFINITY;

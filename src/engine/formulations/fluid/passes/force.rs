@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use super::blocks::BlockForce;
-use super::pair_force::PairForce;
 use crate::formulations::fluid::cloud::{
     ACCOUNTS, FLOW_RECORDS, FlowCloud, GAP_FORCES, PARTS, REPELLED, Role, SPINS,
 };
@@ -40,8 +38,8 @@ pub struct FlowForce {
 impl Run for FlowForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let flows = self.gravity.is_some();
-        let mut cloud = step.resources.get_mut::<FlowCloud>();
-        let blocks = if flows { cloud.blocks.take() } else { None };
+        let resources = step.resources;
+        let cloud = resources.get::<FlowCloud>();
         let view = step.world.phase(self.phase);
         let (mass, removed) = (view.read::<Mass>()?, view.read::<Removed>()?);
         let mut force = view.write_own::<Force>()?;
@@ -51,18 +49,9 @@ impl Run for FlowForce {
             forces.resize(PARTS * group.rows.len(), DVec3::ZERO);
             let total = &mut force[group.rows.clone()];
             let terms = self.terms.as_mut().filter(|terms| terms.act_on(group.body));
-            if let Some(blocks) = &blocks {
-                let pass = BlockForce { cloud: &cloud, group, blocks };
-                match terms {
-                    Some(terms) => pass.run_with(terms, step, total, forces)?,
-                    None => pass.run(total, forces),
-                }
-            } else {
-                let pass = PairForce { cloud: &cloud, group, adds: !flows };
-                match terms {
-                    Some(terms) => pass.run_with(terms, step, total, forces)?,
-                    None => pass.run_own(total, forces),
-                }
+            match terms {
+                Some(terms) => cloud.force_with(group, terms, step, (total, forces))?,
+                None => cloud.own_force(group, !flows, (total, forces)),
             }
             self.moments.add(&cloud, group, total, forces);
             cloud.repel(group, total, forces);
@@ -91,9 +80,6 @@ impl Run for FlowForce {
                 step.ledger.add(supplied, group.body, work);
                 step.ledger.add(dissipated, group.body, work);
             }
-        }
-        if flows {
-            cloud.blocks = blocks;
         }
         Ok(())
     }

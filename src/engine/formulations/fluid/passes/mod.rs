@@ -10,8 +10,9 @@ mod compression;
 
 mod force;
 
+mod of_group;
+
 mod reaction;
 
 pub use compression::Compression;
 pub use force::{FLUID_FORCE, FlowForce, reads_flow};
-pub use pair_force::PairForce;

@@ -13,9 +13,7 @@ use super::pair_sums::{Between, Forces, PairsOfRow};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, take_until};
 use crate::formulations::fluid::lanes::{FluidKernel, OwnRecord, sums};
 use crate::pair::{BoundTerms, Extras, PairBatch, PhaseTerms, RateBounds, TermRows, with_batch};
-use crate::parallel::{
-    BlockSum, FourLanes, PlaneOrSpace, Split, for_each_own_block, run_hot_in, share_rows, share_wide_rows,
-};
+use crate::parallel::{BlockSum, FourLanes, PlaneOrSpace, Split, for_each_own_block, run_hot_in};
 use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
@@ -46,22 +44,15 @@ impl Split for ForceRows<'_> {
 }
 
 impl PairForce<'_> {
-    /// Writes the forces on all particles of the group and [`PARTS`] parts of each, N.
+    /// Writes the forces on the particles of the group that this rank computes and [`PARTS`] parts of each, N.
     pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
-        self.run_own(total, parts);
-        share_rows(total);
-        share_wide_rows(parts, PARTS);
-    }
-
-    /// The same for the particles that this rank computes.
-    pub fn run_own(&self, total: &mut [Force], parts: &mut [DVec3]) {
         let rows = ForceRows { written: TermRows::without_terms(total), parts };
         for_each_own_block(rows, &mut Vec::new(), &|first, rows| {
             run_hot_in(self.cloud.plane, PairForceRows { pass: self, first, rows, terms: None });
         });
     }
 
-    /// [`PairForce::run_own`] with the pair terms of the body, which get the geometry of each row as the pass has computed it.
+    /// [`PairForce::run`] with the pair terms of the body, which get the geometry of each row as the pass has computed it.
     pub fn run_with(
         &self,
         terms: &mut PhaseTerms,

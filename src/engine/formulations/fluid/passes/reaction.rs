@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::pair_force::PairForce;
 use crate::formulations::fluid::cloud::{FlowCloud, PARTS};
 use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::world::{BodyId, Force};
@@ -16,7 +15,7 @@ impl FlowCloud {
         for group in self.groups.iter().filter(|group| group.body == body) {
             let mut total = vec![Force(DVec3::ZERO); group.rows.len()];
             let mut parts = vec![DVec3::ZERO; PARTS * group.rows.len()];
-            PairForce { cloud: self, group, adds: false }.run(&mut total, &mut parts);
+            self.force(group, &mut total, &mut parts);
             SurfaceMoments::default().add(self, group, &mut total, &mut parts);
             self.repel(group, &mut total, &mut parts);
             self.press_gaps(group, &mut total, &mut parts);

@@ -12,6 +12,8 @@ mod wall_compression;
 
 mod wall_pressure;
 
+mod wall_blocks;
+
 mod wall_state;
 
 mod gaps;

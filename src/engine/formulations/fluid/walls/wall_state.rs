@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::wall::PreviousVelocity;
+use super::wall_blocks::WallBlocks;
 use super::wall_pressure::{FluidBeside, WallPressure};
 use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
@@ -23,9 +24,13 @@ impl Run for WallState {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         self.beside.resize(cloud.records.len() - cloud.fluid, FluidBeside::default());
+        let mut blocks = cloud.blocks.take();
         let mut near = std::mem::take(&mut cloud.near_boundary);
-        WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near);
-        cloud.near_boundary = near;
+        match blocks.as_mut().filter(|blocks| !blocks.hides) {
+            Some(blocks) => WallBlocks { cloud: &cloud }.run(blocks, &mut self.beside),
+            None => WallPressure { cloud: &cloud }.run(&mut self.beside, &mut near),
+        }
+        (cloud.near_boundary, cloud.blocks) = (near, blocks);
         let first = cloud.fluid;
         for group in cloud.groups.iter().filter(|group| group.sticks()) {
             // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or are sheared alike.

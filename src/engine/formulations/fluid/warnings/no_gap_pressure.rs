@@ -28,7 +28,7 @@ pub fn look(
     let across = if cloud.plane { 1 } else { 2 };
     for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
         let Role::Boundary(surface) = &group.role else { continue };
-        let is_wet = |row: usize| !cloud.near_row(row).is_empty();
+        let is_wet = |row: usize| cloud.is_wet(row);
         if !surface.moved || !cloud.pairs.gaps.side_of(group.cloud.start).is_closed {
             continue;
         }

@@ -23,6 +23,8 @@ pub struct BlockLists {
     pub fluid: NearRows,
     /// What bounds them.
     pub walls: NeighborList,
+    /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near any of each. None where thin bodies hide some of what is near.
+    pub boundary: NeighborList,
     /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are the bits of `fluid`, where all see what is near.
     seen_walls: Vec<u8>,
     units: Units,
@@ -37,7 +39,7 @@ pub struct BlockLists {
 
 /// What lists are built from.
 pub struct ListSources<'a> {
-    /// Positions of the fluids, m, those that the search has sorted.
+    /// Positions of all particles, m; the search has sorted those of fluids.
     pub positions: &'a [DVec3],
     /// Where each fluid ends.
     pub fluids: &'a [u32],
@@ -57,6 +59,7 @@ impl BlockLists {
             table: BlockTable::default(),
             fluid: NearRows::default(),
             walls: NeighborList::default(),
+            boundary: NeighborList::default(),
             seen_walls: Vec::new(),
             units,
             counts: Vec::new(),
@@ -72,29 +75,45 @@ impl BlockLists {
         (self.fluid.lanes(block), &self.seen_walls[self.walls.range(block)])
     }
 
-    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each particle among the boundary particles.
+    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each fluid particle among the boundary particles, `boundary` those of each boundary particle among
+    /// the fluid particles.
     pub fn build(
         &mut self,
         sources: &ListSources<'_>,
         (search, groups): (&mut NeighborSearch, &[u32]),
-        walls: &NeighborList,
+        (walls, boundary): (&NeighborList, &NeighborList),
     ) -> Result<(), NeighborError> {
         let ListSources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
-        let Self { table, fluid, walls: of_blocks, seen_walls, units, counts, candidates, places, joined } =
-            self;
-        table.build(positions, fluids, support, periodic);
-        search.of_boxes((&table.centers, &table.halves, groups), skin, periodic, candidates)?;
-        of_blocks.join(&table.rows, walls, joined);
-        pack_places(places, positions, units);
+        let Self {
+            table,
+            fluid,
+            walls: of_blocks,
+            boundary: of_boundaries,
+            seen_walls,
+            units,
+            counts,
+            candidates,
+            places,
+            joined,
+        } = self;
+        let particles = fluids.last().copied().unwrap_or_default();
+        table.build(positions, if sides.is_some() { fluids } else { groups }, support, periodic);
+        let blocks = table.of_first_bodies(fluids.len());
+        let (of_fluids, of_others) = table.rows.split_at(blocks);
+        let boxes = (&table.centers[..blocks], &table.halves[..blocks], groups);
+        search.of_boxes(boxes, skin, periodic, candidates)?;
+        of_blocks.join(of_fluids, (walls, 0), joined);
+        of_boundaries.join(of_others, (boundary, particles), joined);
+        pack_places(places, &positions[..particles as usize], units);
         fluid.make_room(&[candidates]);
         if sides.is_some() {
             fluid.keep_lanes();
-            write_seen(seen_walls, &table.rows, of_blocks, walls);
+            write_seen(seen_walls, of_fluids, of_blocks, walls);
         }
         let unit = units.length.to_array();
         let limit = ((support + skin) * CERTAIN).powi(2);
         let (table, candidates, places) = (&*table, &*candidates, &places[..]);
-        counts.resize(table.rows.len(), [0; EIGHT]);
+        counts.resize(blocks, [0; EIGHT]);
         let rows = (&mut counts[..], fluid.writer());
         for_each_block(rows, &mut Vec::new(), &|first, (counts, near): (&mut [_], NearWriter<'_>)| {
             let sift = Sift { table, candidates, places, sides, unit, limit, first, counts, near };

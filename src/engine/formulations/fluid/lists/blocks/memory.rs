@@ -11,7 +11,7 @@ pub struct Blocks {
     pub packed: Vec<Packed>,
     /// Neighbours within the support of any particle of a block.
     pub near: NearRows,
-    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are then written down in every step.
+    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are then written down in every step, and boundaries have no blocks.
     pub hides: bool,
 }
 
@@ -23,8 +23,11 @@ impl Blocks {
 
     /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the particles.
     pub fn make_room(&mut self, of_particles: &mut NearRows) {
-        let BlockLists { table, fluid, walls, counts, .. } = &self.lists;
-        let most = |block: usize| fluid.row(block).len() + walls.row(block).len();
+        let BlockLists { table, fluid, walls, boundary, counts, .. } = &self.lists;
+        let most = |block: usize| match block.checked_sub(walls.rows()) {
+            Some(block) => boundary.row(block).len(),
+            None => fluid.row(block).len() + walls.row(block).len(),
+        };
         self.near.make_room_for(table.rows.len(), most);
         if self.hides {
             self.near.keep_lanes();
@@ -36,7 +39,7 @@ impl Blocks {
         }
     }
 
-    /// Neighbours within the support of a fluid particle or one that shares its block, itself included.
+    /// Neighbours within the support of a particle or one that shares its block, itself included.
     #[inline(always)]
     pub fn near_of(&self, row: usize) -> &[u32] {
         self.near.row(self.lists.table.place(row).0)

@@ -18,7 +18,7 @@ const LONGEST: f64 = 2.0;
 /// Rows of the particles of a block; lanes without a particle repeat the last one.
 pub type Rows = [u32; EIGHT];
 
-/// The blocks of all fluids.
+/// The blocks of some bodies of a flow, fluids first.
 #[derive(Debug, Default)]
 pub struct BlockTable {
     /// Particles of each block, ascending.
@@ -26,9 +26,9 @@ pub struct BlockTable {
     /// Middle of the box of each block, m, and half of its edges.
     pub centers: Vec<DVec3>,
     pub halves: Vec<DVec3>,
-    /// Rows of each fluid, and where its part of `starts` is.
-    fluids: Vec<(Range<usize>, usize)>,
-    /// For every 64 rows of each fluid, where their blocks start, and after those of a fluid where they end.
+    /// Rows of each body, and where its part of `starts` is.
+    bodies: Vec<(Range<usize>, usize)>,
+    /// For every 64 rows of each body, where their blocks start, and after those of a body where they end.
     starts: Vec<usize>,
     /// Where each particle is: eight times its block, and its lane.
     places: Vec<u32>,
@@ -45,15 +45,15 @@ struct RunPoint {
 }
 
 impl BlockTable {
-    /// Makes the blocks of fluids whose rows end here from the positions of their particles, m, which are finite.
-    pub fn build(&mut self, positions: &[DVec3], fluids: &[u32], support: f64, periodic: &Periodic) {
+    /// Makes the blocks of bodies whose rows end here from the positions of their particles, m, which are finite.
+    pub fn build(&mut self, positions: &[DVec3], bodies: &[u32], support: f64, periodic: &Periodic) {
         self.rows.clear();
         self.starts.clear();
-        self.fluids.clear();
+        self.bodies.clear();
         let mut first = 0;
-        for end in fluids.iter().map(|&end| end as usize) {
-            self.fluids.push((first..end, self.starts.len()));
-            self.add_fluid(&positions[first..end], first as u32, support, periodic);
+        for end in bodies.iter().map(|&end| end as usize) {
+            self.bodies.push((first..end, self.starts.len()));
+            self.add_body(&positions[first..end], first as u32, support, periodic);
             self.starts.push(self.rows.len());
             first = end;
         }
@@ -78,7 +78,7 @@ impl BlockTable {
         });
     }
 
-    fn add_fluid(&mut self, positions: &[DVec3], first: u32, support: f64, periodic: &Periodic) {
+    fn add_body(&mut self, positions: &[DVec3], first: u32, support: f64, periodic: &Periodic) {
         let Self { rows, starts, order, lasts, .. } = self;
         order.resize(positions.len(), 0);
         lasts.resize(positions.len().div_ceil(BLOCK), 0);
@@ -118,25 +118,30 @@ impl BlockTable {
         (place / EIGHT, place % EIGHT)
     }
 
-    /// The blocks that some rows of a fluid are in.
+    /// Number of blocks of that many bodies, the first ones.
+    pub fn of_first_bodies(&self, bodies: usize) -> usize {
+        self.bodies.get(bodies).map_or(self.rows.len(), |(_, first)| self.starts[*first])
+    }
+
+    /// The blocks that some rows of a body are in.
     #[inline]
     pub fn of_rows(&self, rows: &Range<usize>) -> Range<usize> {
         let starts = self.starts_of(rows);
         starts[0]..starts[starts.len() - 1]
     }
 
-    /// For every 64 rows of a fluid that some are among, where their blocks start, and where the last end.
+    /// For every 64 rows of a body that some are among, where their blocks start, and where the last end.
     fn starts_of(&self, rows: &Range<usize>) -> &[usize] {
-        let n = self.fluids.partition_point(|(fluid, _)| fluid.start <= rows.start) - 1;
-        let (fluid, first) = &self.fluids[n];
-        let from = (rows.start - fluid.start) / BLOCK;
-        let to = (rows.end - fluid.start).div_ceil(BLOCK);
+        let n = self.bodies.partition_point(|(body, _)| body.start <= rows.start) - 1;
+        let (body, first) = &self.bodies[n];
+        let from = (rows.start - body.start) / BLOCK;
+        let to = (rows.end - body.start).div_ceil(BLOCK);
         &self.starts[first + from..=first + to]
     }
 
-    /// What belongs to the blocks of a fluid, to be cut where its rows are.
-    pub fn beside<T>(&self, fluid: &Range<usize>, blocks: T) -> OfBlocks<'_, T> {
-        OfBlocks { blocks, rows: fluid.len(), starts: self.starts_of(fluid) }
+    /// What belongs to the blocks of a body, to be cut where its rows are.
+    pub fn beside<T>(&self, body: &Range<usize>, blocks: T) -> OfBlocks<'_, T> {
+        OfBlocks { blocks, rows: body.len(), starts: self.starts_of(body) }
     }
 }
 

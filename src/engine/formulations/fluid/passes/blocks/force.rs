@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use super::super::pair_force::ForceRows;
-use super::land::land;
+use super::land::{Landing, land};
 use super::pairs::{BlockForces, PairsOfBlock, hide};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
@@ -22,11 +22,13 @@ thread_local! {
 /// Tasks of 512 particles are worth handing over to another thread.
 const PER_TASK: usize = 8;
 
-/// The pass over the particles of a fluid.
+/// The pass over the particles of a body.
 pub struct BlockForce<'a> {
     pub cloud: &'a FlowCloud,
     pub group: &'a Group,
     pub blocks: &'a Blocks,
+    /// Whether the force is added to what is there already.
+    pub adds: bool,
 }
 
 impl BlockForce<'_> {
@@ -97,12 +99,14 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
 
     #[inline(always)]
     fn run<A: EightLanes>(self, a: A) -> RateBounds {
-        let Self { pass: BlockForce { cloud, group, blocks }, terms, kernel, first, mut rows, pairs } = self;
+        let Self { pass: BlockForce { cloud, group, blocks, adds }, terms, kernel, first, mut rows, pairs } =
+            self;
         let Blocks { lists, units, packed, near, hides } = blocks;
         let count = rows.written.terms();
         let packed: &[Packed] = packed;
         let (groups, viscosities) = (&cloud.groups[..], cloud.viscosities.of(group));
         let factor = cloud.viscosities.factor();
+        let flows = group.fluid().is_some();
         let mut fastest = RateBounds::default();
         let mut of_terms: AllSums = Default::default();
         for block in lists.table.of_rows(&(first..first + rows.rows())) {
@@ -130,10 +134,10 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                         hide(a, of_chunk, pairs);
                         seen = others;
                     }
-                    if other.fluid().is_some() {
-                        of_block.add_fluid(a, pairs, &mut sums);
-                    } else {
-                        of_block.add_walls(a, pairs, &mut sums);
+                    match (flows, other.fluid().is_some()) {
+                        (true, true) => of_block.add_fluid(a, pairs, &mut sums),
+                        (true, false) => of_block.add_walls::<A, false>(a, pairs, &mut sums),
+                        (false, _) => of_block.add_walls::<A, true>(a, pairs, &mut sums),
                     }
                     if let Some(terms) = terms {
                         terms.run_block(pairs, &mut of_terms[..count]);
@@ -141,7 +145,7 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 }
             }
             let of_terms = &of_terms[..count];
-            land(&sums, of_terms, (particles, first), cloud.plane, &mut rows);
+            land(&sums, of_terms, Landing { particles, first, plane: cloud.plane, adds: *adds }, &mut rows);
             if count > 0 {
                 fastest.add_block(of_terms);
             }

@@ -10,24 +10,34 @@ use crate::pair::TermSums;
 use crate::parallel::{EIGHT, Lanes8};
 use crate::world::Force;
 
-/// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts of each, and what the terms make; `first` is the first of the rows.
-pub fn land(
-    sums: &BlockForces,
-    of_terms: &[TermSums],
-    (particles, first): (&Rows, usize),
-    plane: bool,
-    rows: &mut ForceRows<'_>,
-) {
+/// Where the sums of a block go.
+pub struct Landing<'a> {
+    pub particles: &'a Rows,
+    /// The first of the rows.
+    pub first: usize,
+    /// Whether vectors have no z.
+    pub plane: bool,
+    /// Whether forces are added to what is there already.
+    pub adds: bool,
+}
+
+/// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts of each, and what the terms make.
+pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: Landing<'_>, rows: &mut ForceRows<'_>) {
+    let Landing { particles, first, plane, adds } = landing;
     let ForceRows { written, parts } = rows;
     for lane in 0..EIGHT {
-        // In the plane a vector has no z.
+        // Lanes without a particle repeat the last one.
+        if adds && lane > 0 && particles[lane] == particles[lane - 1] {
+            break;
+        }
         let vector = |[x, y, z]: &[Lanes8; 3]| {
             let z = if plane { 0.0 } else { f64::from(z.0[lane]) };
             DVec3::new(f64::from(x.0[lane]), f64::from(y.0[lane]), z)
         };
         let k = particles[lane] as usize - first;
         let (viscous, wall) = (vector(&sums.viscous), vector(&sums.wall));
-        written.total[k] = Force(viscous - vector(&sums.pressure) - wall);
+        let before = if adds { written.total[k].0 } else { DVec3::ZERO };
+        written.total[k] = Force(before + viscous - vector(&sums.pressure) - wall);
         parts[PARTS * k] = viscous;
         parts[PARTS * k + 1] = -wall;
         let mut rate = 0.0;

@@ -168,28 +168,41 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         (sums.pressure, sums.viscous) = (pressure, viscous);
     }
 
-    /// Adds neighbours that bound the fluid: their pressures are kept apart.
+    /// Adds neighbours that bound the fluid, or, if the particles are those that bound it (`BOUND`), the fluid: the pressures of what bounds it are kept apart.
     #[inline(always)]
-    pub fn add_walls<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
+    pub fn add_walls<A: EightLanes, const BOUND: bool>(
+        &self,
+        a: A,
+        pairs: &BlockPairs,
+        sums: &mut BlockForces,
+    ) {
         match self.friction() {
-            NONE => self.walls::<A, NONE>(a, pairs, sums),
-            PLAIN => self.walls::<A, PLAIN>(a, pairs, sums),
-            _ => self.walls::<A, WITH_SPIN>(a, pairs, sums),
+            NONE => self.walls::<A, BOUND, NONE>(a, pairs, sums),
+            PLAIN => self.walls::<A, BOUND, PLAIN>(a, pairs, sums),
+            _ => self.walls::<A, BOUND, WITH_SPIN>(a, pairs, sums),
         }
     }
 
     #[inline(always)]
-    fn walls<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
+    fn walls<A: EightLanes, const BOUND: bool, const FRICTION: u8>(
+        &self,
+        a: A,
+        pairs: &BlockPairs,
+        sums: &mut BlockForces,
+    ) {
         let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
         for pair in pairs.pairs() {
             let other = &self.packed[pair.row as usize];
             let weight = a.times(pair.weight, a.times(self.own.volume, a.same(other.volume)));
             let (of_i, of_j) = (a.times(weight, self.own.pressure), a.times(weight, a.same(other.pressure)));
+            let (of_fluid, of_wall) = if BOUND { (of_j, of_i) } else { (of_i, of_j) };
             for axis in 0..A::AXES {
-                pressure[axis] = a.times_add(of_i, pair.x[axis], pressure[axis]);
-                wall[axis] = a.times_add(of_j, pair.x[axis], wall[axis]);
+                pressure[axis] = a.times_add(of_fluid, pair.x[axis], pressure[axis]);
+                wall[axis] = a.times_add(of_wall, pair.x[axis], wall[axis]);
             }
-            self.rub::<A, FRICTION>(a, (pair.row, 1.0), pair, weight, &mut viscous);
+            // The spin of the pair is that of the fluid.
+            let share = if BOUND { 0.0 } else { 1.0 };
+            self.rub::<A, FRICTION>(a, (pair.row, share), pair, weight, &mut viscous);
         }
         *sums = BlockForces { pressure, viscous, wall };
     }

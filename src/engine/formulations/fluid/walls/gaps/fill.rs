@@ -173,7 +173,7 @@ impl Fill {
 
     /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support, less that `fall`, Pa.
     pub fn beyond(&self, cloud: &FlowCloud, row: usize, fall: f64) -> Option<f64> {
-        if !cloud.near_row(row).is_empty() {
+        if cloud.is_wet(row) {
             let pressure = cloud.records[row].pressure();
             return Some(if fall > 0.0 { (pressure - fall).max(0.0) } else { pressure });
         }

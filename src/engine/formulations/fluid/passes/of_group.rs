@@ -1,0 +1,60 @@
+//! The force of a flow on the particles of one body, by the pass that goes in blocks or by the one that does not.
+
+use glam::DVec3;
+
+use super::blocks::BlockForce;
+use super::pair_force::PairForce;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
+use crate::formulations::fluid::lists::blocks::Blocks;
+use crate::pair::PhaseTerms;
+use crate::parallel::{share_rows, share_wide_rows};
+use crate::schedule::{Step, StepError};
+use crate::world::Force;
+
+impl FlowCloud {
+    /// The blocks that the particles of a body are in: those of boundaries have none where thin bodies hide some of what is near.
+    fn blocks_of(&self, group: &Group) -> Option<&Blocks> {
+        self.blocks.as_deref().filter(|blocks| group.fluid().is_some() || !blocks.hides)
+    }
+
+    /// Writes the forces on all particles of a body and [`PARTS`] parts of each, N.
+    pub(in crate::formulations::fluid) fn force(
+        &self,
+        group: &Group,
+        total: &mut [Force],
+        parts: &mut [DVec3],
+    ) {
+        self.own_force(group, false, (&mut *total, &mut *parts));
+        share_rows(total);
+        share_wide_rows(parts, PARTS);
+    }
+
+    /// The same for the particles that this rank computes; the force `adds` to what is there, or takes its place.
+    pub(in crate::formulations::fluid) fn own_force(
+        &self,
+        group: &Group,
+        adds: bool,
+        (total, parts): (&mut [Force], &mut [DVec3]),
+    ) {
+        match self.blocks_of(group) {
+            Some(blocks) => BlockForce { cloud: self, group, blocks, adds }.run(total, parts),
+            None => PairForce { cloud: self, group, adds }.run(total, parts),
+        }
+    }
+
+    /// [`FlowCloud::own_force`] on a fluid, in the place of what is there, with the pair terms of the body.
+    pub(in crate::formulations::fluid) fn force_with(
+        &self,
+        group: &Group,
+        terms: &mut PhaseTerms,
+        step: &mut Step<'_>,
+        (total, parts): (&mut [Force], &mut [DVec3]),
+    ) -> Result<(), StepError> {
+        match self.blocks_of(group) {
+            Some(blocks) => {
+                BlockForce { cloud: self, group, blocks, adds: false }.run_with(terms, step, total, parts)
+            }
+            None => PairForce { cloud: self, group, adds: false }.run_with(terms, step, total, parts),
+        }
+    }
+}
