@@ -194,11 +194,7 @@ impl<'a> RowConstants<'a> {
                     pairs.add_and_keep::<A, P>(a, room, terms.reads.kernel, &mut forces);
                 }
                 _ => {
-                    let between = match (is_fluid, other.fluid().is_some()) {
-                        (true, true) => Between::Fluids,
-                        (true, false) => Between::FluidAndBoundary,
-                        _ => Between::BoundaryAndFluid,
-                    };
+                    let between = Between::of(is_fluid, other.fluid().is_some());
                     pairs.add::<A, P>(a, between, &mut forces);
                 }
             }

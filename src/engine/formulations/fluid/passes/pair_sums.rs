@@ -70,8 +70,17 @@ pub enum Between {
 }
 
 impl Between {
+    /// Between a particle and a neighbour of which it is said whether they flow.
+    pub fn of(flows: bool, neighbor_flows: bool) -> Self {
+        match (flows, neighbor_flows) {
+            (true, true) => Self::Fluids,
+            (true, false) => Self::FluidAndBoundary,
+            _ => Self::BoundaryAndFluid,
+        }
+    }
+
     /// Shares of the spins of the particle and of its neighbour in that of the pair.
-    fn shares(self) -> [f64; 2] {
+    pub fn shares(self) -> [f64; 2] {
         match self {
             Self::Fluids => [0.5, 0.5],
             Self::FluidAndBoundary => [1.0, 0.0],

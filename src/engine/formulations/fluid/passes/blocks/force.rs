@@ -3,8 +3,9 @@
 use std::cell::RefCell;
 
 use super::super::pair_force::ForceRows;
+use super::super::pair_sums::Between;
 use super::land::{Landing, land};
-use super::pairs::{BlockForces, PairsOfBlock, hide};
+use super::pairs::{BlockForces, Chunk, PairsOfBlock};
 use crate::formulations::fluid::cloud::{FlowCloud, Group, take_until};
 use crate::formulations::fluid::lanes::{KernelLoop, PairShape};
 use crate::formulations::fluid::lists::blocks::{Blocks, OwnBlock, Packed};
@@ -117,7 +118,7 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
             of_terms[..count].fill(TermSums::default());
             let mut sums = BlockForces::ZERO;
             let mut rest = near.row(block);
-            let mut seen = if *hides { near.lanes(block) } else { &[] };
+            let mut seen = hides.then(|| near.lanes(block));
             // By number: zipped iterators would be called.
             for n in 0..groups.len() {
                 if rest.is_empty() {
@@ -126,20 +127,17 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
                 let other = &groups[n];
                 let row = take_until(&mut rest, other.cloud.end);
                 of_block.viscosity = factor * viscosities[n];
+                let between = Between::of(flows, other.fluid().is_some());
                 let terms = terms.filter(|_| other.cloud.start == group.cloud.start);
                 for chunk in row.chunks(CHUNK) {
-                    of_block.fill(a, chunk, terms.is_some_and(|terms| terms.reads.kernel), pairs);
-                    if *hides {
-                        let (of_chunk, others) = seen.split_at(chunk.len());
-                        hide(a, of_chunk, pairs);
-                        seen = others;
-                    }
-                    match (flows, other.fluid().is_some()) {
-                        (true, true) => of_block.add_fluid(a, pairs, &mut sums),
-                        (true, false) => of_block.add_walls::<A, false>(a, pairs, &mut sums),
-                        (false, _) => of_block.add_walls::<A, true>(a, pairs, &mut sums),
-                    }
+                    let of_chunk = take_bits(&mut seen, chunk.len());
+                    let chunk = Chunk { row: chunk, seen: of_chunk, between };
+                    let kept = terms.map(|_| pairs.room(chunk.row.len()));
+                    of_block.add(a, chunk, kept, &mut sums);
                     if let Some(terms) = terms {
+                        if terms.reads.kernel {
+                            of_block.add_kernel(a, pairs.pairs_mut());
+                        }
                         terms.run_block(pairs, &mut of_terms[..count]);
                     }
                 }
@@ -152,4 +150,12 @@ impl<K: PairShape> BlockLoop for ForceBlocks<'_, K> {
         }
         fastest
     }
+}
+
+/// Takes the bits of that many neighbours out of those that are left.
+#[inline(always)]
+fn take_bits<'a>(rest: &mut Option<&'a [u8]>, count: usize) -> Option<&'a [u8]> {
+    let (bits, behind) = (*rest)?.split_at(count);
+    *rest = Some(behind);
+    Some(bits)
 }

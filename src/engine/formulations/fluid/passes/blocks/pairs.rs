@@ -1,14 +1,15 @@
 //! Sums over the neighbours of a block: the forces of the second pass.
 //!
-//! Some neighbours are taken at a time: one loop makes their geometry, which stays in the first-level cache, one adds the forces of the flow, and one each the terms of plugins. So
+//! Some neighbours are taken at a time: one loop adds the forces of the flow and leaves the geometry of the pairs in the first-level cache for those of the terms of plugins, one each. So
 //! the sums of every loop stay in registers. Products of volumes, and sums of pressures, are the same from both sides of a pair, and differences exact opposites: so is the force.
 
 use glam::DVec3;
 
+use super::super::pair_sums::Between;
 use crate::formulations::fluid::cloud::{FlowCloud, NONE, PLAIN, WITH_SPIN};
 use crate::formulations::fluid::lanes::PairShape;
 use crate::formulations::fluid::lists::blocks::{Other, OwnBlock, Packed, Rows, SEEN, Units, dot};
-use crate::pair::{BlockPairs, EightPairs};
+use crate::pair::EightPairs;
 use crate::parallel::{EIGHT, EightLanes, Lanes8};
 
 /// The pairs of a block.
@@ -40,14 +41,21 @@ impl BlockForces {
         Self { pressure: [Lanes8::ZERO; 3], viscous: [Lanes8::ZERO; 3], wall: [Lanes8::ZERO; 3] };
 }
 
-/// Takes the pairs that particles of the block do not see, whose bits are zero, out of what is summed.
-#[inline(always)]
-pub fn hide<A: EightLanes>(a: A, seen: &[u8], pairs: &mut BlockPairs) {
-    for (pair, &seen) in pairs.pairs_mut().iter_mut().zip(seen) {
-        let seen = SEEN[usize::from(seen)];
-        (pair.weight, pair.volume) = (a.times(pair.weight, seen), a.times(pair.volume, seen));
-    }
+/// Some neighbours of a block, all of one body.
+#[derive(Clone, Copy)]
+pub struct Chunk<'c> {
+    /// Their rows in the cloud.
+    pub row: &'c [u32],
+    /// The bits of the particles of the block that see each; none where all see what is near.
+    pub seen: Option<&'c [u8]>,
+    /// Whose pressures act.
+    pub between: Between,
 }
+
+/// Values of [`Between`].
+const FLUIDS: u8 = 0;
+const AND_BOUNDARY: u8 = 1;
+const AND_FLUID: u8 = 2;
 
 impl<'a, K: PairShape> PairsOfBlock<'a, K> {
     #[inline(always)]
@@ -76,32 +84,87 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         self.cloud.viscosities.friction(self.viscosity)
     }
 
-    /// Puts the geometry of the pairs with some neighbours into `kept`.
+    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there is room to keep it.
     #[inline(always)]
-    pub fn fill<A: EightLanes>(&self, a: A, row: &[u32], with_kernel: bool, kept: &mut BlockPairs) {
+    pub fn add<A: EightLanes>(
+        &self,
+        a: A,
+        chunk: Chunk<'_>,
+        kept: Option<&mut [EightPairs]>,
+        sums: &mut BlockForces,
+    ) {
+        match (chunk.between, self.friction()) {
+            (Between::Fluids, NONE) => self.sum::<A, FLUIDS, NONE>(a, chunk, kept, sums),
+            (Between::Fluids, PLAIN) => self.sum::<A, FLUIDS, PLAIN>(a, chunk, kept, sums),
+            (Between::Fluids, _) => self.sum::<A, FLUIDS, WITH_SPIN>(a, chunk, kept, sums),
+            (Between::FluidAndBoundary, NONE) => self.sum::<A, AND_BOUNDARY, NONE>(a, chunk, kept, sums),
+            (Between::FluidAndBoundary, PLAIN) => self.sum::<A, AND_BOUNDARY, PLAIN>(a, chunk, kept, sums),
+            (Between::FluidAndBoundary, _) => self.sum::<A, AND_BOUNDARY, WITH_SPIN>(a, chunk, kept, sums),
+            (Between::BoundaryAndFluid, NONE) => self.sum::<A, AND_FLUID, NONE>(a, chunk, kept, sums),
+            (Between::BoundaryAndFluid, PLAIN) => self.sum::<A, AND_FLUID, PLAIN>(a, chunk, kept, sums),
+            (Between::BoundaryAndFluid, _) => self.sum::<A, AND_FLUID, WITH_SPIN>(a, chunk, kept, sums),
+        }
+    }
+
+    /// The pressure force is `V_i V_j (p_i + p_j) w x_ij`; the pressures of what bounds a fluid are kept apart.
+    #[inline(always)]
+    fn sum<A: EightLanes, const BETWEEN: u8, const FRICTION: u8>(
+        &self,
+        a: A,
+        Chunk { row, seen, between }: Chunk<'_>,
+        mut kept: Option<&mut [EightPairs]>,
+        sums: &mut BlockForces,
+    ) {
         let Self { packed, unit, own, cloud: FlowCloud { kernel, .. }, .. } = self;
         let (scale, limit) = (a.splat(kernel.weight_scale()), a.splat(kernel.support * kernel.support));
         let least = a.splat(kernel.least_square());
-        let kept = kept.room(row.len());
-        for (&j, kept) in row.iter().zip(&mut *kept) {
-            let other = &packed[j as usize];
+        let share = between.shares()[0];
+        let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
+        for n in 0..row.len() {
+            let other = &packed[row[n] as usize];
             let Other { x, v } = own.to(a, other, unit);
             let square = dot(a, &x, &x);
             let distance = a.sqrt(a.larger(square, least));
-            kept.row = j;
-            for axis in 0..A::AXES {
-                (kept.x[axis], kept.v[axis]) = (x[axis], v[axis]);
+            let mut weight = a.times(self.kernel.shape(a, distance), scale);
+            let mut volume = a.same(other.volume);
+            if let Some(seen) = seen {
+                let seen = SEEN[usize::from(seen[n])];
+                (weight, volume) = (a.times(weight, seen), a.times(volume, seen));
             }
-            kept.length = distance;
-            kept.weight = a.times(self.kernel.shape(a, distance), scale);
-            // Neither what is beyond the support nor the particle itself.
-            let near = a.where_below(square, limit, a.same(other.volume));
-            kept.volume = a.where_below(Lanes8::ZERO, square, near);
+            if let Some(kept) = &mut kept {
+                // Neither what is beyond the support nor the particle itself.
+                let near = a.where_below(square, limit, volume);
+                let volume = a.where_below(Lanes8::ZERO, square, near);
+                let kept = &mut kept[n];
+                (kept.row, kept.length, kept.weight, kept.volume) = (row[n], distance, weight, volume);
+                for axis in 0..A::AXES {
+                    (kept.x[axis], kept.v[axis]) = (x[axis], v[axis]);
+                }
+            }
+            let weight = a.times(weight, a.times(own.volume, a.same(other.volume)));
+            if BETWEEN == FLUIDS {
+                let push = a.times(weight, a.plus(own.pressure, a.same(other.pressure)));
+                for axis in 0..A::AXES {
+                    pressure[axis] = a.times_add(push, x[axis], pressure[axis]);
+                }
+            } else {
+                let (of_i, of_j) = (a.times(weight, own.pressure), a.times(weight, a.same(other.pressure)));
+                let (of_fluid, of_wall) = if BETWEEN == AND_BOUNDARY { (of_i, of_j) } else { (of_j, of_i) };
+                for axis in 0..A::AXES {
+                    pressure[axis] = a.times_add(of_fluid, x[axis], pressure[axis]);
+                    wall[axis] = a.times_add(of_wall, x[axis], wall[axis]);
+                }
+            }
+            self.rub::<A, FRICTION>(a, (row[n], share), (&x, &v), weight, &mut viscous);
         }
-        if with_kernel {
-            for pair in kept {
-                pair.kernel = kernel.values(a, pair.length);
-            }
+        *sums = BlockForces { pressure, viscous, wall };
+    }
+
+    /// Adds the kernel values of kept pairs.
+    #[inline(always)]
+    pub fn add_kernel<A: EightLanes>(&self, a: A, kept: &mut [EightPairs]) {
+        for pair in kept {
+            pair.kernel = self.cloud.kernel.values(a, pair.length);
         }
     }
 
@@ -111,7 +174,7 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         &self,
         a: A,
         (j, share): (u32, f64),
-        EightPairs { x, v, .. }: &EightPairs,
+        (x, v): (&[Lanes8; 3], &[Lanes8; 3]),
         weight: Lanes8,
         viscous: &mut [Lanes8; 3],
     ) {
@@ -141,69 +204,5 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         for axis in 0..A::AXES {
             viscous[axis] = a.times_add(friction, relative[axis], viscous[axis]);
         }
-    }
-
-    /// Adds neighbours of a fluid: `V_i V_j (p_i + p_j) w x_ij`, and the friction.
-    #[inline(always)]
-    pub fn add_fluid<A: EightLanes>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
-        match self.friction() {
-            NONE => self.fluid::<A, NONE>(a, pairs, sums),
-            PLAIN => self.fluid::<A, PLAIN>(a, pairs, sums),
-            _ => self.fluid::<A, WITH_SPIN>(a, pairs, sums),
-        }
-    }
-
-    #[inline(always)]
-    fn fluid<A: EightLanes, const FRICTION: u8>(&self, a: A, pairs: &BlockPairs, sums: &mut BlockForces) {
-        let BlockForces { mut pressure, mut viscous, .. } = *sums;
-        for pair in pairs.pairs() {
-            let other = &self.packed[pair.row as usize];
-            let weight = a.times(pair.weight, a.times(self.own.volume, a.same(other.volume)));
-            let push = a.times(weight, a.plus(self.own.pressure, a.same(other.pressure)));
-            for axis in 0..A::AXES {
-                pressure[axis] = a.times_add(push, pair.x[axis], pressure[axis]);
-            }
-            self.rub::<A, FRICTION>(a, (pair.row, 0.5), pair, weight, &mut viscous);
-        }
-        (sums.pressure, sums.viscous) = (pressure, viscous);
-    }
-
-    /// Adds neighbours that bound the fluid, or, if the particles are those that bound it (`BOUND`), the fluid: the pressures of what bounds it are kept apart.
-    #[inline(always)]
-    pub fn add_walls<A: EightLanes, const BOUND: bool>(
-        &self,
-        a: A,
-        pairs: &BlockPairs,
-        sums: &mut BlockForces,
-    ) {
-        match self.friction() {
-            NONE => self.walls::<A, BOUND, NONE>(a, pairs, sums),
-            PLAIN => self.walls::<A, BOUND, PLAIN>(a, pairs, sums),
-            _ => self.walls::<A, BOUND, WITH_SPIN>(a, pairs, sums),
-        }
-    }
-
-    #[inline(always)]
-    fn walls<A: EightLanes, const BOUND: bool, const FRICTION: u8>(
-        &self,
-        a: A,
-        pairs: &BlockPairs,
-        sums: &mut BlockForces,
-    ) {
-        let BlockForces { mut pressure, mut viscous, mut wall } = *sums;
-        for pair in pairs.pairs() {
-            let other = &self.packed[pair.row as usize];
-            let weight = a.times(pair.weight, a.times(self.own.volume, a.same(other.volume)));
-            let (of_i, of_j) = (a.times(weight, self.own.pressure), a.times(weight, a.same(other.pressure)));
-            let (of_fluid, of_wall) = if BOUND { (of_j, of_i) } else { (of_i, of_j) };
-            for axis in 0..A::AXES {
-                pressure[axis] = a.times_add(of_fluid, pair.x[axis], pressure[axis]);
-                wall[axis] = a.times_add(of_wall, pair.x[axis], wall[axis]);
-            }
-            // The spin of the pair is that of the fluid.
-            let share = if BOUND { 0.0 } else { 1.0 };
-            self.rub::<A, FRICTION>(a, (pair.row, share), pair, weight, &mut viscous);
-        }
-        *sums = BlockForces { pressure, viscous, wall };
     }
 }
