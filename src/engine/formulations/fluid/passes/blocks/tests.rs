@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::formulations::fluid::tests::{column, simulation};
 use crate::simulation::Simulation;
-use crate::world::{Density, Force, Mass, ParticleId, Position, Velocity};
+use crate::world::{Density, Force, Mass, ParticleId, Position, Pressure, Velocity};
 
 /// A fluid that moves in a tank: friction goes without the spin, with it, or there is none.
 fn tank(dimension: &str, viscosity: f64, wall: &str, fluid: &str) -> String {
@@ -35,16 +35,20 @@ fn mixed(scene: &str) -> String {
     scene.replacen("(dimension", "(precision: Mixed, dimension", 1)
 }
 
+fn double(scene: &str) -> String {
+    scene.replacen("(dimension", "(precision: Double, dimension", 1)
+}
+
 fn after(scene: &str, steps: u64) -> Simulation {
     let mut sim = simulation(scene);
     sim.run(|sim| sim.clock().step < steps).expect("a run");
     sim
 }
 
-/// A column of the water by the numbers of its particles.
-fn by_id<C: crate::world::Column + Copy>(sim: &Simulation) -> Vec<C> {
-    let ids = column::<ParticleId>(sim, 0);
-    let mut rows: Vec<(u64, C)> = ids.iter().map(|id| id.0).zip(column::<C>(sim, 0)).collect();
+/// A column of a body, the water or the tank, by the numbers of its particles.
+fn by_id<C: crate::world::Column + Copy>(sim: &Simulation, body: usize) -> Vec<C> {
+    let ids = column::<ParticleId>(sim, body);
+    let mut rows: Vec<(u64, C)> = ids.iter().map(|id| id.0).zip(column::<C>(sim, body)).collect();
     rows.sort_by_key(|row| row.0);
     rows.into_iter().map(|row| row.1).collect()
 }
@@ -60,13 +64,21 @@ fn forces_are_those_of_double_precision() {
         ("Two", 1e-3, "slip: Free", kernels[3]),
     ] {
         let scene = tank(dimension, viscosity, wall, fluid);
-        let (double, single) = (after(&scene, 3), after(&mixed(&scene), 3));
-        let (a, b) = (by_id::<Force>(&double), by_id::<Force>(&single));
-        let rms = (a.iter().map(|f| f.0.length_squared()).sum::<f64>() / a.len() as f64).sqrt();
-        let worst = a.iter().zip(&b).map(|(a, b)| a.0.distance(b.0)).fold(0.0, f64::max);
-        assert!(rms > 0.0 && worst < 3e-5 * rms, "{dimension} {viscosity} {fluid}: {worst:e} of {rms:e}");
+        let (double, single) = (after(&double(&scene), 3), after(&mixed(&scene), 3));
+        for body in 0..2 {
+            let (a, b) = (by_id::<Force>(&double, body), by_id::<Force>(&single, body));
+            let rms = (a.iter().map(|f| f.0.length_squared()).sum::<f64>() / a.len() as f64).sqrt();
+            let worst = a.iter().zip(&b).map(|(a, b)| a.0.distance(b.0)).fold(0.0, f64::max);
+            assert!(rms > 0.0 && worst < 3e-5 * rms, "{dimension} {viscosity} {fluid}: {worst:e} of {rms:e}");
+        }
+        // The pressure that walls take on, with the weight of the fluid on the way.
+        let (a, b) = (by_id::<Pressure>(&double, 1), by_id::<Pressure>(&single, 1));
+        // Of either sign in the fluid, where their means on the wall are small.
+        let largest = by_id::<Pressure>(&double, 0).iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        let worst = a.iter().zip(&b).map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f64::max);
+        assert!(largest > 0.0 && worst < 1e-5 * largest, "{worst:e} of {largest:e}");
         // Density changes by the compression of three steps.
-        let (a, b) = (by_id::<Density>(&double), by_id::<Density>(&single));
+        let (a, b) = (by_id::<Density>(&double, 0), by_id::<Density>(&single, 0));
         let change = a.iter().map(|rho| (rho.0 - 1000.0).abs()).fold(0.0, f64::max);
         let worst = a.iter().zip(&b).map(|(a, b)| (a.0 - b.0).abs()).fold(0.0, f64::max);
         assert!(worst < 1e-5 * change, "{worst:e} of {change:e}");
@@ -125,9 +137,9 @@ fn sparse_and_distant_flows_go_on() {
         )
     };
     for x in [0.0, 5000.0] {
-        let double = after(&scene("", x), 400);
+        let double = after(&scene("precision: Double, ", x), 400);
         let single = after(&scene("precision: Mixed, ", x), 400);
-        let (a, b) = (by_id::<Position>(&double), by_id::<Position>(&single));
+        let (a, b) = (by_id::<Position>(&double, 0), by_id::<Position>(&single, 0));
         let worst = a.iter().zip(&b).map(|(a, b)| a.0.distance(b.0)).fold(0.0, f64::max);
         assert!(worst < 1e-5, "{x}: {worst:e}");
         assert!(single.summary().removed_of.contains_key("water"), "some have left the domain");
@@ -155,7 +167,7 @@ fn still_water_stays_still() {
     let scene = mixed(&tank("Two", 0.0, "slip: Free", ""))
         .replace(r#"("0.3 + y - 2*x", "0.1 + 3*x")"#, r#"("0", "0")"#);
     let scene = scene.replace("lattice: Relaxed(seed: 3, iterations: 1)", "lattice: Square");
-    let double = scene.replace("precision: Mixed, ", "");
+    let double = scene.replace("precision: Mixed, ", "precision: Double, ");
     let speed = |scene: &str| {
         let sim = after(scene, 200);
         column::<Velocity>(&sim, 0).iter().map(|v| v.0.length()).fold(0.0, f64::max)
