@@ -1,18 +1,17 @@
 //! The motion of a whole body, where it is one affine map: of a wall or a rigid body that moves and turns.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::neighbors::Periodic;
+use crate::parallel::sum_over_blocks;
+use crate::world::ReferencePosition;
 
 /// Largest distance of a particle from where the map puts it, over the spacing.
 const MARGIN: f64 = 1e-6;
 /// Least determinant of the moments of a body that fixes a map, over that of a body of equal width along all axes.
 const FLAT: f64 = 1e-9;
-/// Particles that are looked at one after the other.
-const PER_TASK: usize = 4096;
-
 /// `X = home + map (x - now)`: from a place to where it is in the body as the scene has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion {
@@ -22,30 +21,32 @@ pub struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// That of so many particles, if one map fits all of them; `places` gives where a particle is and where it was at first, m.
+    /// That of particles whose places in the scene are these, if one map fits all of them.
     pub fn new(
-        particles: usize,
-        places: impl Fn(usize) -> (DVec3, DVec3) + Sync,
+        records: &[FlowParticle],
+        reference: &[ReferencePosition],
         spacing: f64,
         plane: bool,
     ) -> Option<Self> {
-        if particles == 0 {
-            return None;
-        }
         let square = (MARGIN * spacing).powi(2);
+        type Rows<'a> = (&'a [FlowParticle], &'a [ReferencePosition]);
         let fits = |motion: &Self| {
-            let is_near = |k: usize| {
-                let (x, home) = places(k);
-                motion.home(x).distance_squared(home) <= square
-            };
-            (0..particles).into_par_iter().with_min_len(PER_TASK).all(is_near)
+            // How many are elsewhere.
+            let strays = sum_over_blocks((records, reference), &|_, (records, reference): Rows<'_>| {
+                let pairs = records.iter().zip(reference);
+                let is_elsewhere = |(record, home): &(&FlowParticle, &ReferencePosition)| {
+                    motion.home(record.position()).distance_squared(home.0) > square
+                };
+                pairs.filter(is_elsewhere).count() as f64
+            });
+            strays == 0.0
         };
-        let (now, home) = places(0);
+        let (now, home) = (records.first()?.position(), reference.first()?.0);
         let moved = Self { now, home, map: DMat3::IDENTITY };
         if fits(&moved) {
             return Some(moved);
         }
-        let pairs = || (0..particles).map(&places);
+        let pairs = || records.iter().map(FlowParticle::position).zip(reference.iter().map(|home| home.0));
         let (mut count, mut now, mut home) = (0.0, DVec3::ZERO, DVec3::ZERO);
         for (x, origin) in pairs() {
             count += 1.0;
@@ -85,6 +86,7 @@ impl BodyMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::Lanes4;
 
     fn block(plane: bool) -> Vec<DVec3> {
         let place = |k: usize| {
@@ -94,7 +96,10 @@ mod tests {
     }
 
     fn motion(now: &[DVec3], home: &[DVec3], plane: bool) -> Option<BodyMotion> {
-        BodyMotion::new(now.len(), |k| (now[k], home[k]), 0.01, plane)
+        let record = |x: &DVec3| FlowParticle { place: Lanes4::new(*x, 1.0), ..FlowParticle::default() };
+        let records: Vec<FlowParticle> = now.iter().map(record).collect();
+        let reference: Vec<ReferencePosition> = home.iter().map(|x| ReferencePosition(*x)).collect();
+        BodyMotion::new(&records, &reference, 0.01, plane)
     }
 
     #[test]

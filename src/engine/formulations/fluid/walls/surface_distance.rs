@@ -7,11 +7,12 @@
 //! two of them in the plane or four in space, and end before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 use super::body_motion::BodyMotion;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
+use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
+use crate::parallel::sum_over_blocks;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
@@ -52,16 +53,18 @@ impl BoundaryShape {
     /// Takes notice of the first particle that is gone.
     pub fn wear(&mut self, cloud: &FlowCloud) {
         if !self.is_worn {
-            let records = cloud.records[self.group.cloud.clone()].par_iter().with_min_len(4096);
-            self.is_worn = records.any(|record| record.volume() <= 0.0);
+            let records = &cloud.records[self.group.cloud.clone()];
+            let gone = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
+                records.iter().filter(|record| record.volume() <= 0.0).count() as f64
+            });
+            self.is_worn = gone > 0.0;
         }
     }
 
     /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
     pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
         let records = &cloud.records[self.group.cloud.clone()];
-        let places = |k: usize| (records[k].position(), reference[k].0);
-        BodyMotion::new(records.len(), places, self.spacing, cloud.plane)
+        BodyMotion::new(records, reference, self.spacing, cloud.plane)
     }
 
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.

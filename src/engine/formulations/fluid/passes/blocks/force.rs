@@ -35,7 +35,7 @@ pub struct BlockForce<'a> {
 impl BlockForce<'_> {
     /// Writes the forces on the particles that this rank computes, and their parts.
     pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
-        self.sum(None, ForceRows { written: TermRows::without_terms(total), parts }, &mut Vec::new());
+        self.sum(None, ForceRows { written: TermRows::without_terms(total), parts }, None);
     }
 
     /// The same with the pair terms of the body.
@@ -48,7 +48,7 @@ impl BlockForce<'_> {
     ) -> Result<(), StepError> {
         let body = self.group.body;
         let fastest = terms.on_body(step, body, total, &mut |terms, written, sums| {
-            self.sum(Some(terms), ForceRows { written, parts: &mut *parts }, sums)
+            self.sum(Some(terms), ForceRows { written, parts: &mut *parts }, Some(sums))
         })?;
         fastest.limit(step, body);
         Ok(())
@@ -58,7 +58,7 @@ impl BlockForce<'_> {
         &self,
         terms: Option<&BoundTerms<'_>>,
         rows: ForceRows<'_>,
-        sums: &mut Vec<RateBounds>,
+        sums: Option<&mut Vec<RateBounds>>,
     ) -> RateBounds {
         self.cloud.kernel.run(AllForceBlocks { pass: self, terms, rows, sums })
     }
@@ -68,7 +68,8 @@ struct AllForceBlocks<'a> {
     pass: &'a BlockForce<'a>,
     terms: Option<&'a BoundTerms<'a>>,
     rows: ForceRows<'a>,
-    sums: &'a mut Vec<RateBounds>,
+    /// Memory that is kept for what the terms of each block learn.
+    sums: Option<&'a mut Vec<RateBounds>>,
 }
 
 impl KernelLoop for AllForceBlocks<'_> {
@@ -76,12 +77,21 @@ impl KernelLoop for AllForceBlocks<'_> {
 
     fn run<K: PairShape>(self, kernel: K) -> RateBounds {
         let Self { pass, terms, rows, sums } = self;
-        for_each_own_block_in_tasks(PER_TASK, rows, sums, &|row, rows| {
+        let blocks = |row, rows| {
             PAIRS.with_borrow_mut(|pairs| {
                 let first = pass.group.cloud.start + row;
                 run_blocks_on(pass.cloud.plane, ForceBlocks { pass, terms, kernel, first, rows, pairs })
             })
-        })
+        };
+        match sums {
+            Some(sums) => for_each_own_block_in_tasks(PER_TASK, rows, sums, &blocks),
+            None => {
+                for_each_own_block_in_tasks(PER_TASK, rows, &mut Vec::new(), &|row, rows| {
+                    blocks(row, rows);
+                });
+                RateBounds::default()
+            }
+        }
     }
 }
 
