@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::formulation::FluidBody;
 use super::systems;
 use crate::formulations::fluid::cloud::{
-    BoundarySurface, FlowCloud, FluidState, Group, Neighborhood, Role, Viscosities,
+    BoundaryEdges, BoundarySurface, FlowCloud, FluidState, Group, Neighborhood, Role, Viscosities,
 };
 use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::{
@@ -213,6 +213,7 @@ fn cloud(
         is_close: Vec::new(),
         reach,
         repelled: Vec::new(),
+        edges: BoundaryEdges::default(),
         gap_forces: Vec::new(),
         gap_work: 0.0,
         loads: Vec::new(),

@@ -1,7 +1,7 @@
 //! The systems of a flow and of its effect on its boundaries.
 
 use crate::formulations::fluid::cloud::{
-    ACCOUNTS, COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
+    ACCOUNTS, COMPRESSION_RATES, EDGES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
     Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
@@ -11,7 +11,8 @@ use crate::formulations::fluid::passes::{Compression, FLUID_FORCE, FlowForce, re
 use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
-    GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression, WallState,
+    EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression,
+    WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -27,6 +28,8 @@ use crate::world::{
 const COMPRESSION: &str = "fluid_compression";
 /// Label of the system that lets fluids follow the compression beside walls that pull.
 const WALL_COMPRESSION: &str = "wall_compression";
+/// Label of the system that finds how walls move at edges.
+const EDGE_MOTION: &str = "motion_at_edges";
 /// Label of the system that gives walls their pressure.
 const WALL_PRESSURE: &str = "wall_pressure";
 
@@ -111,18 +114,31 @@ pub fn add(
 /// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
     let pulls = groups.iter().any(Group::pulls);
+    let mut before = COMPRESSION;
+    if let Some(edges) = EdgeMotion::new(groups, sim) {
+        sim.add_system(
+            System::new(Stage::Neighbors, EDGE_MOTION, edges)
+                .on_phases(boundaries.iter().copied().chain([fluid]))
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(COMPRESSION_RATES, Mode::Writes)
+                .touches_packed(EDGES, Mode::Writes)
+                .reads_near::<ReferencePosition>()
+                .after(COMPRESSION),
+        );
+        before = EDGE_MOTION;
+    }
     if pulls {
         sim.add_system(
             System::new(Stage::Neighbors, WALL_COMPRESSION, WallCompression::default())
                 .on_phases([fluid])
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
-                .after(COMPRESSION),
+                .after(before),
         );
     }
     let is_soft = |body: &BodyPlan| body.kind == BodyKind::Solid && boundaries.contains(&body.phase);
     if sim.bodies().iter().any(is_soft) {
-        let before = if pulls { WALL_COMPRESSION } else { COMPRESSION };
+        let before = if pulls { WALL_COMPRESSION } else { before };
         sim.add_system(
             System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
                 .on_phases([fluid])
@@ -174,6 +190,16 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .writes::<Pressure>()
                 .writes::<PreviousVelocity>(),
         );
+        if groups.iter().filter(|group| group.is_wall()).count() > 1 {
+            sim.add_system(
+                System::new(Stage::Boundary, "forces_at_edges", EdgeForces)
+                    .on_phases(boundaries.iter().copied())
+                    .in_long_steps()
+                    .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                    .touches_packed(EDGES, Mode::Writes)
+                    .after(WALL_PRESSURE),
+            );
+        }
     }
     if groups.iter().any(|group| matches!(&group.role, Role::Boundary(surface) if surface.moved)) {
         let gaps = GapPressure::new(sim.gravity(), sim.body(groups[0].body).spacing);

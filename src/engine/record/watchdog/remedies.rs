@@ -1,6 +1,6 @@
 //! What may help a flow that goes wrong: never a plugin that it has.
 
-use crate::formulations::fluid::{FlowCloud, FlowParticle};
+use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
 use crate::notation::quantity;
 use crate::plugin::{BodyPlan, SimBuilder};
 use crate::scene::Item;
@@ -46,7 +46,13 @@ impl Remedies {
             fluids.any(|group| !self.has(group.body, "density_diffusion"))
         });
         let noise = if lacks_diffusion { "`density_diffusion()` for its noise, " } else { "" };
-        let rest = format!("{noise}no particle inside of a wall or body, more particles");
+        let is_open = |cloud: &FlowCloud| !cloud.is_confined() && !cloud.groups.iter().any(Group::is_wall);
+        let pull = if step.resources.try_get::<FlowCloud>().is_some_and(|cloud| is_open(&cloud)) {
+            "where bodies alone enclose the fluid, a domain that is periodic along all axes, in which they pull, "
+        } else {
+            ""
+        };
+        let rest = format!("{noise}{pull}no particle inside of a wall or body, more particles");
         match self.of_tension(step, None) {
             Some(text) => format!("{text}; else {rest}"),
             None => format!("the pressure that walls and bodies take from the flow does not fit it: {rest}"),

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use super::edges::BoundaryEdges;
 use super::group::{FluidState, Group};
 use super::neighborhood::Neighborhood;
 use super::repelled::Repelled;
@@ -66,6 +67,8 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) reach: f64,
     /// Fluid particles that boundaries repel, in the order of rows.
     pub(in crate::formulations::fluid) repelled: Vec<Repelled>,
+    /// Edges between walls that move against each other.
+    pub(in crate::formulations::fluid) edges: BoundaryEdges,
     /// Force on every boundary particle beside a gap, N; empty where there is none.
     pub(in crate::formulations::fluid) gap_forces: Vec<DVec3>,
     /// Work of these forces since the start of the run, J.

@@ -87,6 +87,11 @@ impl Group {
         matches!(&self.role, Role::Boundary(surface) if surface.no_slip)
     }
 
+    /// Whether it is a boundary that no fluid moves.
+    pub fn is_wall(&self) -> bool {
+        matches!(&self.role, Role::Boundary(surface) if !surface.moved)
+    }
+
     /// The state of a fluid.
     pub fn fluid(&self) -> Option<&FluidState> {
         match &self.role {

@@ -12,6 +12,8 @@ mod neighborhood;
 
 mod repelled;
 
+mod edges;
+
 mod flow_cloud;
 
 mod pack;
@@ -35,6 +37,7 @@ mod sort;
 mod neighbors;
 
 pub use arrangement::ArrangementPass;
+pub use edges::{BoundaryEdges, EdgeParticle, Front};
 pub use flow_cloud::{FlowCloud, LEAST_SHARE, Near};
 pub use group::{BoundarySurface, FluidState, Group, Role};
 pub use near::{part, take_until};
@@ -44,6 +47,6 @@ pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};
 pub use rows::RowSums;
-pub use shared::{COMPRESSION_RATES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
+pub use shared::{COMPRESSION_RATES, EDGES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
 pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};

@@ -6,6 +6,8 @@ pub const FLOW_RECORDS: &str = "flow_records";
 pub const COMPRESSION_RATES: &str = "compression_rates";
 /// Fluid particles that boundaries repel.
 pub const REPELLED: &str = "repelled_particles";
+/// Faces and particles at edges between walls that move against each other.
+pub const EDGES: &str = "wall_edges";
 /// Forces on boundary particles beside gaps that no particle of a fluid fits into.
 pub const GAP_FORCES: &str = "gap_forces";
 /// Accelerations of fluid particles by loads.

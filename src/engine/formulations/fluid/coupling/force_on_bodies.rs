@@ -147,6 +147,7 @@ impl Coupling {
             moments.add(cloud, group, to, parts_to);
             cloud.repel(group, to, parts_to);
             cloud.press_gaps(group, to, parts_to);
+            cloud.lean_on_edges(group, to, parts_to);
             if side == 0 {
                 self.drag.clear();
                 self.drag.resize(group.rows.len(), 0.0);

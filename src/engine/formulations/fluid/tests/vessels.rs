@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use super::{column, double, simulation};
+use crate::formulations::fluid::FlowCloud;
 use crate::simulation::Simulation;
-use crate::world::{Position, Pressure};
+use crate::world::{BodyId, Density, Mass, Position, Pressure};
 
 /// Speed of sound, m/s, and density, kg/m3.
 const SOUND: f64 = 10.0;
@@ -16,7 +17,14 @@ fn vessel(more: &str, bodies: &str, right: &str) -> Simulation {
 }
 
 fn vessel_with(wall: &str, more: &str, bodies: &str, right: &str) -> Simulation {
-    let mut sim = simulation(&format!(
+    let mut sim = prepared(wall, more, bodies, right);
+    sim.run(|_| true).expect("a run");
+    sim
+}
+
+/// The vessel before its first step.
+fn prepared(wall: &str, more: &str, bodies: &str, right: &str) -> Simulation {
+    simulation(&format!(
         r#"(dimension: Two, {more} materials: {{"liquid": Fluid(density: {DENSITY}, sound_speed: {SOUND}, eos: Linear)}},
             bodies: [
                 (name: "liquid", material: "liquid", spacing: 0.125, formulation: Fluid, shape: Box(min: (0, 0), max: (1, 1))),
@@ -26,9 +34,7 @@ fn vessel_with(wall: &str, more: &str, bodies: &str, right: &str) -> Simulation 
             ],
             conditions: [Velocity(on: Select(body: "piston"), value: ("0.02/1.5*(1 - cos(2*pi*t/1.5))", None))],
             time: (end: 1.5))"#
-    ));
-    sim.run(|_| true).expect("a run");
-    sim
+    ))
 }
 
 /// Mean pressure over that of the equation of state at 0.98 of the volume.
@@ -53,7 +59,7 @@ fn a_liquid_that_a_piston_presses_has_the_pressure_of_its_equation_of_state() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// Between walls along which it slides it had .78, and these took a seventh of the work. What is left of the error is that of the force on the piston: at its edges the liquid leans on the other walls.
+/// Between walls along which it slides it had .78, and these took a seventh of the work; as long as the particles of these stood still behind the edges of the piston, where the liquid leans on them, it had .93.
 #[test]
 fn a_liquid_between_walls_loses_nothing_to_them() {
     let sides = r#"
@@ -61,8 +67,110 @@ fn a_liquid_between_walls_loses_nothing_to_them() {
         (name: "bottom", material: "wall", spacing: 0.125, formulation: Wall(slip: Free, suction: true), shape: Box(min: (-0.5, -0.5), max: (1, 0))),"#;
     let sim = vessel("", sides, "min: (1, -0.5), max: (1.5, 1.5)");
     let (pressure, walls) = (pressure(&sim), taken_by_walls(&sim));
-    assert!((0.92..1.01).contains(&pressure), "{pressure}");
+    assert!((pressure - 1.0).abs() < 0.01, "{pressure}");
     assert!(walls.abs() < 1e-3, "{walls}");
+}
+
+/// In a cube, whose piston has edges on four sides, it had .87; with the default support the sum of w x^2 over a cubic lattice is 2 % too small.
+#[test]
+fn a_piston_in_a_cube_finds_the_pressure_too() {
+    let mut sim = simulation(
+        r#"(dimension: Three, materials: {"liquid": Fluid(density: 1000.0, sound_speed: 10.0, eos: Linear)},
+            bodies: [
+                (name: "liquid", material: "liquid", spacing: 0.125, formulation: Fluid(support: 3.0), shape: Box(min: (0, 0, 0), max: (1, 1, 1))),
+                (name: "piston", material: "wall", spacing: 0.125, formulation: Wall(slip: Free, suction: true), shape: Box(min: (-0.375, 0, 0), max: (0, 1, 1))),
+                (name: "vessel", material: "wall", spacing: 0.125, formulation: Wall(slip: Free, suction: true),
+                 shape: Difference(Box(min: (-0.375, -0.375, -0.375), max: (1.375, 1.375, 1.375)), Box(min: (-1, 0, 0), max: (1, 1, 1)))),
+            ],
+            conditions: [Velocity(on: Select(body: "piston"), value: ("0.02/0.8*(1 - cos(2*pi*t/0.8))", None, None))],
+            time: (end: 0.8))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let (pressure, walls) = (pressure(&sim), taken_by_walls(&sim));
+    assert!((pressure - 1.0).abs() < 0.02, "{pressure}");
+    assert!(walls.abs() < 1e-3, "{walls}");
+}
+
+/// A piston whose face is inclined, between the walls along which it slides: at its ends it meets them at 60 and 120 degrees.
+#[test]
+fn an_inclined_piston_finds_the_pressure_too() {
+    let slant = |y: f64| y / 3f64.sqrt();
+    let part = |name: &str, formulation: &str, [x0, x1, y0, y1]: [f64; 4]| {
+        format!(
+            r#"(name: "{name}", material: "liquid", spacing: 0.1, lattice: BodyFitted(iterations: 10), formulation: {formulation},
+                shape: Polygon(points: [({}, {y0}), ({}, {y0}), ({}, {y1}), ({}, {y1})])),"#,
+            x0 + slant(y0),
+            x1 + slant(y0),
+            x1 + slant(y1),
+            x0 + slant(y1),
+        )
+    };
+    let wall = |name: &str, bounds: [f64; 4]| part(name, "Wall(slip: Free, suction: true)", bounds);
+    let mut sim = simulation(&format!(
+        r#"(dimension: Two, materials: {{"liquid": Fluid(density: 1000.0, sound_speed: 10.0, eos: Linear)}},
+            bodies: [{} {} {} {} {}],
+            conditions: [Velocity(on: Select(body: "piston"), value: ("0.02/1.5*(1 - cos(2*pi*t/1.5))", None))],
+            time: (end: 1.5))"#,
+        part("liquid", "Fluid", [0.0, 1.0, 0.0, 1.0]),
+        wall("piston", [-0.45, 0.0, 0.0, 1.0]),
+        wall("end", [1.0, 1.45, -0.4, 1.4]),
+        wall("top", [-0.45, 1.0, 1.0, 1.4]),
+        wall("bottom", [-0.45, 1.0, -0.4, 0.0]),
+    ));
+    sim.run(|_| true).expect("a run");
+    let (pressure, walls) = (pressure(&sim), taken_by_walls(&sim));
+    assert!((pressure - 1.0).abs() < 0.015, "{pressure}");
+    assert!(walls.abs() < 1e-3, "{walls}");
+}
+
+/// The work of a piston is that of the pressure on the volume that the fluid loses, and this is what the piston sweeps.
+#[test]
+fn the_volume_that_a_fluid_loses_is_what_its_walls_sweep() {
+    let sides = r#"
+        (name: "top", material: "wall", spacing: 0.125, formulation: Wall(slip: Free, suction: true), shape: Box(min: (-0.5, 1), max: (1, 1.5))),
+        (name: "bottom", material: "wall", spacing: 0.125, formulation: Wall(slip: Free, suction: true), shape: Box(min: (-0.5, -0.5), max: (1, 0))),"#;
+    let wall = "slip: Free, suction: true";
+    let mut sim = prepared(wall, "", sides, "min: (1, -0.5), max: (1.5, 1.5)");
+    let state = |sim: &Simulation| {
+        let (m, rho) = (column::<Mass>(sim, 0), column::<Density>(sim, 0));
+        let p = column::<Pressure>(sim, 0);
+        let volume: f64 = m.iter().zip(&rho).map(|(m, rho)| m.0 / rho.0).sum();
+        (volume, p.iter().map(|p| p.0).sum::<f64>() / p.len() as f64)
+    };
+    let start = state(&sim);
+    let (mut before, mut work) = (start, 0.0);
+    sim.run(|sim| {
+        let now = state(sim);
+        work += 0.5 * (before.1 + now.1) * (before.0 - now.0);
+        before = now;
+        true
+    })
+    .expect("a run");
+    let of_walls = sim.ledger().total_named("constraints");
+    assert!((work / of_walls - 1.0).abs() < 0.01, "{work} {of_walls}");
+    let swept = start.0 - before.0;
+    assert!((swept / 0.02 - 1.0).abs() < 0.01, "{swept}");
+}
+
+/// Gates beside a floor: the fluid leans on the particles behind their lower edge, and what is done to these is the force on the gate.
+#[test]
+fn a_gate_on_a_floor_bears_the_pressure_down_to_its_edge() {
+    let mut sim = simulation(
+        r#"(dimension: Two, gravity: (0, -10), materials: {"water": Fluid(density: 1000.0, sound_speed: 40.0)},
+            bodies: [
+                (name: "water", material: "water", spacing: 0.05, formulation: Fluid, shape: Box(min: (0, 0), max: (0.8, 0.6))),
+                (name: "gate", material: "wall", spacing: 0.05, formulation: Wall(slip: Free), shape: Box(min: (0.8, 0), max: (1, 0.8))),
+                (name: "tank", material: "wall", spacing: 0.05, formulation: Wall(slip: Free), shape: Difference(Box(min: (-0.2, -0.2), max: (1, 0.8)), Box(min: (0, 0), max: (2, 2)))),
+            ],
+            probes: [(name: "load", on: Select(body: "gate"), quantity: FluidForce)],
+            time: (end: 1e-3))"#,
+    );
+    sim.run(|_| true).expect("a run");
+    let cloud = sim.resources().get::<FlowCloud>();
+    let forces = cloud.forces_on(BodyId(1)).expect("a wet gate");
+    let force: f64 = forces.iter().map(|(force, _)| force.x).sum();
+    let exact = 0.5 * 1000.0 * 10.0 * 0.6 * 0.6;
+    assert!((force / exact - 1.0).abs() < 0.01, "{}", force / exact);
 }
 
 /// The amplitude of a wave in a closed tube, four times as long as wide, that stands for three quarters of its period: it is zero. Sound was 10 % too slow, so that it was -0.47.

@@ -16,8 +16,11 @@ mod wall_blocks;
 
 mod wall_state;
 
+mod edges;
+
 mod gaps;
 
+pub use edges::{EdgeForces, EdgeMotion};
 pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;

@@ -63,6 +63,9 @@ impl WallCompression {
             }
         }
         share_wetted(cloud, &mut self.rates);
+        for edge in &cloud.edges.particles {
+            self.rates[edge.row - cloud.fluid] += edge.rate;
+        }
     }
 
     /// Finds what follows for every fluid particle.

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::filling::FillingPass;
-use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, Role, RowSums};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, Group, RowSums};
 use crate::notation::quantity;
 use crate::schedule::Step;
 
@@ -57,7 +57,6 @@ impl ClosedWatch {
         if taken <= TAKEN * self.largest || taken <= worth || !is_closed(cloud, scratch) {
             return None;
         }
-        let is_wall = |group: &Group| matches!(&group.role, Role::Boundary(surface) if !surface.moved);
         Some(format!(
             "walls and bodies have taken {} of the work on {}, without a free surface, by {}, {:.0} % of what has compressed it: its pressure is too low by about as much, \
              as the fluid beside them feels half of their motion{}",
@@ -65,7 +64,10 @@ impl ClosedWatch {
             named(cloud, step),
             quantity(step.clock.time, "s"),
             100.0 * taken / self.largest,
-            if cloud.groups.iter().any(is_wall) { "; give the walls `Wall(suction: true)`" } else { "" },
+            match cloud.groups.iter().any(Group::is_wall) {
+                true => "; give the walls `Wall(suction: true)`",
+                false => "; bodies without walls pull in a domain that is periodic along all axes",
+            },
         ))
     }
 }
@@ -86,7 +88,7 @@ fn pulling_at_a_surface(
 }
 
 /// The fluid, or all of them.
-fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
+pub(super) fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
     match cloud.fluids().count() {
         1 => format!("`{}`", step.world.body(cloud.groups[0].body).name),
         _ => "the fluids".to_owned(),
@@ -94,7 +96,7 @@ fn named(cloud: &FlowCloud, step: &Step<'_>) -> String {
 }
 
 /// Whether no fluid has a free surface.
-fn is_closed(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>) -> bool {
+pub(super) fn is_closed(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>) -> bool {
     cloud.fluids().all(|rows| {
         scratch.clear();
         scratch.resize(rows.len(), None);

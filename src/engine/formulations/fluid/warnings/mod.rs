@@ -10,6 +10,8 @@ mod passing;
 
 mod closed;
 
+mod stabilized;
+
 mod compression;
 
 mod filling;

@@ -10,6 +10,7 @@ use super::held_down::HeldDown;
 use super::intrusion::Intrusion;
 use super::no_gap_pressure;
 use super::passing::PassingWalls;
+use super::stabilized;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
@@ -27,6 +28,8 @@ struct FlowWatch {
     is_through: bool,
     /// The same of a body beside a gap without pressure.
     lies: bool,
+    /// The same of motion that stabilizers have taken.
+    is_stabilized: bool,
     closed: ClosedWatch,
     held_down: HeldDown,
     /// Spacing of the fluid, m.
@@ -51,6 +54,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
         passing: PassingWalls::new(sim),
         is_through: false,
         lies: false,
+        is_stabilized: false,
         closed: ClosedWatch::default(),
         held_down: HeldDown::new(sim.gravity(), spacing),
         spacing,
@@ -97,12 +101,15 @@ impl Run for FlowWatch {
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
             self.unevenness.look(&cloud, &mut self.friction, step);
         }
+        if at_end {
+            stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
+        }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let bodies = (self.is_through, self.lies, self.closed, &self.held_down.seen);
+        let bodies = (self.is_through, self.lies, self.is_stabilized, self.closed, &self.held_down.seen);
         postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
             .unwrap_or_default()
     }
@@ -111,7 +118,7 @@ impl Run for FlowWatch {
         let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
             return false;
         };
-        (self.is_through, self.lies, self.closed, self.held_down.seen) = bodies;
+        (self.is_through, self.lies, self.is_stabilized, self.closed, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);

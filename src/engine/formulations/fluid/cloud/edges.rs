@@ -1,0 +1,55 @@
+//! Where boundaries that move against each other meet: what their particles there do to the fluid.
+
+use glam::{DMat3, DVec3};
+
+use super::repelled::Shares;
+
+/// The faces and the particles at all edges.
+#[derive(Debug, Default)]
+pub struct BoundaryEdges {
+    pub fronts: Vec<Front>,
+    /// In the order of rows.
+    pub particles: Vec<EdgeParticle>,
+}
+
+/// The face of a boundary before a fluid particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Front {
+    /// The fluid particle, as a row of the cloud.
+    pub i: usize,
+    /// First row of the boundary in the cloud.
+    pub boundary: usize,
+    /// Direction out of the face.
+    pub normal: DVec3,
+    /// What it counts for, 0 to 1: the less the farther the particle is.
+    pub weight: f64,
+    /// Distance of the particle from it, m.
+    pub distance: f64,
+    /// Spacing of the boundary, m.
+    pub spacing: f64,
+    /// Velocity of the boundary there, m/s.
+    pub velocity: DVec3,
+    /// How what acts on the face is given to the particles of the boundary.
+    pub shares: Shares,
+    /// What other boundaries take over for it: all of it, and the part that is due to their own pressure, N.
+    pub force: [DVec3; 2],
+}
+
+/// A boundary particle beside the faces of several boundaries.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeParticle {
+    /// Its row in the cloud.
+    pub row: usize,
+    /// Share of it that is behind the faces of other boundaries, 0 to 1.
+    pub behind: f64,
+    /// Inverse of the moments of the normals around it, with what it counts for itself, times this share.
+    pub inverse: DMat3,
+    /// What it counts for itself.
+    pub own: f64,
+    /// Velocity at which the faces around it move, less its own, m/s.
+    pub excess: DVec3,
+    /// What that adds to the rate of compression beside it, over the share of the kernel that fluids fill, 1/s.
+    pub rate: f64,
+    /// What it gives away to the faces of all boundaries: all of it, and the part that is due to its own pressure, N.
+    pub force: [DVec3; 2],
+}

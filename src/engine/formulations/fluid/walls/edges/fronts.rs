@@ -1,0 +1,115 @@
+//! The faces of walls before fluid particles near edges.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::formulations::fluid::cloud::{FlowCloud, Front, Group, part};
+use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
+use crate::plugin::SimBuilder;
+use crate::scene::{Probe, Quantity};
+use crate::schedule::{Step, StepError};
+use crate::world::ReferencePosition;
+
+/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the first row are at half of it.
+const BEFORE: f64 = 0.85;
+
+/// The shapes of the walls.
+pub struct WallShapes {
+    shapes: Vec<BoundaryShape>,
+    /// Whether a probe asks for forces on walls, so that edges count where nothing moves.
+    are_asked: bool,
+}
+
+impl WallShapes {
+    /// Those of a flow with at least two.
+    pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
+        let walls = groups.iter().filter(|group| group.is_wall());
+        let mut shapes = Vec::new();
+        for group in walls {
+            let body = sim.body(group.body);
+            let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
+            let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
+            let (group, spacing, reach) = (group.clone(), body.spacing, 2.0 * body.spacing);
+            shapes.push(BoundaryShape {
+                group,
+                region,
+                stiffness: Vec::new(),
+                spacing,
+                is_worn: false,
+                reach,
+            });
+        }
+        let asks = |probe: &Probe| {
+            let of_force = matches!(
+                probe.quantity,
+                Quantity::FluidForce
+                    | Quantity::FluidTorque { .. }
+                    | Quantity::Force
+                    | Quantity::Moment { .. }
+            );
+            let on = probe.on.as_ref().filter(|_| of_force);
+            on.is_some_and(|on| shapes.iter().any(|shape| on.means(&sim.body(shape.group.body).name)))
+        };
+        let are_asked = sim.scene().probes.iter().any(asks);
+        (shapes.len() > 1).then_some(Self { shapes, are_asked })
+    }
+
+    /// Whether any two of these walls move against each other.
+    fn part(&self, cloud: &FlowCloud) -> bool {
+        let mut records = self.shapes.iter().flat_map(|shape| &cloud.records[shape.group.cloud.clone()]);
+        let first = records.next().map(|record| record.velocity());
+        records.any(|record| Some(record.velocity()) != first)
+    }
+
+    /// The rows of these walls.
+    pub fn rows(&self) -> Range<usize> {
+        let (first, last) = (&self.shapes[0].group.cloud, &self.shapes[self.shapes.len() - 1].group.cloud);
+        first.start..last.end
+    }
+
+    /// Writes down the faces before all fluid particles that have several walls within the support.
+    pub fn find(&self, cloud: &FlowCloud, step: &Step<'_>, out: &mut Vec<Front>) -> Result<(), StepError> {
+        out.clear();
+        if !self.are_asked && !self.part(cloud) {
+            return Ok(());
+        }
+        let rows = self.rows();
+        for shape in &self.shapes {
+            let view = step.world.phase(shape.group.phase);
+            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
+            let motion = shape.motion(cloud, reference);
+            for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
+                let walls = part(cloud.near_row(i), &rows);
+                let own = part(walls, &shape.group.cloud);
+                let is_other = |w: &u32| {
+                    !shape.group.cloud.contains(&(*w as usize)) && cloud.value_between(i, *w as usize) > 0.0
+                };
+                if own.is_empty() || !walls.iter().any(is_other) {
+                    continue;
+                }
+                let limit = BEFORE * shape.spacing;
+                if motion.is_some_and(|motion| shape.is_beyond(limit, cloud, i, &motion)) {
+                    continue;
+                }
+                let place = shape.place(cloud, i, reference, motion.as_ref());
+                let Some(place) = place.filter(|place| place.distance < limit) else { continue };
+                let nearness = 1.0 - (place.distance.max(0.0) / limit).powi(2);
+                let share =
+                    |j: &u32| place.shares.of(cloud, i, *j as usize) * cloud.records[*j as usize].velocity();
+                out.push(Front {
+                    i,
+                    boundary: shape.group.cloud.start,
+                    normal: shape.direction(cloud, &place).normalize_or_zero(),
+                    weight: nearness,
+                    distance: place.distance,
+                    spacing: shape.spacing,
+                    velocity: own.iter().map(share).sum::<DVec3>(),
+                    shares: place.shares,
+                    force: [DVec3::ZERO; 2],
+                });
+            }
+        }
+        Ok(())
+    }
+}

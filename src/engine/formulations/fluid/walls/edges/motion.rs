@@ -1,0 +1,108 @@
+//! How the particles of walls beside edges move, and what that adds to the rates of compression.
+
+use std::ops::Range;
+
+use glam::{DMat3, DVec3};
+
+use super::fronts::WallShapes;
+use crate::formulations::fluid::cloud::{EdgeParticle, FlowCloud, Group, LEAST_SHARE, part};
+use crate::linalg::dyad;
+use crate::plugin::SimBuilder;
+use crate::schedule::{Run, Step, StepError};
+
+/// What a particle counts for itself, over all that faces count for around it.
+const OWN: f64 = 1e-3;
+
+/// Finds the particles beside edges and their motion.
+pub struct EdgeMotion {
+    shapes: WallShapes,
+    /// For every particle of the walls, what the faces around it add up to.
+    sums: Vec<FaceSums>,
+    /// Rows of those with faces.
+    touched: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct FaceSums {
+    moments: DMat3,
+    motion: DVec3,
+    /// What the faces of other boundaries count for, and how much of that it is behind of.
+    others: f64,
+    behind: f64,
+}
+
+impl FaceSums {
+    const NONE: Self = Self { moments: DMat3::ZERO, motion: DVec3::ZERO, others: 0.0, behind: 0.0 };
+}
+
+impl EdgeMotion {
+    /// That of the walls of a flow; none where there is one at most.
+    pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
+        let shapes = WallShapes::new(groups, sim)?;
+        Some(Self { shapes, sums: Vec::new(), touched: Vec::new() })
+    }
+
+    /// Adds up the faces around all particles of the walls.
+    fn add_faces(&mut self, cloud: &FlowCloud, walls: &Range<usize>) {
+        self.sums.resize(walls.len(), FaceSums::NONE);
+        self.touched.clear();
+        for front in &cloud.edges.fronts {
+            for &w in part(cloud.near_row(front.i), walls) {
+                let (share, depth) = front.share_and_depth(cloud, w as usize);
+                let sums = &mut self.sums[w as usize - walls.start];
+                if share == 0.0 {
+                    continue;
+                }
+                if sums.moments == DMat3::ZERO {
+                    self.touched.push(w as usize);
+                }
+                if cloud.group_start(w as usize) != front.boundary {
+                    sums.others += share;
+                    sums.behind += share * (depth / front.spacing + 0.5).clamp(0.0, 1.0);
+                }
+                sums.moments += share * dyad(front.normal, front.normal);
+                sums.motion += share * front.normal.dot(front.velocity) * front.normal;
+            }
+        }
+        self.touched.sort_unstable();
+    }
+
+    /// Turns the sums into the motion of the particles; `half` is half of the step, s.
+    fn settle(&mut self, cloud: &FlowCloud, walls: &Range<usize>, half: f64, out: &mut Vec<EdgeParticle>) {
+        out.clear();
+        for &row in &self.touched {
+            let FaceSums { moments, motion, others, behind } =
+                std::mem::replace(&mut self.sums[row - walls.start], FaceSums::NONE);
+            if behind == 0.0 {
+                continue;
+            }
+            let behind = behind / others;
+            let own = OWN * (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z);
+            let inverse = behind * (moments + DMat3::from_diagonal(DVec3::splat(own))).inverse();
+            let v = cloud.records[row].velocity();
+            let excess = inverse * (motion + own * v) - behind * v;
+            let [share, rate] = cloud.sums_beside(row, half, |part| part.dot(excess));
+            let rate = if share > LEAST_SHARE { -rate / share } else { 0.0 };
+            out.push(EdgeParticle { row, behind, inverse, own, excess, rate, force: [DVec3::ZERO; 2] });
+        }
+    }
+}
+
+impl Run for EdgeMotion {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let (walls, half) = (self.shapes.rows(), 0.5 * step.clock.dt);
+        let mut edges = std::mem::take(&mut cloud.edges);
+        self.shapes.find(&cloud, step, &mut edges.fronts)?;
+        cloud.edges.fronts = std::mem::take(&mut edges.fronts);
+        self.add_faces(&cloud, &walls);
+        self.settle(&cloud, &walls, half, &mut edges.particles);
+        let mut rates = std::mem::take(&mut cloud.compression);
+        for edge in &edges.particles {
+            cloud.for_each_beside(edge.row, half, |j, _, force| rates[j] -= force.dot(edge.excess));
+        }
+        cloud.compression = rates;
+        cloud.edges.particles = edges.particles;
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! Energy that stabilizers take out of flows that have hardly any friction to lose it by.
+//!
+//! Where water breaks and falls, stabilizers take what a real flow would lose too. A fluid without a free surface, and one that no wall bounds, lose nothing without friction: what is missing there is an error. Particles that
+//! are driven past walls whose particles form stairs, or squeezed from one lattice into another, shake, and stabilizers take the energy of that.
+
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
+use crate::notation::quantity;
+use crate::removal::REMOVED_ENERGY;
+use crate::schedule::{Account, AccountKind, Step};
+
+use super::closed::is_closed;
+
+/// Energy that stabilizers have taken over the largest that any account has held that is worth a warning.
+const SHARE: f64 = 0.2;
+
+/// Looks at what stabilizers have taken from the fluids by the end of a run.
+pub fn look(is_told: &mut bool, cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'_>) {
+    let fluids = || cloud.groups.iter().filter(|group| group.fluid().is_some());
+    let of_fluids = |account: &Account| fluids().map(|group| account.of(group.body)).sum::<f64>();
+    let is_stabilizer = |account: &&Account| {
+        let name = account.name.as_str();
+        account.kind == AccountKind::Dissipated && !ACCOUNTS.contains(&name) && name != REMOVED_ENERGY
+    };
+    let taken = || step.ledger.accounts().iter().filter(is_stabilizer).map(|a| (a, of_fluids(a)));
+    let total: f64 = taken().map(|(_, energy)| energy).sum();
+    let (largest, friction) = (step.ledger.largest(), step.ledger.total_named(ACCOUNTS[0]));
+    if *is_told || total <= SHARE * largest || total <= friction {
+        return;
+    }
+    let is_bounded = cloud.records().len() > cloud.fluid;
+    if is_bounded && !is_closed(cloud, scratch) {
+        return;
+    }
+    let Some((account, _)) = taken().max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+    *is_told = true;
+    step.warnings.push(format!(
+        "{} of the motion of {} has been lost to `{}` by {}, {:.0} % of the largest energy of the run, where there is nothing to lose it by but friction: its particles shake; {}take more particles",
+        quantity(total, "J"),
+        super::closed::named(cloud, step),
+        account.name,
+        quantity(step.clock.time, "s"),
+        100.0 * total / largest,
+        if is_bounded {
+            "where walls or bodies are curved, give them and the fluid `lattice: Concentric`, `BodyFitted()` or `Relaxed()`, elsewhere "
+        } else {
+            "start them from `lattice: Relaxed()`, or "
+        },
+    ));
+}
