@@ -126,6 +126,46 @@ fn metal_that_is_drawn_by_its_sides_yields_as_in_a_fixed_reference() {
     assert!(fixed > 0.08 && (eulerian / fixed - 1.0).abs() < 0.03, "{eulerian} {fixed}");
 }
 
+#[test]
+fn a_thin_support_along_one_axis_is_said() {
+    let warned = |on: &str| {
+        let source = block(2, "Eulerian()", r#"("0", "0")"#, "");
+        let text = source
+            .text
+            .replace("conditions: [", &format!("conditions: [Fix(on: Select({on}), axes: [X]), "))
+            .replace("lattice: Relaxed(seed: 5, iterations: 2), ", "");
+        let sim = simulation(&Source::new("held.ron", text));
+        sim.warnings().iter().any(|text| text.contains("along some axes, over less than its kernel support"))
+    };
+    let strip = |columns: u32| {
+        warned(&format!("within: Box(min: (-1, -1), max: ({:?}, 1))", 0.05 * f64::from(columns) + 0.01))
+    };
+    assert!(strip(1) && strip(2) && !strip(3) && !warned("face: MinX"));
+}
+
+#[test]
+fn a_block_that_is_pressed_flat_bears_the_pressure_in_all_its_layers() {
+    // In plane strain between symmetry planes the stress is the pressure on the free side, whatever the law.
+    let pressure = 1.5e6;
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "block", material: "rubber", shape: Box(min: (0, 0), max: (0.1, 0.1)), spacing: 0.0125,
+                      formulation: Eulerian(), plugins: [hourglass_control()])],
+            conditions: [Symmetry(plane: X, at: 0.0), Symmetry(plane: X, at: 0.1), Symmetry(plane: Y, at: 0.0),
+                         Pressure(on: Select(face: MaxY), value: "{pressure:?}*smoothstep(t/0.05)")],
+            plugins: [local_damping(mode: Relaxation(after: 0.05, tolerance: 1e-4))],
+            time: (end: 0.3))"#
+    );
+    let mut sim = simulation(&Source::new("pressed.ron", text));
+    sim.run(|_| true).expect("a run");
+    for particle in particles(&sim) {
+        let f = particle.deformation;
+        let stress = (particle.stress * f.transpose()).y_axis.y / f.determinant();
+        assert!(f.y_axis.y < 0.5 && (stress / -pressure - 1.0).abs() < 0.05, "{stress} Pa, {f}");
+    }
+}
+
 /// A square bar of 8 particles across and twice as long, whose ends are turned against each other by an angle of 0.02 and may warp; its torque over G J of the angle over
 /// the length, where J = 0.1406 a^4 (Timoshenko and Goodier 1951, section 94).
 fn torque_of_twisted(material: &str) -> f64 {

@@ -60,7 +60,7 @@ impl Plugin for DensityDiffusion {
                 solid::add(&BodySet::new([id]), self.model, delta, sim)
             };
         }
-        let fluids = sim.scope_of(BodyKind::Fluid)?;
+        let fluids = sim.scope_of(BodyKind::Fluid).map_err(|error| own_solid(sim).unwrap_or(error))?;
         let delta = self.delta.unwrap_or(OF_FLUIDS);
         if delta == 0.0 || fluids.is_empty() {
             return Ok(());
@@ -78,6 +78,16 @@ impl Plugin for DensityDiffusion {
         }
         Ok(())
     }
+}
+
+/// The error in the list of a solid that takes no change of its volume.
+fn own_solid(sim: &SimBuilder<'_>) -> Option<SetupError> {
+    let body = sim.own_body().map(|id| sim.body(id)).filter(|body| body.kind == BodyKind::Solid)?;
+    let message = format!(
+        "this acts on fluids and on Eulerian solids, and body `{}` has the formulation `{}`",
+        body.name, body.formulation
+    );
+    Some(SetupError::parameter("", message, "leave it out"))
 }
 
 /// Coefficients that are usual (for solids: Mohseni-Mofidi and Bierwisch 2020).

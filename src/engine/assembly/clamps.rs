@@ -7,28 +7,39 @@ use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, Offer, Registry, SimBuilder};
 use crate::scene::{Edge, Scene};
 
-/// Warns of every body that is held along all axes and nowhere thick enough.
+/// Warns of every body that is held and nowhere thick enough: along all axes, or by `Fix` within a shape along some.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
-    let mut held: Vec<Vec<bool>> = sim.bodies.iter().map(|body| vec![false; body.sites.len()]).collect();
+    let none = || -> Vec<Vec<bool>> { sim.bodies.iter().map(|body| vec![false; body.sites.len()]).collect() };
+    let (mut held, mut partly) = (none(), none());
     let sides_are_placed = sim.bodies.iter().all(|body| body.kind != BodyKind::Fluid);
     for item in &scene.conditions {
         registry.support(item, |support| {
             let all = support.axes[..scene.dimension.count()].iter().all(|axis| *axis);
+            let is_part = !all && item.name() == "Fix" && support.on.within.is_some();
+            let is_part = is_part && support.on.nearest.is_none() && support.edge == Edge::Stated;
             // A layer that stands on its side needs nothing behind it.
             let is_side = support.on.face.is_some() && support.edge == Edge::Stated;
             // A fault of a selection is reported where the condition is built.
             let Ok(selection) = sim.select_at_start(support.on, "on") else { return };
-            for (id, rows) in selection.parts.iter().filter(|_| all && !(is_side && sides_are_placed)) {
+            let marks = if is_part { &mut partly } else { &mut held };
+            for (id, rows) in
+                selection.parts.iter().filter(|_| is_part || all && !(is_side && sides_are_placed))
+            {
                 let first = sim.bodies[id.0].rows.start;
-                rows.iter().for_each(|row| held[id.0][*row as usize - first] = true);
+                rows.iter().for_each(|row| marks[id.0][*row as usize - first] = true);
             }
         });
     }
-    let thin = sim.bodies.iter().zip(&held).filter_map(|(body, held)| of_body(body, held, sides_are_placed));
-    thin.collect::<Vec<_>>().into_iter().for_each(|warning| sim.warn(warning));
+    let mut thin = Vec::new();
+    for ((body, held), partly) in sim.bodies.iter().zip(&held).zip(&partly) {
+        thin.extend(thin_support(body, held).map(|reach| of_clamp(body, reach, sides_are_placed)));
+        thin.extend(thin_support(body, partly).map(|reach| of_part(body, reach, sides_are_placed)));
+    }
+    thin.into_iter().for_each(|warning| sim.warn(warning));
 }
 
-fn of_body(body: &BodyPlan, held: &[bool], sides_are_placed: bool) -> Option<String> {
+/// The kernel support of a body whose particles are held nowhere as thick as it, m.
+fn thin_support(body: &BodyPlan, held: &[bool]) -> Option<f64> {
     let reach = body.support.filter(|_| body.offers(Offer::PairControl))?;
     let of = |is_held: bool| -> Vec<_> {
         let own = body.sites.iter().zip(held).filter(|(_, held)| **held == is_held);
@@ -42,13 +53,32 @@ fn of_body(body: &BodyPlan, held: &[bool], sides_are_placed: bool) -> Option<Str
     let (targets, sources) = (Cloud::uniform(&inside, reach), Cloud::uniform(&outside, reach));
     NeighborSearch::default().between(targets, sources, 0.0, &Periodic::NONE, &mut list).ok()?;
     let is_thin = (0..inside.len()).all(|row| !list.row(row).is_empty());
-    is_thin.then(|| {
-        // Beside a fluid a side that is held stays in its lattice.
-        let or_side = if sides_are_placed { ", or hold its side by `face`" } else { "" };
-        format!(
-            "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {} of it{or_side}",
-            body.name,
-            quantity((reach / body.spacing).ceil() * body.spacing, "m")
-        )
-    })
+    is_thin.then_some(reach)
+}
+
+fn of_clamp(body: &BodyPlan, reach: f64, sides_are_placed: bool) -> String {
+    let (least, or_side) = (least(body, reach), or_side(sides_are_placed));
+    format!(
+        "body `{}` is clamped over less than its kernel support, which makes the clamp soft: clamp at least {least} of it{or_side}",
+        body.name
+    )
+}
+
+fn of_part(body: &BodyPlan, reach: f64, sides_are_placed: bool) -> String {
+    let (least, or_side) = (least(body, reach), or_side(sides_are_placed));
+    format!(
+        "body `{}` is held within a shape along some axes, over less than its kernel support: the support ends up to {} before the edge of the shape and is soft; hold at least {least} of it{or_side}",
+        body.name,
+        quantity(0.5 * body.spacing, "m")
+    )
+}
+
+/// The thickness of a support that the kernel does not see through, m, as text.
+fn least(body: &BodyPlan, reach: f64) -> String {
+    quantity((reach / body.spacing).ceil() * body.spacing, "m")
+}
+
+/// Beside a fluid a side that is held stays in its lattice.
+fn or_side(sides_are_placed: bool) -> &'static str {
+    if sides_are_placed { ", or hold its side by `face`" } else { "" }
 }

@@ -9,7 +9,7 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Perio
 use crate::symmetry::Map;
 
 /// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least error of the traction.
-const REACH: f64 = 2.1;
+pub(super) const REACH: f64 = 2.1;
 /// By how much the reach grows for vertices with fewer than [`FEWEST`] particles.
 const WIDER: f64 = 1.25;
 const FEWEST: usize = 3;
@@ -29,14 +29,16 @@ pub(super) struct Carrier {
     pub map: u32,
 }
 
-/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles. The first of the maps changes nothing.
+/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles. The first of the maps changes nothing. Particles up to `farther` times the reach become
+/// carriers too, without a share at the start.
 pub(super) fn carriers(
     vertices: &[DVec3],
     particles: &[DVec3],
     maps: &[Map],
     spacing: f64,
+    farther: f64,
 ) -> Result<Option<(Vec<u32>, Vec<Carrier>)>, NeighborError> {
-    let farthest = REACH * WIDER.powi(SEARCHES as i32) * spacing;
+    let farthest = farther * REACH * WIDER.powi(SEARCHES as i32) * spacing;
     let images = images(particles, maps, farthest);
     let places: Vec<DVec3> = images.iter().map(|image| image.0).collect();
     let mut all: Vec<Vec<Carrier>> = vec![Vec::new(); vertices.len()];
@@ -46,7 +48,7 @@ pub(super) fn carriers(
     let mut reach = REACH * spacing;
     for _ in 0..SEARCHES {
         let targets: Vec<DVec3> = pending.iter().map(|&k| vertices[k]).collect();
-        let cloud = |positions| Cloud::uniform(positions, reach);
+        let cloud = |positions| Cloud::uniform(positions, farther * reach);
         search.between(cloud(&targets), cloud(&places), 0.0, &Periodic::NONE, &mut list)?;
         let mut few = Vec::new();
         for (row, &k) in pending.iter().enumerate() {
@@ -96,7 +98,7 @@ fn shares(vertex: DVec3, maps: &[Map], images: &[Image], near: &[u32], reach: f6
         let (place, particle, map) = images[number as usize];
         // A map is a mirror image, or several of them: its own inverse for vectors.
         let way = vertex - place;
-        let weight = (1.0 - way.length() / reach).powi(3);
+        let weight = (1.0 - way.length() / reach).max(0.0).powi(3);
         Carrier { arm: maps[map as usize].vector(way), weight, particle, map }
     };
     let mut carriers: Vec<Carrier> = near.iter().map(of).collect();

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
 use super::carriers::Carrier;
+use super::following::Scale;
 use super::skin::Skin;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};
@@ -65,22 +66,53 @@ impl SkinView<'_> {
         &self,
         vertex: u32,
         zero: T,
-        of: impl Fn(&Carrier, usize) -> T,
+        of: impl Fn(f64, &Carrier, usize) -> T,
     ) -> T {
+        let scale = self.scale(vertex);
         let carriers = self.skin.carriers(vertex).iter();
-        carriers.fold(zero, |sum, carrier| sum + of(carrier, self.first_row + carrier.particle as usize))
+        carriers.fold(zero, |sum, carrier| {
+            let row = self.first_row + carrier.particle as usize;
+            let share = scale.map_or(carrier.weight, |scale| scale.share(self.distance(carrier)));
+            sum + of(share, carrier, row)
+        })
+    }
+
+    /// Present distance of a vertex from a carrier, m.
+    fn distance(&self, carrier: &Carrier) -> f64 {
+        (self.gradient[self.first_row + carrier.particle as usize].0 * carrier.arm).length()
+    }
+
+    /// What the shares of a vertex are made of, if they follow the deformation.
+    pub(super) fn scale(&self, vertex: u32) -> Option<Scale> {
+        let distances = self.skin.carriers(vertex).iter().map(|carrier| self.distance(carrier));
+        self.skin.reach.map(|reach| Scale::of(distances, reach))
+    }
+
+    /// Where a particle or its image has a vertex that is at `arm` from it in the reference configuration, m, and the present arm as the particle sees it, m.
+    pub fn carried_by(&self, particle: u32, map: u32, arm: DVec3) -> (DVec3, DVec3) {
+        let row = self.first_row + particle as usize;
+        let arm = self.gradient[row].0 * arm;
+        (self.skin.maps[map as usize].place(self.position[row].0 + arm), arm)
+    }
+
+    /// A vector beside an image, as the particle sees it.
+    pub fn back(&self, map: u32, vector: DVec3) -> DVec3 {
+        self.skin.maps[map as usize].vector(vector)
     }
 
     /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).
     pub fn mobility(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| {
-            self.mobility[row].0 * (carrier.weight * self.skin.layer[carrier.particle as usize])
+        self.mean(vertex, DVec3::ZERO, |share, carrier, row| {
+            self.mobility[row].0 * (share * self.skin.layer[carrier.particle as usize])
         })
     }
 
     /// Where a vertex is, m, and whether none of its carriers has been removed.
     #[inline(always)]
     fn look<A: FourLanes>(&self, a: A, vertex: u32) -> (DVec3, bool) {
+        if self.skin.reach.is_some() {
+            return self.look_at_following(vertex);
+        }
         // Two sums of each component: an addition waits for the one before it.
         let (mut x, mut y, mut z) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         let mut is_there = true;
@@ -107,6 +139,15 @@ impl SkinView<'_> {
         (DVec3::new(x[0] + x[1], y[0] + y[1], z[0] + z[1]), is_there)
     }
 
+    /// The same where the shares follow the deformation: those without a share need not be there.
+    fn look_at_following(&self, vertex: u32) -> (DVec3, bool) {
+        let Looked(place, missing) = self.mean(vertex, Looked::default(), |share, carrier, row| {
+            let missing = share > 0.0 && self.removed[row] != Removed::NO;
+            Looked(share * self.carried(carrier, row), u32::from(missing))
+        });
+        (place, missing == 0)
+    }
+
     /// Where the linear field of a carrier has a vertex, m.
     fn carried(&self, carrier: &Carrier, row: usize) -> DVec3 {
         self.skin.map(carrier).place(self.position[row].0 + self.gradient[row].0 * carrier.arm)
@@ -119,17 +160,29 @@ impl SkinView<'_> {
 
     /// Mean velocity of the particles that carry a vertex, m/s.
     pub fn velocity(&self, vertex: u32) -> DVec3 {
-        self.mean(vertex, DVec3::ZERO, |carrier, row| {
-            carrier.weight * self.skin.map(carrier).vector(self.velocity[row].0)
+        self.mean(vertex, DVec3::ZERO, |share, carrier, row| {
+            share * self.skin.map(carrier).vector(self.velocity[row].0)
         })
     }
 
     /// Mean deformation gradient at a vertex.
     pub fn gradient(&self, vertex: u32) -> DMat3 {
-        self.mean(vertex, DMat3::ZERO, |carrier, row| {
+        self.mean(vertex, DMat3::ZERO, |share, carrier, row| {
             let gradient = self.gradient[row].0;
-            carrier.weight * if carrier.map == 0 { gradient } else { self.skin.map(carrier).tensor(gradient) }
+            share * if carrier.map == 0 { gradient } else { self.skin.map(carrier).tensor(gradient) }
         })
+    }
+}
+
+/// Where a vertex is, m, and how many of its carriers have been removed.
+#[derive(Clone, Copy, Default)]
+struct Looked(DVec3, u32);
+
+impl std::ops::Add for Looked {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
     }
 }
 

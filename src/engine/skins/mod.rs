@@ -11,10 +11,13 @@
 //! once. A force f on a vertex returns by the exact transpose: s_j f on the particles, and s_j f (x) (X - X_j) as couples that the pass of the
 //! internal force distributes. Momentum, angular momentum and energy of any load that acts through a skin are therefore exact by construction.
 //!
+//! In bodies whose kernels live in the present configuration the shares follow the deformation.
+//!
 //! A skin uses positions and deformation gradients of its particles, and nothing else of their formulation.
 
 mod carriers;
 mod columns;
+mod following;
 mod patch;
 mod rule;
 mod skin;

@@ -6,6 +6,7 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::columns::SkinView;
+use super::following::{self, FollowingShare, Scale, follow};
 use super::skin::Skin;
 use crate::parallel::{FourLanes, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::SolidPhase;
@@ -39,6 +40,8 @@ pub(crate) struct Vertex {
     pub mobility: DVec3,
     /// Whether all that carries it is there.
     pub is_there: bool,
+    /// What its shares are made of, if they follow the deformation.
+    pub(super) scale: Scale,
 }
 
 /// What is to be computed beside places and velocities.
@@ -51,14 +54,14 @@ pub(crate) struct Wanted {
 
 /// A vertex by which a force reaches a particle.
 #[derive(Clone, Copy, Debug)]
-struct End {
-    arm: DVec3,
+pub(super) struct End {
+    pub arm: DVec3,
     weight: f64,
-    particle: u32,
+    pub particle: u32,
     /// Number of the vertex in the patch.
-    vertex: u32,
+    pub vertex: u32,
     /// Number of the map by which the particle is an image.
-    map: u32,
+    pub map: u32,
 }
 
 /// What is handed on to particles.
@@ -69,6 +72,8 @@ struct HandedOn<'a> {
     couples: Option<&'a [DMat3]>,
     starts: &'a [u32],
     ends: &'a [End],
+    /// The shares at the ends, if they follow the deformation.
+    following: &'a [FollowingShare],
 }
 
 /// The loop over particles, from the first of a block on.
@@ -86,7 +91,11 @@ impl HotLoop for OnParticles<'_> {
         let Self { all, first, on: (on, alone) } = self;
         for k in 0..on.len() {
             let ends = all.starts[first + k] as usize..all.starts[first + k + 1] as usize;
-            let (force, couple) = all.on_particle(a, &all.ends[ends]);
+            let (force, couple) = if all.following.is_empty() {
+                all.on_particle(a, &all.ends[ends])
+            } else {
+                all.on_follower(&all.ends[ends.clone()], &all.following[ends])
+            };
             on[k] = (force, couple);
             alone[k] = couple;
         }
@@ -124,6 +133,19 @@ impl HandedOn<'_> {
         (DVec3::new(fx, fy, fz), couple)
     }
 
+    /// The same where the shares follow the deformation.
+    fn on_follower(&self, ends: &[End], shares: &[FollowingShare]) -> (DVec3, DMat3) {
+        let force = |end: &End| self.skin.maps[end.map as usize].vector(self.forces[end.vertex as usize]);
+        let (force, mut couple) = following::on_particle(ends, shares, force);
+        if self.couples.is_some() {
+            let shares = shares.iter().map(FollowingShare::share);
+            couple += ends.iter().zip(shares).fold(DMat3::ZERO, |sum, (end, share)| {
+                sum + self.of_vertices(&[End { weight: share, ..*end }])
+            });
+        }
+        (force, couple)
+    }
+
     /// What the couples on vertices are for a particle at these ends, N m.
     fn of_vertices(&self, ends: &[End]) -> DMat3 {
         let couples = self.couples.unwrap_or_default();
@@ -155,6 +177,8 @@ pub(crate) struct Patch {
     particles: Vec<u32>,
     starts: Vec<u32>,
     ends: Vec<End>,
+    /// The shares at the ends, if they follow the deformation; else none.
+    following: Vec<FollowingShare>,
     on_particles: Vec<(DVec3, DMat3)>,
     /// The couples alone, as the pass of the internal force takes them.
     couples_on_particles: Vec<DMat3>,
@@ -178,6 +202,7 @@ impl Patch {
             particles: Vec::with_capacity(particles),
             starts: Vec::with_capacity(particles + 1),
             ends: Vec::with_capacity(carriers),
+            following: Vec::with_capacity(if skin.reach.is_some() { carriers } else { 0 }),
             on_particles: Vec::with_capacity(particles),
             couples_on_particles: Vec::with_capacity(particles),
             skin,
@@ -233,6 +258,8 @@ impl Patch {
             }
         }
         starts.push(ends.len() as u32);
+        let followed = if skin.reach.is_some() { self.ends.len() } else { 0 };
+        self.following.resize(followed, FollowingShare::default());
         self.on_particles.resize(self.particles.len(), Default::default());
         self.couples_on_particles.resize(self.particles.len(), DMat3::ZERO);
     }
@@ -262,9 +289,11 @@ impl Patch {
                     }
                 }
                 *last = Last { place, gradient };
-                now[k] = Vertex { place, velocity, gradient, rate, mobility, is_there };
+                let scale = view.scale(vertex).unwrap_or_default();
+                now[k] = Vertex { place, velocity, gradient, rate, mobility, is_there, scale };
             });
         });
+        follow(view, &self.ends[..self.following.len()], &self.now, &mut self.following);
     }
 
     /// The particles that carry the patch, by their numbers in the body, ascending.
@@ -352,8 +381,9 @@ impl Patch {
 
     /// Hands the forces on the vertices on to the particles.
     pub fn hand_on(&mut self) {
-        let Self { skin, forces, couples, has_couples, starts, ends, .. } = self;
-        let all = HandedOn { skin, forces, couples: has_couples.then_some(&couples[..]), starts, ends };
+        let Self { skin, forces, couples, has_couples, starts, ends, following, .. } = self;
+        let couples = has_couples.then_some(&couples[..]);
+        let all = HandedOn { skin, forces, couples, starts, ends, following };
         let (on_particles, couples_on_particles) = (&mut self.on_particles, &mut self.couples_on_particles);
         let rows = (&mut on_particles[..], &mut couples_on_particles[..]);
         for_each_block(rows, &mut Vec::new(), &|first, on| run_hot(OnParticles { all, first, on }));

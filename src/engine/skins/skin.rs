@@ -4,8 +4,9 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::carriers::{Carrier, carriers};
-use crate::plugin::BodyPlan;
+use super::carriers::{Carrier, REACH, carriers};
+use super::following::CANDIDATES;
+use crate::plugin::{BodyPlan, Offer};
 use crate::scene::Dimension;
 use crate::shapes::{Facets, Shape};
 use crate::symmetry::{Map, MirrorPlane, images};
@@ -42,6 +43,8 @@ pub(crate) struct Skin {
     pub lightness: f64,
     /// Of every particle the length (area) for which it stands in a layer, m (m2).
     pub(super) layer: Vec<f64>,
+    /// Reach of a vertex, m, if the shares of its carriers follow the deformation; none if they are those of the start.
+    pub(super) reach: Option<f64>,
 }
 
 impl Skin {
@@ -59,7 +62,11 @@ impl Skin {
         planes().for_each(|plane| leave_out(&mut facets, plane, ON_PLANE * body.spacing));
         let maps = images(planes());
         let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
-        let (starts, carriers) = carriers(&facets.points, &particles, &maps, body.spacing).ok()??;
+        // Kernels of the present configuration.
+        let reach = body.offers(Offer::PairControl).then_some(REACH * body.spacing);
+        let farther = if reach.is_some() { CANDIDATES } else { 1.0 };
+        let (starts, carriers) =
+            carriers(&facets.points, &particles, &maps, body.spacing, farther).ok()??;
         let normals: Vec<(DVec3, f64)> =
             (0..facets.corners.len()).map(|facet| facets.normal_and_measure(facet)).collect();
         let (facet_starts, facets_at) = facets_at_vertices(&facets);
@@ -81,6 +88,7 @@ impl Skin {
             maps,
             lightness,
             layer,
+            reach,
         };
         skin.corner = skin.corners(&normals);
         Some(skin)
@@ -110,9 +118,10 @@ impl Skin {
         &self.maps[carrier.map as usize]
     }
 
-    /// The particles that carry it, ascending.
+    /// The particles that carry it at the start, ascending.
     pub fn particles(&self) -> Vec<u32> {
-        let mut particles: Vec<u32> = self.carriers.iter().map(|carrier| carrier.particle).collect();
+        let carriers = self.carriers.iter().filter(|carrier| carrier.weight > 0.0);
+        let mut particles: Vec<u32> = carriers.map(|carrier| carrier.particle).collect();
         particles.sort_unstable();
         particles.dedup();
         particles

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use super::{Patch, QuadratureRule, Skin, SkinColumns, Wanted};
 use crate::assembly::build;
-use crate::plugin::Registry;
+use crate::plugin::{Offer, Registry};
 use crate::scene::{Source, parse};
 use crate::simulation::Simulation;
 use crate::world::{BodyId, DeformationGradient, Force, Position};
@@ -24,6 +24,10 @@ fn simulation(dimension: &str, shape: &str) -> Simulation {
 
 /// The skin of a body of a simulation, with a spacing of 0.01 m, whose particles stand where those of the scene do.
 pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -> Skin {
+    skin_of(sim, id, (dimension, shape), &[])
+}
+
+fn skin_of(sim: &Simulation, id: BodyId, (dimension, shape): (&str, &str), offers: &'static [Offer]) -> Skin {
     use crate::plugin::BodyPlan;
     use crate::scene::Dimension;
     use crate::shapes::{Filling, Lattice, Shape, fill};
@@ -59,7 +63,7 @@ pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -
         bounds: shape.region(axes, folder, "shape").unwrap().bounds(),
         velocity: None,
         kind: crate::plugin::BodyKind::Solid,
-        offers: &[],
+        offers,
         support: None,
     };
     Skin::of(&plan, &shape, &[], axes, folder).unwrap_or_else(|| panic!("no skin"))
@@ -136,6 +140,67 @@ fn forces_on_a_skin_are_those_on_its_particles_in_sum_and_moment() {
         assert!(sum.distance(force) < 1e-12 * force.length(), "{shape}: {sum} {force}");
         assert!(turn.distance(moment) < 1e-10 * force.length(), "{shape}: {turn} {moment}");
     }
+}
+
+/// Deforms a body unevenly, flatter and flatter towards y = 0.
+fn press(sim: &Simulation) {
+    let (view, rows) = sim.world().body_view(BodyId(0));
+    let (mut x, mut f) = (view.write::<Position>().unwrap(), view.write::<DeformationGradient>().unwrap());
+    for row in rows {
+        let start = x[row].0;
+        let flat = 0.25 + 8.0 * start.y.abs();
+        x[row].0 = DVec3::new(1.4 * start.x + 0.3 * start.y, flat * start.y, 0.9 * start.z);
+        f[row].0 =
+            DMat3::from_cols_array(&[1.4, 0.0, 0.0, 0.3, flat + 8.0 * start.y.abs(), 0.0, 0.1, 0.0, 0.9]);
+    }
+}
+
+#[test]
+fn forces_return_by_the_transpose_where_shares_follow_the_deformation() {
+    for (dimension, shape) in SHAPES {
+        let sim = simulation(dimension, shape);
+        let skin = Arc::new(skin_of(&sim, BodyId(0), (dimension, shape), &[Offer::PairControl]));
+        press(&sim);
+        let load = |vertex: usize| DVec3::new((7 * vertex % 11) as f64 - 5.0, (3 * vertex % 5) as f64, 1.0);
+        let vertices: Vec<u32> = (0..skin.vertices() as u32).collect();
+        let potential = || {
+            let columns = SkinColumns::new(&skin, sim.world()).unwrap();
+            let mut sum = 0.0;
+            columns.view().places(&vertices, &mut |k, place, _| sum += load(k).dot(place));
+            sum
+        };
+        let mut patch = Patch::new(Arc::clone(&skin));
+        patch.select(0..skin.facets.corners.len() as u32);
+        patch.update(&SkinColumns::new(&skin, sim.world()).unwrap().view(), 0.0, Wanted::default());
+        vertices.iter().for_each(|&k| patch.push_vertex(k as usize, load(k as usize)));
+        patch.hand_on();
+        let size = patch.on_particles().map(|(_, force, _)| force.length()).fold(0.0, f64::max);
+        let (view, rows) = sim.world().body_view(BodyId(0));
+        for (particle, force, couple) in patch.on_particles().step_by(17) {
+            let (row, step) = (rows.start + particle, 1e-6);
+            for axis in [DVec3::X, DVec3::Y] {
+                let shift = |by: f64| view.write::<Position>().unwrap()[row].0 += by * axis;
+                let slope = slope_of(&potential, &shift, 0.01 * step);
+                assert!((slope - force.dot(axis)).abs() < 1e-5 * size, "{shape}: {slope} {force}");
+                for side in [DVec3::X, DVec3::Y] {
+                    let turn = DMat3::from_cols(axis * side.x, axis * side.y, axis * side.z);
+                    let strain = |by: f64| view.write::<DeformationGradient>().unwrap()[row].0 += turn * by;
+                    let (slope, couple) = (slope_of(&potential, &strain, step), axis.dot(couple * side));
+                    assert!((slope - couple).abs() < 1e-6 * size, "{shape}: {slope} {couple}");
+                }
+            }
+        }
+    }
+}
+
+/// The slope of a value in what a change changes, by central differences.
+fn slope_of(value: &dyn Fn() -> f64, change: &dyn Fn(f64), step: f64) -> f64 {
+    change(step);
+    let high = value();
+    change(-2.0 * step);
+    let low = value();
+    change(step);
+    (high - low) / (2.0 * step)
 }
 
 #[test]

@@ -1,0 +1,103 @@
+//! Skins of bodies whose kernels live in the present configuration: the shares of carriers follow the deformation.
+//!
+//! Where such a body is pressed flat, kernels reach over many layers of particles, and a uniform stress is in balance with a load on the surface only if the load
+//! acts on as many layers, by about the kernel. With the shares of the start the outermost layer alone would carry it, and a multiple of the stress of the next one; under a Taylor
+//! bar it was squeezed out. The share of a carrier thus depends on the present distance of the vertex from it:
+//!
+//! ```text
+//! x = sum_j s_j y_j ,   y_j = x_j + F_j (X - X_j) ,   s_j ~ (1 - d_j/R)^3 ,   d_j = |F_j (X - X_j)| ,   sum s_j = 1
+//! ```
+//!
+//! The transpose has the change of the shares with F: a force f on a vertex is s_j f on the particles, and the couples `[s_j f + (f . u_j) g_j] (x) (X - X_j)` with
+//! `u_j = y_j - x` and g_j the slope of the share along `F_j (X - X_j)`. Undeformed, all is as in Lagrangian bodies.
+
+use glam::{DMat3, DVec3};
+
+use super::columns::SkinView;
+use super::patch::{End, Vertex};
+use crate::parallel::for_each_block;
+
+/// How far from a vertex particles may be at the start to become its carriers, over the reach: three layers.
+pub(super) const CANDIDATES: f64 = 1.6;
+/// Least reach over the distance of the nearest carrier, so that a vertex always has one.
+const LEAST: f64 = 2.0;
+
+/// The present reach of a vertex, m, and the sum of the weights of its carriers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scale {
+    reach: f64,
+    sum: f64,
+}
+
+impl Scale {
+    /// From the present distances of the carriers, m, for a reach, m, of the undeformed body.
+    pub fn of(distances: impl Iterator<Item = f64> + Clone, reach: f64) -> Self {
+        let nearest = distances.clone().fold(f64::INFINITY, f64::min);
+        let reach = reach.max(LEAST * nearest);
+        Self { reach, sum: distances.map(|distance| weight(distance / reach)).sum() }
+    }
+
+    /// The share of a carrier at a distance, m.
+    pub fn share(&self, distance: f64) -> f64 {
+        weight(distance / self.reach) / self.sum
+    }
+
+    /// Change of the share with the distance over the distance, 1/m2.
+    fn slope(&self, distance: f64) -> f64 {
+        let rest = (1.0 - distance / self.reach).max(0.0);
+        -3.0 * rest * rest / (self.reach * self.sum * distance.max(f64::MIN_POSITIVE))
+    }
+}
+
+fn weight(distance: f64) -> f64 {
+    (1.0 - distance).max(0.0).powi(3)
+}
+
+/// How a vertex acts on a carrier in this step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct FollowingShare {
+    share: f64,
+    /// u_j, m.
+    away: DVec3,
+    /// g_j, 1/m.
+    slope: DVec3,
+}
+
+/// Finds the shares at the ends of a patch.
+pub(super) fn follow(view: &SkinView<'_>, ends: &[End], now: &[Vertex], out: &mut [FollowingShare]) {
+    for_each_block((out, ends), &mut Vec::new(), &|_, (out, ends): (&mut [FollowingShare], &[End])| {
+        for (out, end) in out.iter_mut().zip(ends) {
+            let vertex = &now[end.vertex as usize];
+            let (place, arm) = view.carried_by(end.particle, end.map, end.arm);
+            let distance = arm.length();
+            *out = FollowingShare {
+                share: vertex.scale.share(distance),
+                away: view.back(end.map, place - vertex.place),
+                slope: arm * vertex.scale.slope(distance),
+            };
+        }
+    });
+}
+
+/// The force, N, and the couple, N m, on a particle at these ends. `force` gives that on the vertex of an end, as the particle sees it.
+pub(super) fn on_particle(
+    ends: &[End],
+    shares: &[FollowingShare],
+    force: impl Fn(&End) -> DVec3,
+) -> (DVec3, DMat3) {
+    let mut sum = (DVec3::ZERO, DMat3::ZERO);
+    for (end, of) in ends.iter().zip(shares) {
+        let f = force(end);
+        let shared = of.share * f;
+        let couple = shared + of.slope * f.dot(of.away);
+        sum.0 += shared;
+        sum.1 += DMat3::from_cols(couple * end.arm.x, couple * end.arm.y, couple * end.arm.z);
+    }
+    sum
+}
+
+impl FollowingShare {
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+}
