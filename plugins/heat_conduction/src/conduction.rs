@@ -13,7 +13,7 @@ use meshless_engine::glam::DVec3;
 use meshless_engine::linalg::Sym3;
 use meshless_engine::parallel::{BlockSum, for_each_block};
 use meshless_engine::plugin::SimBuilder;
-use meshless_engine::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use meshless_engine::schedule::{AccountKind, INTO_HEAT, Run, Stage, Step, StepError, System};
 use meshless_engine::solids::{PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
     BodyId, BodySet, DeformationGradient, Mass, Position, ReferenceVolume, Removed, Temperature,
@@ -159,7 +159,7 @@ impl Conduction {
         let heat = step.ledger.account("heat", AccountKind::Stored);
         step.ledger.add(heat, of.body, found.come + found.conducted);
         step.ledger.set_resolution(DIGITS * found.exchanged);
-        let into_heat = step.ledger.account("into_heat", AccountKind::Dissipated);
+        let into_heat = step.ledger.account(INTO_HEAT, AccountKind::Dissipated);
         step.ledger.add(into_heat, of.body, -found.come);
         if found.fastest > 0.0 {
             let name = &step.world.body(of.body).name;

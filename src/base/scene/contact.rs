@@ -23,8 +23,8 @@ pub struct Contact {
     /// take along.
     #[serde(default = "elastic")]
     pub restitution: f64,
-    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into the second. It warms the particles that touch, of
-    /// bodies whose material has a specific heat. Without it friction warms nothing.
+    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into the second. It warms the particles that touch or carry the surface
+    /// that does, of bodies whose material has a specific heat. Without it friction warms nothing.
     #[serde(default)]
     pub friction_heat: Option<f64>,
     /// With what deformable bodies touch.
@@ -35,8 +35,8 @@ pub struct Contact {
 /// With what deformable bodies touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ContactSurface {
-    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, those of periodic domains, contact of a body with itself
-    /// and with a `Wall` fall back to `Particles`; so do bodies that can fail as soon as a particle of that surface has failed.
+    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, contact of a body with itself and with a `Wall` fall back to
+    /// `Particles`; so do bodies that can fail as soon as a particle of that surface has failed.
     #[default]
     Skin,
     /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.

@@ -51,6 +51,9 @@ impl Plugin for PressureLoad {
             let make = || LoadKind::Pressure(self.value.clone());
             let surface = LoadedSurface { select: &self.on, area: self.area };
             let skins = skin_load::apply(LABEL, make, surface, skins, sim)?;
+            if self.on.surface.is_some() {
+                return Ok(());
+            }
             return broken_skin::apply(LABEL, skins, &selection, sim, |selection, sim| {
                 self.on_particles(selection, sim)
             });

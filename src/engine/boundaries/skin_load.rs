@@ -2,11 +2,13 @@
 //!
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 //!
-//! Bodies that can fail are loaded so until a first particle that carries the loaded surface fails, and on the selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)).
+//! Bodies that can fail are loaded so until a first particle that carries the loaded `face` fails, and on the selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)).
+//! No particles stand for another part of the `surface`: of this the facets are left out whose particles have failed.
 
 use std::sync::Arc;
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use super::field::VectorField;
 use super::symmetry::planes_of;
@@ -16,8 +18,9 @@ use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
 use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
+use crate::symmetry::{Repeat, periods_of};
 use crate::world::{
-    BodyId, BodySet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
+    Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
 };
 
 /// What gives the force on a facet.
@@ -38,10 +41,33 @@ struct SkinLoad {
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
     last: Vec<DVec3>,
-    /// Whether the body can fail.
-    is_fragile: bool,
-    /// Whether a particle that carries the facets has failed.
+    /// What becomes of the load where the body fails, if it can.
+    breaking: Breaking,
+    /// Whether particles that carry the facets have failed and act in their place.
     is_broken: bool,
+    /// Whether the user has been told of facets that are left out.
+    is_told: bool,
+}
+
+/// What becomes of a load where particles that carry its facets fail.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Breaking {
+    /// The body cannot fail.
+    Never,
+    /// Particles are loaded in place of all facets.
+    OnParticles,
+    /// Those facets are loaded no more.
+    LeftOut,
+}
+
+impl Breaking {
+    fn of(select: &Select, body: &BodyPlan) -> Self {
+        match (body.can_fail(), select.surface.is_some()) {
+            (false, _) => Self::Never,
+            (true, false) => Self::OnParticles,
+            (true, true) => Self::LeftOut,
+        }
+    }
 }
 
 /// The loads of a condition on the skins of bodies.
@@ -63,7 +89,7 @@ pub(super) fn skins_of(
     let skins = selection.parts.iter().map(|(id, _)| skin_of(select, sim.body(*id), sim));
     let skins: Option<Vec<_>> = skins.collect();
     if skins.is_none() && select.surface.is_some() {
-        let message = "the surface of a selected body is not known, or is not that of a total-Lagrangian solid without damage";
+        let message = "the surface of a selected body is not known, or is not carried by its formulation";
         return Err(SetupError::parameter("on.surface", message, "select particles of a `face` instead"));
     }
     // A face of a shape without one: the load on particles says what is wrong.
@@ -84,15 +110,15 @@ pub(super) fn skins_of(
 /// The skin of a body on which a load acts; none if the load has to act on particles.
 fn skin_of(select: &Select, body: &BodyPlan, sim: &SimBuilder<'_>) -> Option<Arc<Skin>> {
     body.solid_law().ok()?;
-    // What has failed is loaded by a side of its particles.
-    let is_known = body.offers(Offer::DeformedContact) && (select.surface.is_none() || !body.can_fail());
     let is_surface = (select.face.is_some() || select.surface.is_some()) && select.nearest.is_none();
-    if !is_known || !is_surface {
+    if !body.offers(Offer::DeformedContact) || !is_surface {
         return None;
     }
     let shape = &sim.scene().bodies[body.id.0].shape;
-    // Vertices at a symmetry plane are carried from both sides of it, so that a uniform load stays uniform.
-    Skin::of(body, shape, &planes_of(body, sim), sim.dimension(), sim.folder()).map(Arc::new)
+    // Vertices where the body goes on are carried from both sides, so that a uniform load stays uniform.
+    let repeats: Vec<Repeat> =
+        planes_of(body, sim).iter().map(Repeat::from).chain(periods_of(body, sim)).collect();
+    Skin::of(body, shape, &repeats, sim.dimension(), sim.folder()).map(Arc::new)
 }
 
 /// What a scene says of a loaded surface.
@@ -137,12 +163,13 @@ pub(super) fn apply(
     let loads = loads.into_iter().map(|(facets, patch)| SkinLoad {
         label,
         kind: make(),
-        is_fragile: sim.body(patch.skin.body).can_fail(),
+        breaking: Breaking::of(select, sim.body(patch.skin.body)),
         patch,
         facets,
         factor,
         last: Vec::new(),
         is_broken: false,
+        is_told: false,
     });
     let loads = SkinLoads(loads.collect());
     Ok(add_systems(label, loads, sim))
@@ -151,7 +178,7 @@ pub(super) fn apply(
 fn add_systems(label: &'static str, loads: SkinLoads, sim: &mut SimBuilder<'_>) -> Shared<SkinLoads> {
     let bodies = BodySet::new(loads.0.iter().map(|load| load.patch.skin.body));
     let phases = sim.phases_of(&bodies);
-    let can_break = loads.0.iter().any(|load| load.is_fragile);
+    let can_break = loads.0.iter().any(|load| load.breaking != Breaking::Never);
     let shared = sim.share(loads);
     let mut make = System::new(Stage::Boundary, label, Make(shared));
     if can_break {
@@ -189,8 +216,13 @@ impl Run for Make {
 
     fn save_with(&self, resources: &Resources) -> Vec<u8> {
         let loads = resources.of(self.0);
-        let saved: Vec<Saved> =
-            loads.0.iter().map(|load| (load.last.clone(), load.patch.saved(), load.is_broken)).collect();
+        let save = |load: &SkinLoad| Saved {
+            last: load.last.clone(),
+            places: load.patch.saved(),
+            is_broken: load.is_broken,
+            is_told: load.is_told,
+        };
+        let saved: Vec<Saved> = loads.0.iter().map(save).collect();
         postcard::to_stdvec(&saved).unwrap_or_default()
     }
 
@@ -198,18 +230,24 @@ impl Run for Make {
         let Ok(saved) = postcard::from_bytes::<Vec<Saved>>(state) else { return false };
         let mut loads = resources.of_mut(self.0);
         let fits = saved.len() == loads.0.len();
-        for (load, (last, places, is_broken)) in loads.0.iter_mut().zip(saved) {
+        for (load, saved) in loads.0.iter_mut().zip(saved) {
             let facets: Vec<u32> = load.facets.iter().map(|facet| facet.0).collect();
-            load.patch.restore(&places);
+            load.patch.restore(&saved.places);
             load.patch.select(facets);
-            (load.last, load.is_broken) = (last, is_broken);
+            (load.last, load.is_broken, load.is_told) = (saved.last, saved.is_broken, saved.is_told);
         }
         fits
     }
 }
 
-/// Forces at the end of the last step, where the vertices were, and whether the skin is broken.
-type Saved = (Vec<DVec3>, Vec<(u32, Last)>, bool);
+/// What a checkpoint keeps of a load; facets that are left out follow from the damage of the particles.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    last: Vec<DVec3>,
+    places: Vec<(u32, Last)>,
+    is_broken: bool,
+    is_told: bool,
+}
 
 impl SkinLoad {
     /// The forces at the end of the step, and their work; that of the last forces is left where the skin breaks in this step.
@@ -234,21 +272,31 @@ impl SkinLoad {
         Ok(())
     }
 
-    /// Looks whether a particle that carries the facets has failed in this step, and tells the user.
+    /// Looks whether particles that carry the facets have failed in this step, and tells the user.
     fn look(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        if !self.is_fragile {
+        if self.breaking == Breaking::Never {
             return Ok(());
         }
-        let (view, rows) = step.world.body_view(self.patch.skin.body);
+        let Body { name, rows, .. } = step.world.body(self.patch.skin.body);
+        let (view, _) = step.world.body_view(self.patch.skin.body);
         let damage = view.read_near::<Damage>()?;
         let has_failed = |&particle: &u32| damage[rows.start + particle as usize].0 >= 1.0;
-        self.is_broken = self.patch.particles().iter().any(has_failed);
-        if self.is_broken {
+        if !self.patch.particles().iter().any(has_failed) {
+            return Ok(());
+        }
+        let (label, now) = (self.label, quantity(step.clock.end(), "s"));
+        if self.breaking == Breaking::OnParticles {
+            self.is_broken = true;
             step.warnings.push(format!(
-                "the {} on body `{}` acts on particles and no longer on its surface from {} on, because particles of that surface have failed",
-                self.label,
-                step.world.body(self.patch.skin.body).name,
-                quantity(step.clock.end(), "s")
+                "the {label} on body `{name}` acts on particles and no longer on its surface from {now} on, because particles of that surface have failed"
+            ));
+            return Ok(());
+        }
+        let skin = &self.patch.skin;
+        self.facets.retain(|facet| !skin.particles_of(facet.0).any(|particle| has_failed(&particle)));
+        if !std::mem::replace(&mut self.is_told, true) {
+            step.warnings.push(format!(
+                "the {label} on body `{name}` leaves out the parts of the surface whose particles have failed, from {now} on: the load there is lost"
             ));
         }
         Ok(())

@@ -49,6 +49,9 @@ impl Plugin for Traction {
             let make = || LoadKind::Traction(field.clone());
             let surface = LoadedSurface { select: &self.on, area: self.area };
             let skins = skin_load::apply(LABEL, make, surface, skins, sim)?;
+            if self.on.surface.is_some() {
+                return Ok(());
+            }
             let law = |selection: &Selection, sim: &mut SimBuilder<'_>| {
                 on_particles(&self.on, self.area, field.clone(), selection, sim)
             };

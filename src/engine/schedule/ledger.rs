@@ -15,6 +15,9 @@ pub enum AccountKind {
     Dissipated,
 }
 
+/// Account of the dissipated energy that bodies hold as heat, with a negative sign: a part of plastic work and friction that is not lost.
+pub const INTO_HEAT: &str = "into_heat";
+
 /// Name and kind of the account of a system.
 #[derive(Clone, Copy, Debug)]
 pub struct EnergyAccount {

@@ -12,7 +12,7 @@ mod system;
 mod trigger;
 
 pub use each::{Adds, EachRow};
-pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, Ledger};
+pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
 pub use resources::{Resources, Shared, SharedValues};

@@ -1,11 +1,12 @@
 //! The particles that carry the vertices of a skin.
 //!
 //! Near symmetry planes mirror images of particles are carriers as well: an image stands for the particle that carries the image of the vertex. A skin
-//! that ends at a plane is then half of the skin of the whole body.
+//! that ends at a plane is then half of the skin of the whole body. At the ends of a period images a period away are carriers.
 
 use glam::DVec3;
 
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::shapes::Aabb;
 use crate::symmetry::Map;
 
 /// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least error of the traction.
@@ -39,7 +40,8 @@ pub(super) fn carriers(
     farther: f64,
 ) -> Result<Option<(Vec<u32>, Vec<Carrier>)>, NeighborError> {
     let farthest = farther * REACH * WIDER.powi(SEARCHES as i32) * spacing;
-    let images = images(particles, maps, farthest);
+    let around = Aabb::around(vertices.iter().copied());
+    let images = images(particles, maps, Aabb { min: around.min - farthest, max: around.max + farthest });
     let places: Vec<DVec3> = images.iter().map(|image| image.0).collect();
     let mut all: Vec<Vec<Carrier>> = vec![Vec::new(); vertices.len()];
     let mut pending: Vec<usize> = (0..vertices.len()).collect();
@@ -80,14 +82,13 @@ pub(super) fn carriers(
 /// A particle or an image of it: where it is, m, its number, and the number of its map.
 type Image = (DVec3, u32, u32);
 
-/// All particles, and their images that are no farther than `farthest`, m, from the planes.
-fn images(particles: &[DVec3], maps: &[Map], farthest: f64) -> Vec<Image> {
+/// All particles, and their images in a box.
+fn images(particles: &[DVec3], maps: &[Map], within: Aabb) -> Vec<Image> {
     let mut images = Vec::new();
     for (number, map) in (0..).zip(maps) {
         let all = (0..).zip(particles).map(|(particle, x)| (map.place(*x), particle, number));
-        images.extend(all.filter(|image| {
-            let way = image.0 - particles[image.1 as usize];
-            way.abs().max_element() < 2.0 * farthest
+        images.extend(all.filter(|(place, _, map)| {
+            *map == 0 || (place.cmpge(within.min) & place.cmple(within.max)).all()
         }));
     }
     images
@@ -96,7 +97,7 @@ fn images(particles: &[DVec3], maps: &[Map], farthest: f64) -> Vec<Image> {
 fn shares(vertex: DVec3, maps: &[Map], images: &[Image], near: &[u32], reach: f64) -> Vec<Carrier> {
     let of = |&number: &u32| {
         let (place, particle, map) = images[number as usize];
-        // A map is a mirror image, or several of them: its own inverse for vectors.
+        // For vectors a map is its own inverse.
         let way = vertex - place;
         let weight = (1.0 - way.length() / reach).max(0.0).powi(3);
         Carrier { arm: maps[map as usize].vector(way), weight, particle, map }

@@ -56,7 +56,7 @@ fn weight(distance: f64) -> f64 {
 /// How a vertex acts on a carrier in this step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FollowingShare {
-    share: f64,
+    pub(super) share: f64,
     /// u_j, m.
     away: DVec3,
     /// g_j, 1/m.

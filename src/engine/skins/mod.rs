@@ -18,6 +18,7 @@
 mod carriers;
 mod columns;
 mod following;
+mod heat;
 mod patch;
 mod rule;
 mod skin;

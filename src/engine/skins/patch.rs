@@ -56,7 +56,7 @@ pub(crate) struct Wanted {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     pub arm: DVec3,
-    weight: f64,
+    pub weight: f64,
     pub particle: u32,
     /// Number of the vertex in the patch.
     pub vertex: u32,
@@ -174,11 +174,14 @@ pub(crate) struct Patch {
     couples: Vec<DMat3>,
     /// Whether there are couples on vertices in this step.
     has_couples: bool,
+    /// Heat on every vertex, J, and whether there is any in this step.
+    pub(super) heats: Vec<f64>,
+    pub(super) has_heat: bool,
     particles: Vec<u32>,
-    starts: Vec<u32>,
-    ends: Vec<End>,
+    pub(super) starts: Vec<u32>,
+    pub(super) ends: Vec<End>,
     /// The shares at the ends, if they follow the deformation; else none.
-    following: Vec<FollowingShare>,
+    pub(super) following: Vec<FollowingShare>,
     on_particles: Vec<(DVec3, DMat3)>,
     /// The couples alone, as the pass of the internal force takes them.
     couples_on_particles: Vec<DMat3>,
@@ -199,6 +202,8 @@ impl Patch {
             forces: Vec::with_capacity(vertices),
             couples: Vec::with_capacity(vertices),
             has_couples: false,
+            heats: Vec::with_capacity(vertices),
+            has_heat: false,
             particles: Vec::with_capacity(particles),
             starts: Vec::with_capacity(particles + 1),
             ends: Vec::with_capacity(carriers),
@@ -232,6 +237,7 @@ impl Patch {
         self.now.resize(count, Vertex::default());
         self.forces.resize(count, DVec3::ZERO);
         self.couples.resize(count, DMat3::ZERO);
+        self.heats.resize(count, 0.0);
         self.find_particles(&skin);
     }
 
@@ -264,11 +270,14 @@ impl Patch {
         self.couples_on_particles.resize(self.particles.len(), DMat3::ZERO);
     }
 
-    /// Computes where the vertices are and how they move, and takes the forces off them. `dt` is the length of the step, s.
+    /// Computes where the vertices are and how they move, and takes forces and heat off them. `dt` is the length of the step, s.
     pub fn update(&mut self, view: &SkinView<'_>, dt: f64, wanted: Wanted) {
         self.forces.fill(DVec3::ZERO);
         if std::mem::take(&mut self.has_couples) {
             self.couples.fill(DMat3::ZERO);
+        }
+        if std::mem::take(&mut self.has_heat) {
+            self.heats.fill(0.0);
         }
         let Self { vertices, last, now, .. } = self;
         let rows = (Picked::new(vertices, last), &mut now[..]);

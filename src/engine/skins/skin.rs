@@ -9,14 +9,14 @@ use super::following::CANDIDATES;
 use crate::plugin::{BodyPlan, Offer};
 use crate::scene::Dimension;
 use crate::shapes::{Facets, Shape};
-use crate::symmetry::{Map, MirrorPlane, images};
+use crate::symmetry::{Map, Repeat, maps_of};
 use crate::world::BodyId;
 
 /// Length of facets over the spacing.
 const LENGTH: [f64; 2] = [0.5, 1.0];
 /// Cosine of the turn of the normal above which a vertex is a corner.
 const CORNER: f64 = 0.82;
-/// Distance from a symmetry plane over the spacing up to which a vertex lies in it.
+/// Distance from a symmetry plane, or the end of a period, over the spacing up to which a vertex lies in it.
 const ON_PLANE: f64 = 1e-3;
 
 /// The surface of a body, and what carries it.
@@ -48,19 +48,19 @@ pub(crate) struct Skin {
 }
 
 impl Skin {
-    /// The skin of a body, which ends at symmetry planes that cut the body; none where its surface is not known, or where it is too thin to carry one.
+    /// The skin of a body, which ends where the body repeats itself, at symmetry planes that cut it and at the ends of a period that it fills; none where its surface is not
+    /// known, or where it is too thin to carry one.
     pub fn of(
         body: &BodyPlan,
         shape: &Shape,
-        planes: &[MirrorPlane],
+        repeats: &[Repeat],
         dimension: Dimension,
         folder: &Path,
     ) -> Option<Self> {
         let axes = dimension.count();
         let mut facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;
-        let planes = || planes.iter().filter(|plane| plane.bodies.contains(body.id));
-        planes().for_each(|plane| leave_out(&mut facets, plane, ON_PLANE * body.spacing));
-        let maps = images(planes());
+        repeats.iter().for_each(|repeat| leave_out(&mut facets, repeat, ON_PLANE * body.spacing));
+        let maps = maps_of(repeats);
         let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
         // Kernels of the present configuration.
         let reach = body.offers(Offer::PairControl).then_some(REACH * body.spacing);
@@ -127,6 +127,12 @@ impl Skin {
         particles
     }
 
+    /// The particles that carry a facet; some may come more than once.
+    pub fn particles_of(&self, facet: u32) -> impl Iterator<Item = u32> {
+        let carriers = self.corners_of(facet).iter().flat_map(|&vertex| self.carriers(vertex));
+        carriers.map(|carrier| carrier.particle)
+    }
+
     /// Number of all carriers of all vertices.
     pub(super) fn carrier_count(&self) -> usize {
         self.carriers.len()
@@ -157,11 +163,11 @@ impl Skin {
     }
 }
 
-/// Leaves out the facets that lie in a symmetry plane: there the body goes on.
-fn leave_out(facets: &mut Facets, plane: &MirrorPlane, tolerance: f64) {
+/// Leaves out the facets that lie where the body goes on.
+fn leave_out(facets: &mut Facets, repeat: &Repeat, tolerance: f64) {
     let Facets { axes, points, corners } = facets;
-    let is_in = |vertex: &u32| (points[*vertex as usize][plane.axis] - plane.at).abs() < tolerance;
-    corners.retain(|corners| !corners[..*axes].iter().all(is_in));
+    let is_in = |vertex: &u32, at: f64| (points[*vertex as usize][repeat.axis()] - at).abs() < tolerance;
+    corners.retain(|corners| !repeat.sides().iter().any(|at| corners[..*axes].iter().all(|k| is_in(k, *at))));
 }
 
 fn facets_at_vertices(facets: &Facets) -> (Vec<u32>, Vec<u32>) {

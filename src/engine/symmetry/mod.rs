@@ -10,5 +10,5 @@ mod repeats;
 
 pub use ghosts::{Ghost, Ghosts};
 pub use map::Map;
-pub use plane::{MirrorPlane, images};
-pub use repeats::{Repeat, repeats_of};
+pub use plane::MirrorPlane;
+pub use repeats::{Repeat, maps_of, periods_of, repeats_of};

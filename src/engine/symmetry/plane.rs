@@ -1,6 +1,6 @@
 //! Symmetry planes of a scene.
 
-use super::map::Map;
+use super::repeats::Repeat;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
@@ -15,17 +15,10 @@ pub struct MirrorPlane {
     pub bodies: BodySet,
 }
 
-/// The maps to the images that planes make, beginning with the one that changes nothing: each plane, and planes at right angles together.
-pub fn images<'a>(planes: impl Iterator<Item = &'a MirrorPlane>) -> Vec<Map> {
-    let mut all: Vec<(Map, [bool; 3])> = vec![(Map::IDENTITY, [false; 3])];
-    for plane in planes {
-        for (mirror, mut axes) in all.clone() {
-            if !std::mem::replace(&mut axes[plane.axis], true) {
-                all.push((Map::mirror(plane.axis, plane.at).after(mirror), axes));
-            }
-        }
+impl From<&MirrorPlane> for Repeat {
+    fn from(plane: &MirrorPlane) -> Self {
+        Self::Mirror { axis: plane.axis, at: plane.at }
     }
-    all.into_iter().map(|(mirror, _)| mirror).collect()
 }
 
 impl SimBuilder<'_> {

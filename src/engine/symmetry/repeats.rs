@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::map::Map;
 use crate::notation::number;
 use crate::plugin::{BodyPlan, SetupError, SimBuilder};
+use crate::scene::{Axis, Domain};
 
 /// What a body repeats itself by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +33,14 @@ impl Repeat {
     pub fn axis(&self) -> usize {
         match *self {
             Self::Mirror { axis, .. } | Self::Period { axis, .. } => axis,
+        }
+    }
+
+    /// The coordinates of the sides behind which the body goes on, m.
+    pub fn sides(&self) -> [f64; 2] {
+        match *self {
+            Self::Mirror { at, .. } => [at; 2],
+            Self::Period { min, length, .. } => [min, min + length],
         }
     }
 
@@ -76,10 +85,8 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
     }
     let Some(domain) = &sim.scene().domain else { return Ok(repeats) };
     for axis in &domain.periodic {
-        let a = axis.index();
-        let length = domain.max.0[a] - domain.min.0[a];
-        let extent = body.bounds.max[a] - body.bounds.min[a];
-        if extent > length + 0.5 * body.spacing {
+        let (length, extent) = lengths(body, domain, *axis);
+        if extent > length + FILLS * body.spacing {
             return Err(SetupError::parameter(
                 "",
                 format!(
@@ -91,11 +98,7 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
                 "make the domain as long as the body, or the body as long as the domain",
             ));
         }
-        // A body that ends before the period does is not joined to itself.
-        if extent < length - 0.5 * body.spacing {
-            continue;
-        }
-        if length < 2.0 * support {
+        if extent >= length - FILLS * body.spacing && length < 2.0 * support {
             return Err(SetupError::parameter(
                 "",
                 format!(
@@ -106,7 +109,45 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
                 "use a longer domain, or more particles along this axis",
             ));
         }
-        repeats.push(Repeat::Period { axis: a, min: body.bounds.min[a], length });
     }
+    repeats.extend(periods_of(body, sim));
     Ok(repeats)
+}
+
+/// What a body may be shorter than a period that it fills, over its spacing. A body that ends before the period does is not joined to itself.
+const FILLS: f64 = 0.5;
+
+/// The length of the domain along an axis, and that of a body, m.
+fn lengths(body: &BodyPlan, domain: &Domain, axis: Axis) -> (f64, f64) {
+    let a = axis.index();
+    (domain.max.0[a] - domain.min.0[a], body.bounds.max[a] - body.bounds.min[a])
+}
+
+/// The periods that a body fills.
+pub fn periods_of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<Repeat> {
+    let Some(domain) = &sim.scene().domain else { return Vec::new() };
+    let period = |axis: &Axis| {
+        let (length, extent) = lengths(body, domain, *axis);
+        let is_filled = extent >= length - FILLS * body.spacing;
+        let axis = axis.index();
+        is_filled.then(|| Repeat::Period { axis, min: body.bounds.min[axis], length })
+    };
+    domain.periodic.iter().filter_map(period).collect()
+}
+
+/// The maps to the images that a body has beside it, beginning with the one that changes nothing: across each plane and period, and across several of them along different axes.
+pub fn maps_of(repeats: &[Repeat]) -> Vec<Map> {
+    let mut all: Vec<(Map, [bool; 3])> = vec![(Map::IDENTITY, [false; 3])];
+    for repeat in repeats {
+        let ways: &[Map] = match *repeat {
+            Repeat::Mirror { axis, at } => &[Map::mirror(axis, at)],
+            Repeat::Period { axis, length, .. } => &[Map::shift(axis, length), Map::shift(axis, -length)],
+        };
+        for (map, mut axes) in all.clone() {
+            if !std::mem::replace(&mut axes[repeat.axis()], true) {
+                all.extend(ways.iter().map(|way| (way.after(map), axes)));
+            }
+        }
+    }
+    all.into_iter().map(|(map, _)| map).collect()
 }

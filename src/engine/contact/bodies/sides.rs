@@ -9,6 +9,8 @@ use super::shape::Nearness;
 use crate::neighbors::Periodic;
 use crate::rigid::RigidBody;
 use crate::schedule::{Resources, StepError};
+use crate::shapes::SurfacePoint;
+use crate::symmetry::Repeat;
 use crate::world::{BodyId, World};
 
 /// Where the nodes are.
@@ -42,7 +44,15 @@ pub(in crate::contact) struct ContactSides {
     pub turn: NodeTurn,
     /// Periodic axes: the image of a node that is nearest to the centre of the surface's body touches it.
     pub periodic: Periodic,
+    /// The periods that the body with the surface fills.
+    pub seams: Vec<Repeat>,
 }
+
+/// How near to the end of a period a point of a surface counts as one of the side there, over the period, and cosine of its normal from which on it does.
+const AT_SEAM: f64 = 1e-6;
+const TO_SEAM: f64 = 0.5;
+/// Shares of the way to the middle of the body at which the surface is looked for in place of a point near its end.
+const INWARD: [f64; 2] = [0.03, 0.25];
 
 /// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without radius.
 const RADIUS_SHARE: f64 = 0.5;
@@ -74,6 +84,31 @@ impl ContactSides {
         } else {
             x
         }
+    }
+
+    /// The nearest point of the surface to the image of a place that is nearest to its body, in the reference configuration of the body. Where the body fills a period its
+    /// ends are no surface: it goes on behind them.
+    pub fn closest(&self, x: DVec3, tool: &RigidBody) -> SurfacePoint {
+        let at = tool.reference(self.near(x, tool));
+        let mut found = tool.surface.closest(at);
+        for seam in &self.seams {
+            let (axis, [min, max]) = (seam.axis(), seam.sides());
+            let is_end = |found: &SurfacePoint| {
+                let is_at = |end: f64| (found.point[axis] - end).abs() < AT_SEAM * (max - min);
+                found.normal[axis].abs() > TO_SEAM && (is_at(min) || is_at(max))
+            };
+            // Farther inside the end is no longer the nearest surface.
+            for share in INWARD {
+                if is_end(&found) {
+                    let mut way = DVec3::ZERO;
+                    way[axis] = share * (0.5 * (min + max) - at[axis]);
+                    let inside = tool.surface.closest(at + way);
+                    let point = inside.point - if is_end(&inside) { DVec3::ZERO } else { way };
+                    found = SurfacePoint { point, ..inside };
+                }
+            }
+        }
+        found
     }
 
     /// How far two rigid bodies are apart at least, m, by the balls around their centres; zero for particles and unbounded bodies.

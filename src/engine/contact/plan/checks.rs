@@ -1,7 +1,6 @@
 //! Contacts of a scene that cannot be.
 
 use super::body::{find, is_rigid};
-use crate::contact::particles::ParticleContact;
 use crate::plugin::{BodyPlan, Offer, SimBuilder};
 use crate::scene::{Contact, Problem};
 
@@ -67,13 +66,9 @@ impl Named<'_> {
         Some(self.problem(message, help))
     }
 
-    /// A particle must not see two images of another.
-    pub fn refuse_short_periods(
-        &self,
-        pair: &ParticleContact,
-        sim: &SimBuilder<'_>,
-    ) -> Result<(), Vec<Problem>> {
-        let (periodic, least) = (sim.periodic(), pair.least_period());
+    /// A particle or facet must not see two images of another: periods must have at least that length, m.
+    pub fn refuse_short_periods(&self, least: f64, sim: &SimBuilder<'_>) -> Result<(), Vec<Problem>> {
+        let periodic = sim.periodic();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let length = periodic.lengths()[axis];
             if periodic.axes()[axis] && length < least {

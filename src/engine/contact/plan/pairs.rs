@@ -17,7 +17,7 @@ use crate::plugin::{BodyPlan, SimBuilder};
 use crate::rigid::sphere_of;
 use crate::scene::{ContactSurface, Item, Problem};
 use crate::skins::Skin;
-use crate::symmetry::MirrorPlane;
+use crate::symmetry::{MirrorPlane, periods_of};
 
 /// Makes the force of a law between two bodies.
 pub type MakeLaw<'m> = &'m dyn Fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
@@ -64,8 +64,9 @@ impl Planner<'_> {
         if first.id != second.id {
             if let (Some(one), Some(other)) = (self.skin(first, named), self.skin(second, named)) {
                 let interaction = self.interaction(named, ContactSurface::Skin)?;
-                let skins =
-                    Touching::Skins(Box::new(SkinPair::new(interaction, [one.clone(), other.clone()])));
+                let pair = SkinPair::new(interaction, [one.clone(), other.clone()], self.sim.periodic());
+                named.refuse_short_periods(pair.least_period(), self.sim)?;
+                let skins = Touching::Skins(Box::new(pair));
                 return self.until_failure(skins, &[(first, one), (second, other)], &|planner| {
                     planner.of_particles(named, [first, second])
                 });
@@ -94,7 +95,7 @@ impl Planner<'_> {
             bodies.iter_mut().for_each(|particles| particles.deform = deform);
             let interaction = self.interaction(named, ContactSurface::Particles)?;
             let pair = ParticleContact::new(interaction, bodies, mirror, self.sim.periodic());
-            named.refuse_short_periods(&pair, self.sim)?;
+            named.refuse_short_periods(pair.least_period(), self.sim)?;
             pairs.push(Touching::Particles(Box::new(pair)));
         }
         Ok(pairs)
@@ -170,6 +171,7 @@ impl Planner<'_> {
             second: on.id,
             turn: NodeTurn::Alone,
             periodic: self.sim.periodic(),
+            seams: periods_of(on, self.sim),
         }
     }
 
@@ -205,12 +207,7 @@ impl Planner<'_> {
     /// The skin that a body touches with, if it has one; else the reason is reported.
     fn skin(&mut self, body: &BodyPlan, named: &Named<'_>) -> Option<Arc<Skin>> {
         let contact = named.contact;
-        let found = if contact.friction_heat.is_some() && contact.surface == ContactSurface::Skin {
-            Err(Some("the heat of friction goes into particles"))
-        } else {
-            self.skins.of(body, contact.surface, self.planes, self.sim)
-        };
-        let reason = match found {
+        let reason = match self.skins.of(body, contact.surface, self.planes, self.sim) {
             Ok(skin) => return Some(skin),
             Err(reason) => reason?,
         };

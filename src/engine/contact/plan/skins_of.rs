@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::plugin::{BodyKind, BodyPlan, Offer, SimBuilder};
 use crate::scene::ContactSurface;
 use crate::skins::Skin;
-use crate::symmetry::MirrorPlane;
+use crate::symmetry::{MirrorPlane, Repeat, periods_of};
 use crate::world::BodyId;
 
 /// The skins that have been built, each once for all contacts of its body.
@@ -37,12 +37,12 @@ impl BodySkins {
         if !body.offers(Offer::DeformedContact) {
             return Err(Some("its formulation carries no surface"));
         }
-        if sim.periodic().any() {
-            return Err(Some("the domain is periodic"));
-        }
         if !self.known.iter().any(|(id, _)| *id == body.id) {
             let shape = &sim.scene().bodies[body.id.0].shape;
-            let skin = Skin::of(body, shape, planes, sim.dimension(), sim.folder());
+            let cuts = |plane: &&MirrorPlane| plane.bodies.contains(body.id);
+            let planes = planes.iter().filter(cuts).map(Repeat::from);
+            let repeats: Vec<Repeat> = planes.chain(periods_of(body, sim)).collect();
+            let skin = Skin::of(body, shape, &repeats, sim.dimension(), sim.folder());
             self.known.push((body.id, skin.map(Arc::new)));
         }
         let known = self.known.iter().find(|(id, _)| *id == body.id);

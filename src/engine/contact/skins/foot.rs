@@ -2,12 +2,15 @@
 
 use glam::DVec3;
 
+use crate::neighbors::Periodic;
 use crate::shapes::directed_area;
 use crate::skins::Patch;
 
 /// The nearest point of a skin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Foot {
+    /// The image of the position that is nearest to the facet, m.
+    pub x: DVec3,
     /// Facet, and shares of its vertices at the foot.
     pub facet: u32,
     pub shares: [f64; 3],
@@ -33,20 +36,29 @@ pub(super) fn enclose(patch: &Patch, facets: &[u32], balls: &mut Vec<Ball>) {
     }
 }
 
-/// The foot of `x` on the nearest one of some facets of a patch, if it is no farther than `farthest`, m. Facets whose balls are farther than the nearest
+/// Facets of a patch among which a foot is looked for.
+#[derive(Clone, Copy)]
+pub(in crate::contact) struct NearFacets<'a> {
+    pub patch: &'a Patch,
+    /// Around all facets of the patch.
+    pub balls: &'a [Ball],
+    pub facets: &'a [u32],
+    /// Across periodic sides the image of a position that is nearest to a facet counts.
+    pub periodic: Periodic,
+}
+
+/// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls are farther than the nearest
 /// one so far are passed over.
-pub(in crate::contact) fn foot(
-    patch: &Patch,
-    balls: &[Ball],
-    facets: &[u32],
-    x: DVec3,
-    farthest: f64,
-) -> Option<Foot> {
+pub(in crate::contact) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
+    let NearFacets { patch, balls, facets, periodic } = *near;
+    let is_periodic = periodic.any();
+    let of_facet = |center: DVec3| if is_periodic { center + periodic.minimal_image(x - center) } else { x };
     let axes = patch.skin.facets.axes;
     let mut nearest: Option<(f64, u32, [f64; 3])> = None;
     let mut reach = farthest;
     for &facet in facets {
         let (center, radius) = balls[facet as usize];
+        let x = of_facet(center);
         if center.distance_squared(x) > (reach + radius).powi(2) {
             continue;
         }
@@ -59,18 +71,19 @@ pub(in crate::contact) fn foot(
         }
     }
     let (squared, facet, shares) = nearest?;
+    let x = of_facet(balls[facet as usize].0);
     let corners = patch.corners(facet).map(|corner| corner.place);
     let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();
     if inner == axes {
         let normal = directed_area(axes, &corners).normalize_or_zero();
         let distance = (x - corners[0]).dot(normal);
-        return Some(Foot { facet, shares, normal, distance });
+        return Some(Foot { x, facet, shares, normal, distance });
     }
     // Outside if in front of the mean of the facets that meet there.
     let arm = x - point(&corners, shares);
     let sign = if arm.dot(mean_normal(patch, facet, shares)) < 0.0 { -1.0 } else { 1.0 };
     let distance = sign * squared.sqrt();
-    Some(Foot { facet, shares, normal: arm.normalize_or_zero() * sign, distance })
+    Some(Foot { x, facet, shares, normal: arm.normalize_or_zero() * sign, distance })
 }
 
 fn point(corners: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {

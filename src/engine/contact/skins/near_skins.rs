@@ -14,6 +14,9 @@ use crate::skins::{Skin, SkinView};
 
 /// Gap over the spacing up to which facets are candidates.
 const NEAR: f64 = 1.5;
+/// How far the corners of a facet are from its centre at most, over the spacing, in two and three dimensions, and by how much it may be stretched before a period is too short.
+const LONGEST: [f64; 2] = [0.25, 0.75];
+const STRETCHED: f64 = 2.0;
 
 /// The facets of two skins that are near each other.
 pub(super) struct NearSkins {
@@ -21,6 +24,7 @@ pub(super) struct NearSkins {
     left: f64,
     /// Whether there is room for all that facets near each other need.
     has_room: bool,
+    periodic: Periodic,
     regions: [SkinRegion; 2],
     /// Where the vertices are, m.
     places: [Vec<DVec3>; 2],
@@ -41,12 +45,13 @@ pub(super) struct NearSkins {
 
 impl NearSkins {
     /// None yet.
-    pub fn new(skins: [&Skin; 2]) -> Self {
+    pub fn new(skins: [&Skin; 2], periodic: Periodic) -> Self {
         let vertices = skins.map(|skin| vec![DVec3::ZERO; skin.vertices()]);
         let of_facets = |more: usize| skins.map(|skin| Vec::with_capacity(skin.facets.corners.len() + more));
         Self {
             left: 0.0,
             has_room: false,
+            periodic,
             regions: skins.map(SkinRegion::new),
             places: vertices,
             centers: skins.map(|skin| Vec::with_capacity(skin.facets.corners.len())),
@@ -58,6 +63,12 @@ impl NearSkins {
             facets: Default::default(),
             candidates: Default::default(),
         }
+    }
+
+    /// Least period of a domain in which no facet has two images near another one, m.
+    pub fn least_period(skins: [&Skin; 2]) -> f64 {
+        let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
+        2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }
 
     /// Takes in a step of that length, s, with a largest speed of both bodies together, m/s. Says whether the facets have to be found again.
@@ -99,8 +110,8 @@ impl NearSkins {
             let boxes = [0, 1].map(|side| self.around(side));
             for side in 0..2 {
                 let Self { regions, centers, .. } = self;
-                let (other, centers) = (&boxes[1 - side], &centers[side]);
-                let gap = |facet: u32| distance(other, centers[facet as usize]) - largest[side];
+                let (other, centers, periodic) = (&boxes[1 - side], &centers[side], &self.periodic);
+                let gap = |facet: u32| distance(other, centers[facet as usize], periodic) - largest[side];
                 regions[side].choose(skins[side], near, gap);
             }
             largest = [0, 1].map(|side| self.find_centers(side, skins[side]));
@@ -109,7 +120,7 @@ impl NearSkins {
         let gap = if self.regions.iter().any(|region| region.facets.is_empty()) {
             f64::INFINITY
         } else {
-            (first.min - second.max).max(second.min - first.max).max(DVec3::ZERO).length()
+            gap_of(&first, &second, &self.periodic)
         };
         let beyond = near + self.regions[0].left.min(self.regions[1].left);
         self.left = gap.max(near).min(beyond) - MARGIN * spacing;
@@ -131,7 +142,7 @@ impl NearSkins {
                 clouds[side],
                 clouds[1 - side],
                 0.0,
-                &Periodic::NONE,
+                &self.periodic,
                 &mut self.lists[side],
             )?;
         }
@@ -205,7 +216,18 @@ impl NearSkins {
     }
 }
 
-/// How far a place is from a box, m.
-fn distance(around: &Aabb, x: DVec3) -> f64 {
-    (around.min - x).max(x - around.max).max(DVec3::ZERO).length()
+/// How far a place, or an image of it, is from a box at least, m.
+fn distance(around: &Aabb, x: DVec3, periodic: &Periodic) -> f64 {
+    gap_of(around, &Aabb { min: x, max: x }, periodic)
+}
+
+/// How far two boxes, or images of them, are apart at least, m.
+fn gap_of(first: &Aabb, second: &Aabb, periodic: &Periodic) -> f64 {
+    if !periodic.any() {
+        return (first.min - second.max).max(second.min - first.max).max(DVec3::ZERO).length();
+    }
+    let middle = |around: &Aabb| 0.5 * (around.min + around.max);
+    let half = 0.5 * (first.max - first.min + second.max - second.min);
+    let way = periodic.minimal_image(middle(second) - middle(first));
+    (way.abs() - half).max(DVec3::ZERO).length()
 }

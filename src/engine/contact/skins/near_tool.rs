@@ -5,6 +5,7 @@
 use glam::DVec3;
 
 use super::region::SkinRegion;
+use crate::contact::bodies::ContactSides;
 use crate::parallel::{Picked, for_each_block};
 use crate::rigid::RigidBody;
 use crate::skins::{Skin, SkinView};
@@ -45,15 +46,15 @@ impl NearTool {
     }
 
     /// Finds the facets near the tool.
-    pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, tool: &RigidBody) {
+    pub fn find(&mut self, skin: &Skin, view: &SkinView<'_>, on: (&ContactSides, &RigidBody)) {
         let near = NEAR * skin.spacing;
         if self.region.is_old() {
             self.region.take_all(skin);
-            self.look(view, tool);
+            self.look(view, on);
             let places = &self.places;
             self.region.choose(skin, near, |facet| gap(skin, places, facet));
         } else {
-            self.look(view, tool);
+            self.look(view, on);
         }
         self.left = self.region.left + near;
         self.facets.clear();
@@ -69,12 +70,12 @@ impl NearTool {
     }
 
     /// Looks where the vertices of the region are.
-    fn look(&mut self, view: &SkinView<'_>, tool: &RigidBody) {
+    fn look(&mut self, view: &SkinView<'_>, (sides, tool): (&ContactSides, &RigidBody)) {
         let rows = Picked::new(&self.region.vertices, &mut self.places);
         type Rows<'a> = Picked<'a, (DVec3, f64)>;
         for_each_block(rows, &mut Vec::new(), &|_, mut rows: Rows<'_>| {
             view.places(rows.numbers(), &mut |k, place, _| {
-                *rows.row(k) = (place, tool.surface.closest(tool.reference(place)).signed_distance);
+                *rows.row(k) = (place, sides.closest(place, tool).signed_distance);
             });
         });
     }

@@ -14,7 +14,7 @@ use crate::contact::active::ActiveContacts;
 use crate::contact::bodies::{ContactSides, MotionBounds, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins, Touches};
-use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, PairKey};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses, PairKey};
 use crate::parallel::{BlockSum, for_each_block, sum_over_blocks};
 use crate::rigid::{RigidBodies, RigidBody, Wrench};
 use crate::schedule::{Step, StepError};
@@ -40,7 +40,14 @@ pub(in crate::contact) struct SkinOnTool {
     even: Vec<f64>,
     /// Vertices that touch, with their numbers in the patch, and what dashpot and friction add there, N.
     touching: Vec<PairKey>,
-    pub contacts: ActiveContacts<u32, DVec3, ()>,
+    pub contacts: ActiveContacts<u32, VertexRub, ()>,
+}
+
+/// What dashpot and friction do at a vertex: force, N, and heat of friction, J.
+#[derive(Clone, Copy, Default)]
+pub(in crate::contact) struct VertexRub {
+    force: DVec3,
+    heat: f64,
 }
 
 /// The sums over all vertices that touch.
@@ -115,7 +122,7 @@ impl SkinOnTool {
         let view = columns.view();
         let speeds = MotionBounds::speeds(motion);
         if self.near.is_old(speeds, dt) {
-            self.near.find(&skin, &view, tool);
+            self.near.find(&skin, &view, (&self.sides, tool));
             self.patch.select(self.near.facets.iter().copied());
         }
         let wanted = Wanted { mobility: self.interaction.damping_ratio > 0.0, gradients: false };
@@ -149,8 +156,8 @@ impl SkinOnTool {
 
     /// Computes what the vertices see of the tool.
     fn look(&mut self, tool: &RigidBody, dt: f64) {
-        let Self { interaction, patch, seen, .. } = self;
-        let (on, vertices) = (Pressing::new(interaction, patch, tool, dt), patch.vertices());
+        let Self { interaction, patch, sides, seen, .. } = self;
+        let (on, vertices) = (Pressing::new(interaction, patch, (sides, tool), dt), patch.vertices());
         seen.resize(vertices.len(), ToolView::default());
         let rows = (&mut seen[..], vertices);
         for_each_block(rows, &mut Vec::new(), &|_, (seen, vertices): (&mut [ToolView], &[Vertex])| {
@@ -162,9 +169,9 @@ impl SkinOnTool {
 
     /// Computes what the points of every facet near the tool press on its vertices.
     fn press_facets(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
-        let Self { interaction, patch, points, near, seen, reached, on_facets, .. } = self;
+        let Self { interaction, patch, sides, points, near, seen, reached, on_facets, .. } = self;
         let (patch, points, seen) = (&*patch, &*points, &*seen);
-        let on = Pressing::new(interaction, patch, tool, dt);
+        let on = Pressing::new(interaction, patch, (sides, tool), dt);
         reached.resize(near.facets.len(), Reached::Partly);
         on_facets.resize(near.facets.len(), Default::default());
         let rows = (&near.facets[..], &mut reached[..], &mut on_facets[..]);
@@ -212,8 +219,8 @@ impl SkinOnTool {
 
     /// Adds what the areas of even facets press on their vertices.
     fn press_vertices(&mut self, tool: &RigidBody, dt: f64) -> Extremes {
-        let Self { interaction, patch, seen, pressed, even, .. } = self;
-        let on = Pressing::new(interaction, patch, tool, dt);
+        let Self { interaction, patch, sides, seen, pressed, even, .. } = self;
+        let on = Pressing::new(interaction, patch, (sides, tool), dt);
         let rows = (&mut pressed[..], &seen[..], &even[..]);
         type Rows<'a> = (&'a mut [Pressed], &'a [ToolView], &'a [f64]);
         sum_over_blocks(rows, &|_, (pressed, seen, even): Rows<'_>| {
@@ -230,7 +237,7 @@ impl SkinOnTool {
     /// Computes dashpot and friction at the vertices that are pressed.
     fn rub(&mut self, tool: &RigidBody, dt: f64) -> ContactEnergy {
         let (usual, _) = touch_of(&self.patch.skin, tool);
-        let Self { interaction, patch, pressed, touching, contacts, .. } = self;
+        let Self { interaction, patch, sides, pressed, touching, contacts, .. } = self;
         let (patch, pressed) = (&*patch, &*pressed);
         touching.clear();
         let numbers = patch.vertex_numbers().iter().zip(0..);
@@ -238,12 +245,14 @@ impl SkinOnTool {
             numbers.filter(|(_, k)| pressed[*k as usize].spring.force > 0.0).map(|(vertex, _)| (*vertex, 0)),
         );
         contacts.find(touching, |(vertex, _), ()| Some(patch.number(vertex)));
-        let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(vertex.place);
+        let place = |vertex: &Vertex| sides.near(vertex.place, tool);
+        let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(place(vertex));
         let respond = |_: PairKey, number: &u32, before: &History, energies: &mut ContactEnergy| {
             let (vertex, pressed) = (&patch.vertices()[*number as usize], &pressed[*number as usize]);
             let velocity = velocity(vertex);
+            let mut losses = Losses::default();
             if !before.is_elastic() {
-                energies.losses.add_work(1.0, before, velocity, dt);
+                losses.add_work(1.0, before, velocity, dt);
             }
             let normal = pressed.force.normalize_or_zero();
             let state = ContactState {
@@ -256,12 +265,14 @@ impl SkinOnTool {
                 acceleration: DVec3::ZERO,
             };
             let mobility = vertex.mobility / pressed.area;
-            let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(vertex.place, n);
+            let inverse_mass = |n: DVec3| mobility.dot(n * n) + tool.inverse_mass_at(place(vertex), n);
             let response = interaction.beside(pressed.spring, &state, inverse_mass, dt, before);
-            energies.losses.add_work(1.0, &response.history, velocity, dt);
-            energies.losses.keep(1.0, before, &response.history);
+            losses.add_work(1.0, &response.history, velocity, dt);
+            losses.keep(1.0, before, &response.history);
+            energies.losses.add(&losses);
             energies.stored += response.history.energy();
-            (response.history, response.force - pressed.spring.force * normal)
+            let force = response.force - pressed.spring.force * normal;
+            (response.history, VertexRub { force, heat: losses.friction })
         };
         let end = |(vertex, _): PairKey, history: &History, energies: &mut ContactEnergy| {
             if !history.is_elastic() && patch.has(vertex) {
@@ -274,9 +285,10 @@ impl SkinOnTool {
 
     /// Pushes the vertices; returns what is on the tool about its centre.
     fn push(&mut self, tool: &RigidBody) -> ToolSums {
-        let Self { patch, pressed, contacts, .. } = self;
+        let Self { interaction, patch, sides, pressed, contacts, .. } = self;
         for ((_, number), beside) in contacts.met().iter().zip(contacts.pushes()) {
-            pressed[*number as usize].force += *beside;
+            pressed[*number as usize].force += beside.force;
+            patch.heat_vertex(*number as usize, interaction.heat[0] * beside.heat);
         }
         for (number, pressed) in pressed.iter().enumerate().filter(|(_, pressed)| pressed.spring.force > 0.0)
         {
@@ -287,11 +299,11 @@ impl SkinOnTool {
             let (vertex, Pressed { force, spring, .. }) = (&patch.vertices()[k], &pressed[k]);
             let mut sums = ToolSums::default();
             if spring.force > 0.0 {
-                sums.on_tool.push(vertex.place - tool.state.center, -*force);
-                sums.of_tool =
-                    spring.stiffness * tool.inverse_mass_at(vertex.place, force.normalize_or_zero());
+                let place = sides.near(vertex.place, tool);
+                sums.on_tool.push(place - tool.state.center, -*force);
+                sums.of_tool = spring.stiffness * tool.inverse_mass_at(place, force.normalize_or_zero());
                 sums.stored = spring.energy;
-                sums.power = force.dot(vertex.velocity - tool.velocity_at(vertex.place));
+                sums.power = force.dot(vertex.velocity - tool.velocity_at(place));
             }
             sums
         };

@@ -22,7 +22,7 @@ use crate::contact::bodies::{MotionBounds, failed};
 use crate::contact::laws::Touch;
 use crate::contact::response::time_step::{self, OfSkins, Touches};
 use crate::contact::response::{ContactEnergy, Interaction};
-use crate::neighbors::NeighborError;
+use crate::neighbors::{NeighborError, Periodic};
 use crate::parallel::{BlockSum, Largest, sum_over_blocks};
 use crate::schedule::{Step, StepError};
 use crate::skins::{Patch, QuadratureRule, Skin, SkinColumns, SkinView, Wanted};
@@ -40,6 +40,7 @@ pub(in crate::contact) struct SkinPair {
     keeps_reference: bool,
     rule: QuadratureRule,
     near: NearSkins,
+    periodic: Periodic,
     /// Around the facets of each side that are near the other.
     balls: [Vec<Ball>; 2],
     /// The points of each side against the facets of the other.
@@ -47,8 +48,8 @@ pub(in crate::contact) struct SkinPair {
 }
 
 impl SkinPair {
-    /// Contact of two skins.
-    pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2]) -> Self {
+    /// Contact of two skins in a domain that is periodic along some axes.
+    pub fn new(interaction: Interaction, skins: [Arc<Skin>; 2], periodic: Periodic) -> Self {
         let rule = QuadratureRule::exact(skins[0].facets.axes);
         let passes = skins.each_ref().map(|skin| {
             let mut contacts = ActiveContacts::default();
@@ -56,9 +57,15 @@ impl SkinPair {
             contacts
         });
         let balls = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
-        let near = NearSkins::new(skins.each_ref().map(|skin| &**skin));
+        let near = NearSkins::new(skins.each_ref().map(|skin| &**skin), periodic);
         let patches = skins.map(Patch::new);
-        Self { interaction, patches, keeps_reference: false, rule, near, balls, passes }
+        Self { interaction, patches, keeps_reference: false, rule, near, periodic, balls, passes }
+    }
+
+    /// Least period of the domain with which the contact works, m.
+    pub fn least_period(&self) -> f64 {
+        let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
+        NearSkins::least_period([first, second])
     }
 
     /// Computes the forces of all points that touch.
@@ -128,9 +135,9 @@ impl SkinPair {
     /// What the points of one side do, and the least gap of points that do not touch, m.
     fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, Least) {
         let length = self.length();
-        let Self { interaction, patches, rule, near, balls, passes, .. } = self;
+        let Self { interaction, patches, rule, near, periodic, balls, passes, .. } = self;
         let (own, other, balls) = (&patches[side], &patches[1 - side], &balls[1 - side][..]);
-        let at = SkinSide { interaction, own, other, balls, rule, length, dt };
+        let at = SkinSide { interaction, own, other, balls, rule, periodic: *periodic, length, dt };
         let facets_near = |point: u32| near.facets_near(side, at.point(point).facet);
         let gap = passes[side].find(&near.candidates[side], |(point, _), gap: &mut Least| {
             at.touching(point, facets_near(point), gap)
@@ -145,7 +152,8 @@ impl SkinPair {
 
     /// Pushes the vertices of both skins; returns the largest stiffness over an area.
     fn push(&mut self, side: usize) -> Largest {
-        let Self { patches, rule, passes, .. } = self;
+        let Self { interaction, patches, rule, passes, .. } = self;
+        let heat = [interaction.heat[side], interaction.heat[1 - side]];
         let [first, second] = patches;
         let (own, other) = if side == 0 { (first, second) } else { (second, first) };
         let pass = &passes[side];
@@ -157,6 +165,8 @@ impl SkinPair {
             let couple = DMat3::from_cols(f * push.arm.x, f * push.arm.y, f * push.arm.z);
             other.push(there, below, -push.force, (f != DVec3::ZERO).then_some(&couple));
             shift_foot(own, other, point, touch, push.energy);
+            own.heat(point.facet, point.shares, heat[0] * push.heat);
+            other.heat(there, below, heat[1] * push.heat);
         }
         sum_over_blocks(pass.pushes(), &|_, pushes: &[PointPush]| {
             Largest::of(pushes.iter().map(|push| push.stiffness))

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::contact::active::Least;
+use crate::contact::bodies::ContactSides;
 use crate::contact::laws::{Spring, Touch};
 use crate::contact::response::Interaction;
 use crate::parallel::{BlockSum, Largest};
@@ -140,6 +141,7 @@ pub(super) struct Points {
 pub(super) struct Pressing<'a> {
     interaction: &'a Interaction,
     patch: &'a Patch,
+    sides: &'a ContactSides,
     tool: &'a RigidBody,
     /// The law at an overlap of zero, and the area for which it holds, m2 (m).
     touch: Touch,
@@ -232,9 +234,14 @@ pub(super) fn touch_of(skin: &Skin, tool: &RigidBody) -> (Touch, f64) {
 
 impl<'a> Pressing<'a> {
     /// What the points of a patch on a tool share in a step of `dt`, s.
-    pub fn new(interaction: &'a Interaction, patch: &'a Patch, tool: &'a RigidBody, dt: f64) -> Self {
+    pub fn new(
+        interaction: &'a Interaction,
+        patch: &'a Patch,
+        (sides, tool): (&'a ContactSides, &'a RigidBody),
+        dt: f64,
+    ) -> Self {
         let (touch, usual) = touch_of(&patch.skin, tool);
-        Self { interaction, patch, tool, touch, usual, dt }
+        Self { interaction, patch, sides, tool, touch, usual, dt }
     }
 
     /// The spring of a point that sees that and stands for an area, m2 (m).
@@ -248,7 +255,8 @@ impl<'a> Pressing<'a> {
 
     /// Where the tool is as a place sees it that moves at `velocity`, m/s.
     pub fn look(&self, x: DVec3, velocity: DVec3) -> ToolView {
-        let nearest = self.tool.surface.closest(self.tool.reference(x));
+        let nearest = self.sides.closest(x, self.tool);
+        let x = self.sides.near(x, self.tool);
         let normal = self.tool.state.rotation * nearest.normal;
         let approach = (self.tool.velocity_at(x) - velocity).dot(normal);
         ToolView { distance: nearest.signed_distance, normal, approach }

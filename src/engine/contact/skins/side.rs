@@ -2,10 +2,11 @@
 
 use glam::{DMat3, DVec3};
 
-use super::foot::{Ball, Foot, foot, slopes};
+use super::foot::{Ball, Foot, NearFacets, foot, slopes};
 use crate::contact::active::Least;
 use crate::contact::laws::Touch;
-use crate::contact::response::{ContactEnergy, ContactState, History, Interaction};
+use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
+use crate::neighbors::Periodic;
 use crate::skins::{Patch, QuadratureRule};
 
 /// How deep a point may be below the surface of the other body, over the mean spacing.
@@ -14,8 +15,7 @@ const DEPTH: f64 = 0.5;
 /// A point that touches.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct PointTouch {
-    /// Where it is, m, and its foot on the other skin.
-    x: DVec3,
+    /// Its foot on the other skin.
     pub(super) foot: Foot,
     /// Share of the integral.
     weight: f64,
@@ -33,6 +33,8 @@ pub(in crate::contact) struct PointPush {
     pub energy: f64,
     /// Stiffness over the area, N/m3 (N/m2 in two dimensions).
     pub stiffness: f64,
+    /// Heat of friction, J.
+    pub heat: f64,
 }
 
 /// A point of a facet.
@@ -70,6 +72,7 @@ pub(super) struct SkinSide<'a> {
     /// Around the facets of the other one.
     pub balls: &'a [Ball],
     pub rule: &'a QuadratureRule,
+    pub periodic: Periodic,
     /// Length for which the law holds, m.
     pub length: f64,
     /// Length of the step, s.
@@ -93,10 +96,11 @@ impl SkinSide<'_> {
         energies: &mut ContactEnergy,
     ) -> (History, PointPush) {
         let Self { interaction, own, length, dt, .. } = *self;
-        let PointTouch { x, foot, weight } = *touch;
+        let PointTouch { foot, weight } = *touch;
         let PointMotion { velocity, arm, mobility } = self.motion(point, touch);
+        let mut losses = Losses::default();
         if !before.is_elastic() {
-            energies.losses.add_work(1.0, before, velocity, dt);
+            losses.add_work(1.0, before, velocity, dt);
         }
         let (area, usual) = (self.area(point), length.powi(own.skin.facets.axes as i32 - 1));
         let state = ContactState {
@@ -104,20 +108,22 @@ impl SkinSide<'_> {
             normal: foot.normal,
             scale: 1.0,
             area: weight * area / usual,
-            arms: [x - self.place(&foot), DVec3::ZERO],
+            arms: [foot.x - self.place(&foot), DVec3::ZERO],
             velocity,
             acceleration: DVec3::ZERO,
         };
         let inverse_mass = |n: DVec3| mobility.dot(n * n) / (weight * area);
         let response = interaction.respond(&state, inverse_mass, dt, before);
-        energies.losses.add_work(1.0, &response.history, velocity, dt);
-        energies.losses.keep(1.0, before, &response.history);
+        losses.add_work(1.0, &response.history, velocity, dt);
+        losses.keep(1.0, before, &response.history);
+        energies.losses.add(&losses);
         energies.stored += response.spring.energy + response.history.energy();
         energies.ahead += 0.5 * dt * response.force.dot(velocity);
         let across = response.force - response.force.dot(foot.normal) * foot.normal;
         let stiffness = response.spring.stiffness / area;
         let energy = response.spring.energy / weight;
-        (response.history, PointPush { force: response.force, across, arm, energy, stiffness })
+        let heat = losses.friction;
+        (response.history, PointPush { force: response.force, across, arm, energy, stiffness, heat })
     }
 
     /// Takes in the energy of a contact that has ended; `facets` are those of the other skin near the point.
@@ -146,15 +152,16 @@ impl SkinSide<'_> {
         let FacetPoint { facet, shares } = self.point(point);
         let corners = self.own.corners(facet);
         let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
-        let foot = foot(self.other, self.balls, facets, x, DEPTH * self.length)?;
-        Some(PointTouch { x, foot, weight: 0.0 })
+        let near = NearFacets { patch: self.other, balls: self.balls, facets, periodic: self.periodic };
+        let foot = foot(&near, x, DEPTH * self.length)?;
+        Some(PointTouch { foot, weight: 0.0 })
     }
 
     /// A point that touches; else it takes in how far it is from that.
     #[inline(always)]
     pub fn touching(&self, point: u32, facets: &[u32], gap: &mut Least) -> Option<PointTouch> {
         let FacetPoint { facet, shares } = self.point(point);
-        let PointTouch { x, foot, .. } = self.nearest(point, facets)?;
+        let PointTouch { foot, .. } = self.nearest(point, facets)?;
         let there = self.other.corners(foot.facet);
         if !self.own.corners(facet).iter().chain(&there).all(|corner| corner.is_there) {
             return None;
@@ -169,7 +176,7 @@ impl SkinSide<'_> {
         };
         let own = corner(self.own, facet, shares);
         let weight = 0.5 * (1.0 + own - corner(self.other, foot.facet, foot.shares));
-        (weight > 0.0).then_some(PointTouch { x, foot, weight })
+        (weight > 0.0).then_some(PointTouch { foot, weight })
     }
 
     /// Velocity of a point, m/s.
@@ -186,7 +193,7 @@ impl SkinSide<'_> {
         let (own, other) = (self.own.corners(facet), self.other.corners(touch.foot.facet));
         let below = touch.foot.shares;
         let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
-        let arm = gradient.inverse() * (touch.x - self.place(&touch.foot));
+        let arm = gradient.inverse() * (touch.foot.x - self.place(&touch.foot));
         // The normal force acts at the foot, and the stretch between foot and point does not move it.
         let (at_foot, beyond) = (0..3).fold((DVec3::ZERO, DVec3::ZERO), |(foot, beyond), k| {
             (foot + below[k] * other[k].velocity, beyond + below[k] * (other[k].rate * arm))
@@ -205,7 +212,7 @@ pub(super) fn shift_foot(
     touch: &PointTouch,
     energy: f64,
 ) {
-    let Foot { facet: there, shares: below, normal, distance } = touch.foot;
+    let Foot { facet: there, shares: below, normal, distance, .. } = touch.foot;
     let skin = &other.skin;
     // The vertices between which the foot lies, in the first places.
     let mut ends = [0, 1, 2];

@@ -193,19 +193,29 @@ impl Contacts {
         }
     }
 
-    /// Adds the forces on particles.
+    /// Specific heat of a body that friction may warm, J/(kg K).
+    fn specific_heat(&self, body: BodyId) -> Option<f64> {
+        self.specific_heats.iter().find(|(id, _)| *id == body).map(|(_, specific_heat)| *specific_heat)
+    }
+
+    /// Adds the forces on particles, and warms them.
     fn push(&self, step: &Step<'_>) -> Result<(), StepError> {
         for (body, contact_nodes) in self.acting().flat_map(Touching::contact_nodes) {
             let (view, rows) = step.world.body_view(body);
             contact_nodes.add_forces(&mut view.write::<Force>()?[rows.clone()]);
-            if let Some((_, specific_heat)) = self.specific_heats.iter().find(|(id, _)| *id == body) {
+            if let Some(specific_heat) = self.specific_heat(body) {
                 let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
-                contact_nodes.warm(*specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+                contact_nodes.warm(specific_heat, &mass[rows.clone()], &mut temperature[rows]);
             }
         }
         for patch in self.acting().flat_map(Touching::patches) {
-            let (view, rows) = step.world.body_view(patch.skin.body);
-            patch.add_forces(&mut view.write::<Force>()?[rows]);
+            let body = patch.skin.body;
+            let (view, rows) = step.world.body_view(body);
+            patch.add_forces(&mut view.write::<Force>()?[rows.clone()]);
+            if let Some(specific_heat) = self.specific_heat(body) {
+                let (mass, mut temperature) = (view.read::<Mass>()?, view.write::<Temperature>()?);
+                patch.warm(specific_heat, &mass[rows.clone()], &mut temperature[rows]);
+            }
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use super::simulation;
 use crate::contact::laws::{ContactLaw, ContactPair, Penalty};
 use crate::contact::response::Interaction;
 use crate::contact::skins::SkinPair;
+use crate::neighbors::Periodic;
 use crate::scene::{ContactSurface, Dimension};
 use crate::simulation::Simulation;
 use crate::skins::SkinColumns;
@@ -57,7 +58,7 @@ impl Blocks {
             let x = view.read::<Position>().unwrap();
             rows.map(|row| x[row].0 - DVec3::new(0.0, 0.1 * k as f64, 0.0)).collect()
         });
-        Self { pair: SkinPair::new(interaction, skins), sim, reference }
+        Self { pair: SkinPair::new(interaction, skins, Periodic::NONE), sim, reference }
     }
 
     /// Energy, J, and the forces and couples on the particles.

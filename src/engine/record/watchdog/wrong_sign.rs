@@ -8,7 +8,7 @@ use crate::formulations::fluid::{FlowCloud, Group};
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
-use crate::schedule::{Account, AccountKind, Step, warn_anew};
+use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, warn_anew};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.01;
@@ -23,6 +23,9 @@ const GROWTH: f64 = 1.2;
 
 /// Account of the pressure of walls.
 const WALLS: &str = "wall_pressure";
+
+/// Account of the dashpots of contacts.
+const CONTACT_DAMPING: &str = "contact_damping";
 
 /// Watches the accounts of what takes energy out of the motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -56,7 +59,8 @@ impl WrongSign {
         let largest = step.ledger.largest();
         let can_only_take = |account: &&Account| {
             // What has left the domain may have been below zero height.
-            account.kind == AccountKind::Dissipated && account.name != REMOVED_ENERGY
+            let may_give = [REMOVED_ENERGY, INTO_HEAT].contains(&account.name.as_str());
+            account.kind == AccountKind::Dissipated && !may_give
         };
         for account in step.ledger.accounts().iter().filter(can_only_take) {
             let worth = if account.name == WALLS { SHARE_OF_WALLS } else { SHARE };
@@ -117,6 +121,10 @@ fn work_of_loads(cloud: &FlowCloud) -> f64 {
 fn advice(account: &Account, remedies: &Remedies, step: &Step<'_>) -> String {
     if account.name == WALLS {
         return remedies.of_walls(step, -account.total());
+    }
+    if account.name == CONTACT_DAMPING {
+        return "the motion that it drives is not real: elastic bodies that slide chatter, which `artificial_viscosity()` in their plugins or a larger `restitution` takes"
+            .to_owned();
     }
     "the motion that it drives is not real: leave the plugin out, or take a smaller step or more particles"
         .to_owned()
