@@ -1,6 +1,6 @@
 //! Taylor bars: what is measured of the body that hits a wall.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use meshless_engine::glam::DVec3;
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, DeformationGradient, PlasticStrain, Position, ReferencePosition};
@@ -47,4 +47,26 @@ fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<Sha
     }
     (low < high).then_some(()).context("the bar has no extent")?;
     Ok(Shape { length: high - low, radius, plastic_strain, balance })
+}
+
+/// Where the points are of two lines of the surface along the bar, which the scene has probes for: one in a plane of the lattice and the axis, one between two such planes.
+pub fn sides(simulation: &Simulation) -> Result<[Vec<DVec3>; 2]> {
+    Ok([side(simulation, "along_axis")?, side(simulation, "between_axes")?])
+}
+
+fn side(simulation: &Simulation, probe: &str) -> Result<Vec<DVec3>> {
+    let shown = simulation.measure(probe)?;
+    ensure!(shown.len().is_multiple_of(3), "the probe `{probe}` does not show places in space");
+    Ok(shown.chunks(3).map(|place| DVec3::new(place[0].1, place[1].1, place[2].1)).collect())
+}
+
+/// Distance of a point from the axis of the bar, z, m.
+pub fn distance_from_axis(point: &DVec3) -> f64 {
+    point.truncate().length()
+}
+
+/// Mean of the largest distances of lines from the axis, m.
+pub fn largest_radius(sides: &[Vec<DVec3>]) -> f64 {
+    let largest = |side: &Vec<DVec3>| side.iter().map(distance_from_axis).fold(0.0, f64::max);
+    sides.iter().map(largest).sum::<f64>() / sides.len() as f64
 }

@@ -1,10 +1,10 @@
 //! S25: a Taylor bar on a wall to which it sticks, whose side rolls over onto the wall.
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
-use meshless_engine::simulation::Simulation;
 
+use super::taylor::{distance_from_axis, largest_radius, sides};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
 use crate::measure::{Kind, MaterialPoint, body, run};
@@ -42,11 +42,11 @@ fn taylor_sticking(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let top = MaterialPoint::new(&simulation, bar, LENGTH * DVec3::Z)?;
     let balance = run(&mut simulation, |_| Ok(()))?;
     let length = top.position(&simulation)?.z - foot.position(&simulation)?.z;
-    let sides = [side(&simulation, "along_axis")?, side(&simulation, "between_axes")?];
+    let sides = sides(&simulation)?;
     let lowest = sides.iter().flatten().map(|point| point.z).fold(f64::INFINITY, f64::min);
     let of_radius = Tolerance::Relative(if across < 16 { 0.1 } else { 0.06 });
     let radius = |at: &dyn Fn(&[DVec3]) -> f64| sides.iter().map(|side| at(side)).sum::<f64>() / 2.0;
-    let largest = radius(&|side| side.iter().map(distance_from_axis).fold(0.0, f64::max));
+    let largest = largest_radius(&sides);
     let mut checks = vec![
         Check::new("length", length, SHORTENED, Tolerance::Relative(0.03), "m", SOURCE).converging(),
         Check::new("largest radius", largest, RADIUS, of_radius, "m", SOURCE),
@@ -58,17 +58,6 @@ fn taylor_sticking(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     }
     checks.push(balance.check(Kind::Inelastic));
     Ok(checks)
-}
-
-/// Where the points of a line of the surface are.
-fn side(simulation: &Simulation, probe: &str) -> Result<Vec<DVec3>> {
-    let shown = simulation.measure(probe)?;
-    ensure!(shown.len().is_multiple_of(3), "the probe `{probe}` does not show places in space");
-    Ok(shown.chunks(3).map(|place| DVec3::new(place[0].1, place[1].1, place[2].1)).collect())
-}
-
-fn distance_from_axis(point: &DVec3) -> f64 {
-    point.truncate().length()
 }
 
 /// The largest radius at which a line of the surface passes a height, m.
