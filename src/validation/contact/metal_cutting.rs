@@ -16,7 +16,7 @@ pub(crate) const CASE: Case = Case {
     id: "C5",
     title: "metal cutting",
     resolutions: &[5, 10, 20],
-    ci_resolution: 5,
+    ci_resolution: 10,
     run: metal_cutting,
 };
 
