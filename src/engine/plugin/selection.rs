@@ -69,15 +69,29 @@ pub(super) fn resolve(
         parts = nearest(parts, bodies, point.0);
     }
     if parts.is_empty() {
-        let extent = |body: &BodyPlan| {
-            let Aabb { min, max } = body.bounds;
-            format!("`{}` extends from {} to {}", body.name, place(min), place(max))
-        };
-        let extents: Vec<String> =
-            bodies.iter().filter(|body| select.means(&body.name)).map(extent).collect();
-        return Err(SetupError::parameter(field, "the selection is empty", extents.join("; ")));
+        let mut help: Vec<String> =
+            bodies.iter().filter(|body| select.means(&body.name)).map(|body| extent(body, place)).collect();
+        if select.face.is_some() {
+            help.push(
+                "`face` is a side of that box: select the particles of another one by `within`".to_owned(),
+            );
+        }
+        return Err(SetupError::parameter(field, "the selection is empty", help.join("; ")));
     }
     Ok(Selection { parts })
+}
+
+/// From where to where a body extends, in words, and its particles, where these are elsewhere: the box of a combination of shapes may be larger than what is left of them.
+fn extent(body: &BodyPlan, place: impl Fn(DVec3) -> String) -> String {
+    let Aabb { min, max } = body.bounds;
+    let positions = || body.sites.iter().map(|site| site.position);
+    let low = positions().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let text = format!("`{}` extends from {} to {}", body.name, place(min), place(max));
+    if body.sites.is_empty() || (low - min).max(max - high).max_element() < body.spacing {
+        return text;
+    }
+    format!("the box around the shape of {text}, its particles from {} to {}", place(low), place(high))
 }
 
 /// Whether a selection can mean particles at all; `path` gives the path of one of its fields.
