@@ -139,8 +139,9 @@ pub(super) fn check(
     let mut cells: HashMap<[i64; 3], usize> = HashMap::with_capacity(sites.len());
     for (k, site) in sites.iter().enumerate() {
         let [x, y, z] = cell(site.position);
-        let around =
-            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |l| [x + i, y + j, z + l])));
+        // Cells of the farthest places are the last ones there are.
+        let beside = |k: i64| (-1..=1).map(move |by| k.saturating_add(by));
+        let around = beside(x).flat_map(|x| beside(y).flat_map(move |y| beside(z).map(move |z| [x, y, z])));
         let near = |other: &usize| sites[*other].position.distance(site.position) < TWICE * spacing;
         if let Some(other) = around.filter_map(|cell| cells.get(&cell).copied()).find(near) {
             return Err(error(format!(

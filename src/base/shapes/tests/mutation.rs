@@ -90,6 +90,13 @@ proptest! {
     }
 }
 
+#[test]
+fn particles_at_the_ends_of_numbers() {
+    for place in ["1e308", "-1e308"] {
+        survives("p.csv", POINTS.replace("0.1,0,", &format!("{place},{place},")).as_bytes());
+    }
+}
+
 /// Few in the continuous integration; as many as asked for in a hunt.
 fn cases() -> u32 {
     std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(64)
