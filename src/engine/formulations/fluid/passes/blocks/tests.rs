@@ -115,6 +115,26 @@ fn pair_forces_cancel() {
     assert!(squares > 0.0 && sum.length() < most, "{:e} {most:e}", sum.length());
 }
 
+/// What the water does to the tank is the opposite of what the tank does to the water, with friction and without.
+#[test]
+fn forces_of_water_and_walls_cancel() {
+    for (dimension, viscosity, wall) in
+        [("Two", 0.0, "slip: Free"), ("Two", 2.0, "slip: No"), ("Three", 2.0, "slip: No")]
+    {
+        let sim = after(&mixed(&tank(dimension, viscosity, wall, "")), 20);
+        let weight: f64 = column::<Mass>(&sim, 0).iter().map(|m| m.0 * 9.81).sum();
+        let forces: Vec<DVec3> =
+            (0..2).flat_map(|body| column::<Force>(&sim, body)).map(|force| force.0).collect();
+        let sum = forces.iter().sum::<DVec3>() + weight * DVec3::Y;
+        let on_walls: DVec3 = column::<Force>(&sim, 1).iter().map(|force| force.0).sum();
+        // As above.
+        let squares: f64 = forces.iter().map(|force| force.length_squared()).sum();
+        let most = 3e-6 * squares.sqrt();
+        assert!(on_walls.length() > 1e3 * most, "{dimension} {viscosity}: {on_walls}");
+        assert!(sum.length() < most, "{dimension} {viscosity}: {:e} {most:e}", sum.length());
+    }
+}
+
 /// Particles far apart, a place far from the origin, and removed particles.
 #[test]
 fn sparse_and_distant_flows_go_on() {
