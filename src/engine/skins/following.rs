@@ -95,9 +95,3 @@ pub(super) fn on_particle(
     }
     sum
 }
-
-impl FollowingShare {
-    pub fn share(&self) -> f64 {
-        self.share
-    }
-}

@@ -138,7 +138,7 @@ impl HandedOn<'_> {
         let force = |end: &End| self.skin.maps[end.map as usize].vector(self.forces[end.vertex as usize]);
         let (force, mut couple) = following::on_particle(ends, shares, force);
         if self.couples.is_some() {
-            let shares = shares.iter().map(FollowingShare::share);
+            let shares = shares.iter().map(|of| of.share);
             couple += ends.iter().zip(shares).fold(DMat3::ZERO, |sum, (end, share)| {
                 sum + self.of_vertices(&[End { weight: share, ..*end }])
             });

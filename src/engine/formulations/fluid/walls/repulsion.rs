@@ -52,8 +52,6 @@ impl Repulsion {
         for group in groups {
             let Role::Boundary(boundary) = &group.role else { continue };
             let body = sim.body(group.body);
-            let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
-            let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
             let of_boundary =
                 if boundary.moved { 1.0 / mass(body.material.density, body.spacing) } else { 0.0 };
             let stiffness = |fluid: &Group| {
@@ -63,9 +61,9 @@ impl Repulsion {
             };
             let stiffness = groups.iter().map_while(stiffness).collect();
             let reach = range + NEAREST * body.spacing;
+            let Some(surface) = BoundaryShape::of(group, stiffness, reach, sim) else { continue };
             widest = f64::max(widest, reach);
-            let (group, spacing) = (group.clone(), body.spacing);
-            surfaces.push(BoundaryShape { group, region, stiffness, spacing, is_worn: false, reach });
+            surfaces.push(surface);
         }
         (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }

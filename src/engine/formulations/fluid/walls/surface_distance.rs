@@ -13,6 +13,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group, Shares, part};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::linalg::dyad;
 use crate::parallel::sum_over_blocks;
+use crate::plugin::SimBuilder;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
@@ -50,6 +51,14 @@ pub struct PlaceInBody {
 }
 
 impl BoundaryShape {
+    /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest particle is within `reach`, m, of what is beside it.
+    pub fn of(group: &Group, stiffness: Vec<f64>, reach: f64, sim: &SimBuilder<'_>) -> Option<Self> {
+        let body = sim.body(group.body);
+        let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
+        let region = shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
+        Some(Self { group: group.clone(), region, stiffness, spacing: body.spacing, is_worn: false, reach })
+    }
+
     /// Takes notice of the first particle that is gone.
     pub fn wear(&mut self, cloud: &FlowCloud) {
         if !self.is_worn {

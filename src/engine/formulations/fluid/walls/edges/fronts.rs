@@ -25,21 +25,9 @@ impl WallShapes {
     /// Those of a flow with at least two.
     pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
         let walls = groups.iter().filter(|group| group.is_wall());
-        let mut shapes = Vec::new();
-        for group in walls {
-            let body = sim.body(group.body);
-            let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
-            let Ok(region) = shape.region(sim.dimension(), sim.folder(), "shape") else { continue };
-            let (group, spacing, reach) = (group.clone(), body.spacing, 2.0 * body.spacing);
-            shapes.push(BoundaryShape {
-                group,
-                region,
-                stiffness: Vec::new(),
-                spacing,
-                is_worn: false,
-                reach,
-            });
-        }
+        // Nothing is repelled here.
+        let shape = |group| BoundaryShape::of(group, Vec::new(), 2.0 * sim.body(group.body).spacing, sim);
+        let shapes: Vec<BoundaryShape> = walls.filter_map(shape).collect();
         let asks = |probe: &Probe| {
             let of_force = matches!(
                 probe.quantity,
