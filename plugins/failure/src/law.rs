@@ -129,6 +129,10 @@ impl SolidLaw for FailingLaw {
         self.inner.remembers_path()
     }
 
+    fn reads_last_stress(&self) -> bool {
+        true
+    }
+
     fn specific_heat(&self) -> Option<f64> {
         self.inner.specific_heat()
     }

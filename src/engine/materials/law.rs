@@ -118,7 +118,7 @@ pub struct StressRows<'a> {
     pub dt: f64,
     /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
-    /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first.
+    /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first. Empty for a law that does not ask for it by [`SolidLaw::reads_last_stress`].
     pub stress_before: &'a [DMat3],
     /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account, in this and in the other
     /// outputs, unless they say so.
@@ -147,6 +147,11 @@ pub trait SolidLaw: Send + Sync {
     /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a particle is cut, and its F measured
     /// anew, the law then goes on from the F that it knows.
     fn remembers_path(&self) -> bool {
+        false
+    }
+
+    /// Whether the law reads the stress of the last step, which is then kept for it. A law around another asks for it if that one does.
+    fn reads_last_stress(&self) -> bool {
         false
     }
 

@@ -260,13 +260,14 @@ impl Constitutive<'_> {
         let (n, first) = (rows.deformation.len(), block.first);
         let refits = self.refits.map_or(&[][..], |refits| refits.of_block(first, n));
         refit::to_law(refits, first, rows.deformation, rows.stress);
-        block.stress[..n].copy_from_slice(rows.stress);
+        let before = if self.law.reads_last_stress() { n } else { 0 };
+        block.stress[..before].copy_from_slice(&rows.stress[..before]);
         block.strength[..n].fill(f64::INFINITY);
         block.plastic_work[..n].fill(0.0);
         self.law.stress(&mut StressRows {
             dt: self.dt,
             deformation: rows.deformation,
-            stress_before: &block.stress[..n],
+            stress_before: &block.stress[..before],
             stress: rows.stress,
             energy: &mut block.energy[..n],
             modulus: &mut block.modulus[..n],

@@ -97,7 +97,8 @@ fn put<A: EightLanes, const R: usize, const S: usize, P: RowPass<R, S>>(
 /// The vector of one lane, in double precision.
 #[inline(always)]
 fn lane_of<A: EightLanes>(Vector { x, y, z }: Vector<A>, lane: usize) -> DVec3 {
-    [x, y, z].map(|axis| f64::from(axis.lanes().0[lane])).into()
+    // By number: a mapped array would be called.
+    DVec3::new(f64::from(x.lanes().0[lane]), f64::from(y.lanes().0[lane]), f64::from(z.lanes().0[lane]))
 }
 
 /// What a pass reads of the particles of a block, a particle in each lane.

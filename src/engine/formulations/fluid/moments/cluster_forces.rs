@@ -15,6 +15,9 @@ use crate::world::Force;
 /// How N moments of each particle act on its cluster.
 #[derive(Debug, Default)]
 pub struct ClusterForces<const N: usize> {
+    /// Which particles have moments at all: those at the surface.
+    acts: Vec<bool>,
+    /// The shifts of those.
     shifts: Vec<MomentShift<N>>,
 }
 
@@ -26,6 +29,7 @@ struct MomentShift<const N: usize> {
 }
 
 type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
+type ShiftRows<'a, const N: usize> = (&'a mut [bool], &'a mut [MomentShift<N>]);
 
 impl<const N: usize> ClusterForces<N> {
     /// Takes the moments of the particles of a body, N m, of which the first is that of all of the force.
@@ -38,12 +42,14 @@ impl<const N: usize> ClusterForces<N> {
     ) {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
         let none = MomentShift { mean: DVec3::ZERO, maps: [DMat3::ZERO; N] };
+        self.acts.resize(records.len(), false);
         self.shifts.resize(records.len(), none);
-        for_each_block(&mut self.shifts[..], &mut Vec::new(), &|begin, shifts: &mut [MomentShift<N>]| {
-            for (k, shift) in (begin..).zip(shifts) {
-                *shift = none;
+        let rows = (&mut self.acts[..], &mut self.shifts[..]);
+        for_each_block(rows, &mut Vec::new(), &|begin, (acts, shifts): ShiftRows<'_, N>| {
+            for (k, (acts, shift)) in (begin..).zip(acts.iter_mut().zip(shifts)) {
                 let moments = moments(k);
-                if moments[0] != DMat3::ZERO {
+                *acts = moments[0] != DMat3::ZERO;
+                if *acts {
                     let Cluster { mean, moment, .. } = near.cluster(records, k, periodic);
                     *shift =
                         MomentShift { mean, maps: moments.map(|first| affine(&moment, first, cloud.plane)) };
@@ -75,11 +81,18 @@ impl<const N: usize> ClusterForces<N> {
     /// The forces on particle `k` of all clusters that it is in.
     fn on(&self, near: &Neighborhood, records: &[FlowParticle], k: usize, periodic: &Periodic) -> [DVec3; N] {
         let (own, shifts) = (&records[k], &self.shifts);
-        let mut forces = shifts[k].maps.map(|map| map * -shifts[k].mean);
+        let mut forces = [DVec3::ZERO; N];
+        if self.acts[k] {
+            let MomentShift { mean, maps } = &shifts[k];
+            forces = maps.map(|map| map * -*mean);
+        }
         for &w in near.list.row(k) {
-            let MomentShift { mean, maps } = &shifts[w as usize];
+            if !self.acts[w as usize] {
+                continue;
+            }
             let x = periodic.minimal_image(own.position() - records[w as usize].position());
-            if maps[0] != DMat3::ZERO && near.are_near(x) {
+            if near.are_near(x) {
+                let MomentShift { mean, maps } = &shifts[w as usize];
                 (0..N).for_each(|n| forces[n] += maps[n] * (x - *mean));
             }
         }
