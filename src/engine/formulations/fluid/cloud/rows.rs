@@ -1,5 +1,7 @@
 //! Runs passes over rows: in blocks of particles, or four neighbours of one particle at a time.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
@@ -7,10 +9,11 @@ use super::near::{FourNear, part, take_until};
 use super::row_blocks::RowPassBlocks;
 use super::row_pass::RowPass;
 use crate::parallel::{
-    FourLanes, HotLoop, Vector, for_each_block, own_part, run_blocks_on, run_hot_on, share_part,
+    BLOCK, FourLanes, HotLoop, Vector, for_each_block, own_part, run_blocks_on, run_hot_on, share_part,
 };
+use crate::ranks::has_several;
 
-/// What a pass sums for each row, in memory that is kept.
+/// What a pass sums for each row where several ranks exchange it, in memory that is kept.
 #[derive(Debug, Default)]
 pub struct RowSums(Vec<DVec3>);
 
@@ -23,24 +26,31 @@ impl FlowCloud {
         sums: &mut RowSums,
         pass: &P,
     ) {
+        let rows = first..first + out.len();
+        if !has_several() {
+            for part in self.groups.iter().filter_map(|group| common(&group.cloud, &rows)) {
+                let of_part = &mut out[part.start - first..part.end - first];
+                for_each_block(of_part, &mut Vec::new(), &|start, out: &mut [P::Output]| {
+                    // What a block sums stays in the cache.
+                    let mut sums = [[DVec3::ZERO; S]; BLOCK];
+                    let (first, sums) = (part.start + start, &mut sums[..out.len()]);
+                    self.sum_rows(first, sums, pass);
+                    (first..)
+                        .zip(out.iter_mut().zip(sums))
+                        .for_each(|(k, (out, sums))| *out = pass.output(k, sums));
+                });
+            }
+            return;
+        }
+        // Sums are exchanged, not what is made of them, which may be of any type.
         sums.0.resize(out.len() * S, DVec3::ZERO);
         let (sums, _) = sums.0.as_chunks_mut::<S>();
-        let rows = first..first + out.len();
         for body in self.groups.iter().map(|group| &group.cloud) {
-            let part = body.start.max(rows.start)..body.end.min(rows.end);
+            let Some(part) = common(body, &rows) else { continue };
             let own = own_part(body, &part);
-            if part.is_empty() {
-                continue;
-            }
             let of_own = &mut sums[own.start - first..own.end - first];
             for_each_block(of_own, &mut Vec::new(), &|start, sums: &mut [[DVec3; S]]| {
-                let first = own.start + start;
-                match &self.blocks {
-                    Some(blocks) if first < self.fluid => {
-                        run_blocks_on(self.plane, RowPassBlocks { cloud: self, blocks, pass, first, sums });
-                    }
-                    _ => run_hot_on(self.plane, RowPassRows { cloud: self, pass, first, sums }),
-                }
+                self.sum_rows(own.start + start, sums, pass);
             });
             let of_part = &mut sums[part.start - first..part.end - first];
             share_part(of_part.as_flattened_mut(), S, &part, body);
@@ -52,6 +62,27 @@ impl FlowCloud {
             }
         });
     }
+
+    /// Sums over the neighbours of some rows of one body.
+    fn sum_rows<const R: usize, const S: usize, P: RowPass<R, S>>(
+        &self,
+        first: usize,
+        sums: &mut [[DVec3; S]],
+        pass: &P,
+    ) {
+        match &self.blocks {
+            Some(blocks) if first < self.fluid => {
+                run_blocks_on(self.plane, RowPassBlocks { cloud: self, blocks, pass, first, sums });
+            }
+            _ => run_hot_on(self.plane, RowPassRows { cloud: self, pass, first, sums }),
+        }
+    }
+}
+
+/// The rows that two ranges have in common, if there are any.
+fn common(a: &Range<usize>, b: &Range<usize>) -> Option<Range<usize>> {
+    let common = a.start.max(b.start)..a.end.min(b.end);
+    (!common.is_empty()).then_some(common)
 }
 
 /// Some particles, whose neighbours are taken four at a time.
