@@ -7,7 +7,7 @@ use common::{all_plugins, eulerian, failing, failing_metals, metals, removal, si
 use meshless::glam::{DMat3, DVec3};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
-use meshless::world::{BodyId, PlasticStrain, Position, ReferencePosition};
+use meshless::world::{BodyId, Mass, PlasticStrain, Position, ReferencePosition, Temperature};
 
 #[test]
 fn bits_do_not_depend_on_threads_or_on_a_restart() {
@@ -340,4 +340,40 @@ fn what_density_diffusion_takes_out_of_the_energy_is_booked() {
     assert_eq!(without, 0.0);
     assert!(taken > 0.02, "{taken}");
     assert!(error < error_without + 2e-3, "{error}, {error_without} without");
+}
+
+/// A block that slides along a floor to rest, both Eulerian with skins; its energy at the start is 0.4 J.
+fn slid() -> Simulation {
+    let spacing = 0.01 / 8.0;
+    let text = format!(
+        r#"(dimension: Two,
+            materials: {{"metal": J2(density: 1000, young: 1e8, poisson: 0.3, hardening: Perfect(yield_stress: 1e7), heating: (specific_heat: 450, temperature: 300))}},
+            bodies: [(name: "block", material: "metal", shape: Box(min: (0, 0), max: (0.02, 0.01)), spacing: {spacing:?}, velocity: (2, 0),
+                      formulation: Eulerian(), plugins: [hourglass_control(), artificial_viscosity()]),
+                     (name: "floor", material: "metal", shape: Box(min: (-0.01, -0.004), max: (0.03, 0)), spacing: {spacing:?}, formulation: Eulerian())],
+            conditions: [Fix(on: Select(body: "floor")), BodyForce(on: Select(body: "block"), value: (None, "-5000*smoothstep(t/5e-4)"))],
+            contacts: [Contact(between: ("block", "floor"), law: Penalty(), friction: 0.3, restitution: 0.5, friction_heat: 0.7)],
+            time: (end: 2e-3))"#
+    );
+    let mut sim = simulation(&Source::new("slid.ron", text));
+    sim.run(|_| true).expect("a run");
+    sim
+}
+
+#[test]
+fn the_work_of_friction_on_eulerian_skins_is_heat_of_both_bodies() {
+    let sim = slid();
+    let heat = |body: usize| {
+        let (view, rows) = sim.world().body_view(BodyId(body));
+        let (mass, t) = (view.read::<Mass>().expect("masses"), view.read::<Temperature>().expect("K"));
+        rows.map(|row| mass[row].0 * 450.0 * (t[row].0 - 300.0)).sum::<f64>()
+    };
+    // Coulomb's friction has brought the block to rest, and taken what it moved with, m v^2 / 2, but for what its vibration lost.
+    let (block, floor) = (heat(0), heat(1));
+    let vibration: f64 =
+        ["artificial_viscosity", "contact_damping"].iter().map(|name| sim.ledger().total_named(name)).sum();
+    let expected = 0.4 - vibration;
+    assert!(((block + floor) / expected - 1.0).abs() < 0.01, "{} of {expected}", block + floor);
+    assert!((block / (block + floor) - 0.7).abs() < 0.007, "{block} {floor}");
+    assert!(sim.ledger().relative_error().abs() < 1e-3, "{}", sim.ledger().relative_error());
 }

@@ -12,6 +12,8 @@ use crate::world::BodyId;
 const REACH: f64 = 1.5;
 /// Distance from which on a neighbour of the start counts no more, over the same spacing: in a body that flows or wears it has gone elsewhere.
 const FARTHEST: f64 = 2.0 * REACH;
+/// Mean square of the distance from the centre of a cluster, over that of the spacing of the fluid, below which the cluster has collapsed: that of two particles a spacing apart. Corners of whole bodies have twice as much.
+const COLLAPSED: f64 = 0.25;
 
 /// The neighbours of the particles of a body at its start.
 #[derive(Debug)]
@@ -27,6 +29,8 @@ pub struct Neighborhood {
 /// A particle and its neighbours in the body, weighed by their volumes.
 #[derive(Clone, Copy, Debug)]
 pub struct Cluster {
+    /// Volume, m3.
+    pub volume: f64,
     /// Centre of mass, from the particle, m.
     pub mean: DVec3,
     /// Moment matrix about the centre, m5.
@@ -65,7 +69,7 @@ impl Neighborhood {
     ) -> Cluster {
         let own = &records[k];
         if own.volume() == 0.0 {
-            return Cluster { mean: DVec3::ZERO, moment: Sym3::ZERO, motion: DMat3::ZERO };
+            return Cluster { volume: 0.0, mean: DVec3::ZERO, moment: Sym3::ZERO, motion: DMat3::ZERO };
         }
         let (mut volume, mut first, mut momentum) = (own.volume(), DVec3::ZERO, DVec3::ZERO);
         let (mut moment, mut motion) = (Sym3::ZERO, DMat3::ZERO);
@@ -84,7 +88,19 @@ impl Neighborhood {
             motion += dyad(other.volume() * v, x);
         }
         let mean = first / volume;
-        Cluster { mean, moment: moment - Sym3::dyad(mean) * volume, motion: motion - dyad(momentum, mean) }
+        let (moment, motion) = (moment - Sym3::dyad(mean) * volume, motion - dyad(momentum, mean));
+        Cluster { volume, mean, moment, motion }
+    }
+
+    /// The share of the moments of pressure that a cluster bears: all of it in a body, less in one that has collapsed.
+    ///
+    /// Fragments of a few particles may have no stress. The pressure around would squeeze them to a point, where the forces that have a moment grow without bounds, and so does the gradient of
+    /// the motion. Moments of pressure have no couple, so that angular momentum does not depend on this share; force and gradient take the same one.
+    #[inline(always)]
+    pub fn share(&self, cluster: &Cluster) -> f64 {
+        let collapsed = COLLAPSED * cluster.volume * self.farthest / (2.0 * REACH).powi(2);
+        let extent = cluster.moment.trace();
+        if extent < collapsed { (extent / collapsed).powi(2) } else { 1.0 }
     }
 }
 

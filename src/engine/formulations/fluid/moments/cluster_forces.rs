@@ -15,6 +15,8 @@ use crate::world::Force;
 /// How N moments of each particle act on its cluster.
 #[derive(Debug, Default)]
 pub struct ClusterForces<const N: usize> {
+    /// Whether clusters that have collapsed bear a share of the moments alone ([`Neighborhood::share`]).
+    fade: bool,
     /// Which particles have moments at all: those at the surface.
     acts: Vec<bool>,
     /// The shifts of those.
@@ -32,6 +34,11 @@ type Rows<'a> = (&'a mut [Force], &'a mut [[DVec3; PARTS]]);
 type ShiftRows<'a, const N: usize> = (&'a mut [bool], &'a mut [MomentShift<N>]);
 
 impl<const N: usize> ClusterForces<N> {
+    /// Those of moments without a couple, of which clusters that have collapsed bear a share alone.
+    pub fn fading() -> Self {
+        Self { fade: true, ..Self::default() }
+    }
+
     /// Takes the moments of the particles of a body, N m, of which the first is that of all of the force.
     pub fn set(
         &mut self,
@@ -43,6 +50,7 @@ impl<const N: usize> ClusterForces<N> {
         let (records, periodic) = (&cloud.records[group.cloud.clone()], cloud.pairs.periodic());
         let none = MomentShift { mean: DVec3::ZERO, maps: [DMat3::ZERO; N] };
         self.acts.resize(records.len(), false);
+        let fade = self.fade;
         self.shifts.resize(records.len(), none);
         let rows = (&mut self.acts[..], &mut self.shifts[..]);
         for_each_block(rows, &mut Vec::new(), &|begin, (acts, shifts): ShiftRows<'_, N>| {
@@ -50,9 +58,11 @@ impl<const N: usize> ClusterForces<N> {
                 let moments = moments(k);
                 *acts = moments[0] != DMat3::ZERO;
                 if *acts {
-                    let Cluster { mean, moment, .. } = near.cluster(records, k, periodic);
-                    *shift =
-                        MomentShift { mean, maps: moments.map(|first| affine(&moment, first, cloud.plane)) };
+                    let cluster = near.cluster(records, k, periodic);
+                    let share = if fade { near.share(&cluster) } else { 1.0 };
+                    let Cluster { mean, moment, .. } = cluster;
+                    let map = |first: DMat3| affine(&moment, first * share, cloud.plane);
+                    *shift = MomentShift { mean, maps: moments.map(map) };
                 }
             }
         });

@@ -23,11 +23,17 @@ use crate::world::Force;
 const OF_BOUNDARY: usize = 1;
 
 /// Finds the moments of pressure on the particles of a deformable body, and the forces that make them.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct PressureMoments {
     moments: Vec<PressureMoment>,
     forces: ClusterForces<2>,
     sums: RowSums,
+}
+
+impl Default for PressureMoments {
+    fn default() -> Self {
+        Self { moments: Vec::new(), forces: ClusterForces::fading(), sums: RowSums::default() }
+    }
 }
 
 /// M_w, N m: of both pressures, and of that of the boundary.

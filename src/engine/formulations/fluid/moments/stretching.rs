@@ -85,7 +85,7 @@ impl SurfaceStretching {
                     if !lists.row(first_row + k).is_empty() {
                         let cluster = near.cluster_before(records, k, periodic, half);
                         let stretch = affine(&cluster.moment, cluster.motion, cloud.plane);
-                        let stretch = Sym3::symmetric_part(stretch);
+                        let stretch = Sym3::symmetric_part(stretch) * near.share(&cluster);
                         *rate = StretchBeside {
                             stretch,
                             rate: cloud.rate_beside(group, first_row + k, &stretch, half),

@@ -6,6 +6,8 @@ mod held_down;
 
 mod intrusion;
 
+mod lost_volume;
+
 mod passing;
 
 mod closed;

@@ -8,6 +8,7 @@ use super::friction::FrictionOfParticle;
 use super::half_space;
 use super::held_down::HeldDown;
 use super::intrusion::Intrusion;
+use super::lost_volume::LostVolume;
 use super::no_gap_pressure;
 use super::passing::PassingWalls;
 use super::stabilized;
@@ -32,6 +33,7 @@ struct FlowWatch {
     is_stabilized: bool,
     closed: ClosedWatch,
     held_down: HeldDown,
+    lost_volume: LostVolume,
     /// Spacing of the fluid, m.
     spacing: f64,
     compression: CompressionWatch,
@@ -57,6 +59,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
         is_stabilized: false,
         closed: ClosedWatch::default(),
         held_down: HeldDown::new(sim.gravity(), spacing),
+        lost_volume: LostVolume::default(),
         spacing,
         compression: CompressionWatch::default(),
         filling: FillingWatch::default(),
@@ -96,6 +99,7 @@ impl Run for FlowWatch {
         if is_frame {
             self.held_down.look(&cloud, step)?;
             no_gap_pressure::look(&mut self.lies, &cloud, self.spacing, step)?;
+            self.lost_volume.look(&cloud, step)?;
             self.compression.look(&cloud, step);
             self.filling.look(&cloud, &mut self.scratch, step);
             self.closed.look(at_end, &cloud, &mut self.scratch, step);
@@ -110,14 +114,21 @@ impl Run for FlowWatch {
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
         let bodies = (self.is_through, self.lies, self.is_stabilized, self.closed, &self.held_down.seen);
-        postcard::to_stdvec(&(told, bodies, &self.compression, &self.filling, self.frames))
-            .unwrap_or_default()
+        postcard::to_stdvec(&(
+            told,
+            bodies,
+            &self.compression,
+            (&self.filling, &self.lost_volume),
+            self.frames,
+        ))
+        .unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> bool {
-        let Ok((told, bodies, compression, filling, frames)) = postcard::from_bytes(state) else {
+        let Ok((told, bodies, compression, (filling, lost), frames)) = postcard::from_bytes(state) else {
             return false;
         };
+        self.lost_volume = lost;
         (self.is_through, self.lies, self.is_stabilized, self.closed, self.held_down.seen) = bodies;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);

@@ -1,0 +1,81 @@
+//! What wear leaves in a flow: fragments without stress, and places of removed particles that a closed flow has to fill.
+
+mod common;
+
+use common::simulation;
+use meshless::scene::Source;
+use meshless::simulation::Simulation;
+use meshless::world::{BodyId, Position, Removed, Velocity};
+
+/// A channel of water under a pressure, Pa, periodic along x, between walls that pull, with `body` in the place of some of its water.
+fn channel(pressure: f64, body: &str, shape: &str) -> Simulation {
+    let text = format!(
+        r#"(dimension: Two, domain: (min: (0, -0.006), max: (0.02, 0.03), periodic: [X]),
+            materials: {{"water": Fluid(density: 1000, sound_speed: 20, viscosity: 0.001), "jelly": NeoHookean(density: 1200, young: 1e2, poisson: 0.3),
+                         "rubber": NeoHookean(density: 1200, young: 1e6, poisson: 0.3)}},
+            bodies: [(name: "water", material: "water", shape: Difference(Box(min: (0, 0), max: (0.02, 0.02)), {shape}), spacing: 1e-3,
+                      formulation: Fluid(pressure: {pressure:?}), plugins: [density_diffusion()]),
+                     {body},
+                     (name: "floor", material: "none", shape: Box(min: (0, -0.004), max: (0.02, 0)), spacing: 1e-3, formulation: Wall(suction: true)),
+                     (name: "top", material: "none", shape: Box(min: (0, 0.02), max: (0.02, 0.024)), spacing: 1e-3, formulation: Wall(suction: true))],
+            conditions: [InitialVelocity(on: Select(body: "water"), value: ("0.2*sin(314*y)", None)),
+                         Fix(on: Select(body: "slab"))],
+            time: (end: 0.02))"#
+    );
+    let text =
+        if body.contains("slab") { text } else { text.replace(r#"Fix(on: Select(body: "slab"))"#, "") };
+    simulation(&Source::new("channel.ron", text))
+}
+
+#[test]
+fn a_fragment_that_bears_no_pressure_takes_no_energy_from_walls() {
+    // Four particles without stiffness: the pressure of the water squeezes them together.
+    let (pressure, shape) = (1.5e4, "Box(min: (0.009, 0.009), max: (0.011, 0.011))");
+    let body = format!(
+        r#"(name: "chip", material: "jelly", shape: {shape}, spacing: 1e-3, formulation: Eulerian(), plugins: [hourglass_control()])"#
+    );
+    let mut sim = channel(pressure, &body, shape);
+    let mut fastest = 0.0f64;
+    sim.run(|sim| {
+        let (view, rows) = sim.world().body_view(BodyId(1));
+        let v = view.read::<Velocity>().expect("velocities");
+        fastest = rows.map(|row| v[row].0.length()).fold(fastest, f64::max);
+        true
+    })
+    .unwrap_or_else(|error| panic!("{error}"));
+    // A collapse gives it the speed sqrt(p / rho) or so.
+    assert!(fastest < 2.0 * (pressure / 1000.0).sqrt(), "{fastest} m/s");
+    // All that it can give is the work of the pressure on its volume.
+    let (given, work) = (sim.ledger().total_named("wall_pressure"), pressure * 4e-6);
+    assert!(given.abs() < 0.1 * work, "{given} J of {work}");
+}
+
+/// The warning of a channel under a pressure in which half of the uppermost layer of a slab on its floor is worn off at the start.
+fn worn(pressure: f64) -> Option<String> {
+    let shape = "Box(min: (0, 0), max: (0.02, 0.008))";
+    let body = format!(
+        r#"(name: "slab", material: "rubber", shape: {shape}, spacing: 1e-3, formulation: Eulerian(), plugins: [hourglass_control()])"#
+    );
+    let mut sim = channel(pressure, &body, shape);
+    sim.run(|sim| sim.clock().step < 5).expect("a start");
+    {
+        let (view, rows) = sim.world().body_view(BodyId(1));
+        let x = view.read::<Position>().expect("places");
+        let mut removed = view.write::<Removed>().expect("a column");
+        rows.filter(|&row| x[row].0.y > 0.007 && (x[row].0.x - 0.01).abs() < 0.005)
+            .for_each(|row| removed[row] = Removed::YES);
+    }
+    sim.run(|_| true).expect("a run");
+    sim.warnings()
+        .iter()
+        .find(|text| text.contains("cannot fill the place of what has been removed"))
+        .cloned()
+}
+
+#[test]
+fn a_closed_flow_that_cannot_fill_what_is_worn_is_told_the_pressure_it_lacks() {
+    // Ten particles of a slab beside 240 of water: 4.2 % of its volume, 16.7 kPa of its modulus of 400 kPa, a little less as it expands.
+    let told = worn(5e3).expect("a warning");
+    assert!(told.contains("costs 16.") && told.contains("above 16."), "{told}");
+    assert_eq!(worn(1.9e4), None);
+}
