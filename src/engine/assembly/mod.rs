@@ -1,5 +1,6 @@
 //! From a scene to a simulation, on top of everything else: materials, particles, plugins, systems, columns.
 
+mod approach;
 mod build;
 mod clamps;
 mod drawn_sides;
@@ -7,6 +8,7 @@ mod face_on;
 #[cfg(test)]
 mod handed_tests;
 mod lattice_edges;
+mod loaded_sides;
 mod memory;
 mod named_fields;
 mod names;

@@ -90,7 +90,10 @@ pub(super) fn check_is_side(
             body.name,
             rows.len()
         ),
-        "add `within` with a shape that holds the particles to be loaded, and state the loaded `area`",
+        format!(
+            "a curved side is selected by `surface`, such as `Select(body: \"{}\", surface: Outer)`, a part of it by `within` beside that, or `surface: Facing(...)`; particles by `within` with the loaded `area`",
+            body.name
+        ),
     ))
 }
 

@@ -44,7 +44,7 @@ impl Plugin for InitialVelocity {
             ));
         }
         field.require_finite(&parts, "velocity")?;
-        only_once(&parts, field.axes(), sim)?;
+        only_once(&parts, &field, sim)?;
         warn_of_fast_start(&field, &parts, sim);
         sim.add_setup(move |setup| {
             let axes = field.axes();
@@ -82,18 +82,27 @@ fn warn_of_fast_start(field: &VectorField, parts: &[Part], sim: &mut SimBuilder<
     }
 }
 
-/// Axes of the particles that have an initial velocity already.
-#[derive(Default)]
-struct GivenAxes(BTreeMap<(BodyId, u32), [bool; 3]>);
+/// Initial velocities of particles along the axes that have one, m/s, by their rows.
+#[derive(Clone, Default)]
+pub struct GivenVelocities(BTreeMap<(BodyId, u32), [Option<f64>; 3]>);
+
+impl GivenVelocities {
+    /// Those of a particle.
+    pub fn of(&self, body: BodyId, row: u32) -> [Option<f64>; 3] {
+        self.0.get(&(body, row)).copied().unwrap_or_default()
+    }
+}
 
 /// Two initial velocities of one particle along one axis contradict each other.
-fn only_once(parts: &[Part], axes: [bool; 3], sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
-    let mut given: GivenAxes = sim.take_extensions().pop().unwrap_or_default();
+fn only_once(parts: &[Part], field: &VectorField, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+    let axes = field.axes();
+    let mut given: GivenVelocities = sim.take_extensions().pop().unwrap_or_default();
     for part in parts {
-        for &row in &part.rows {
+        for (&row, &point) in part.rows.iter().zip(&part.points) {
             let taken = given.0.entry((part.body, row)).or_default();
+            let value = field.at(point, 0.0);
             for axis in (0..3).filter(|&axis| axes[axis]) {
-                if std::mem::replace(&mut taken[axis], true) {
+                if taken[axis].replace(value[axis]).is_some() {
                     let body = sim.body(part.body);
                     let number = row as usize - body.rows.start;
                     let message = format!(

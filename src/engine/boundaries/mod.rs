@@ -36,7 +36,7 @@ pub use displacement::Displacement;
 pub use fix::Fix;
 pub use force::TotalForce;
 pub use initial_displacement::InitialDisplacement;
-pub use initial_velocity::InitialVelocity;
+pub use initial_velocity::{GivenVelocities, InitialVelocity};
 pub use mean_velocity::MeanVelocity;
 pub use pressure::PressureLoad;
 pub use symmetry::{Side, Symmetry};

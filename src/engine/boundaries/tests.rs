@@ -343,6 +343,7 @@ fn a_load_on_a_side_that_is_not_flat_is_an_error() {
     let error =
         load("Ring(center: (0, 0), inner: 0.05, outer: 0.1)", "MaxX").expect("a ring has no flat side");
     assert!(error.contains("no flat side"), "{error}");
+    assert!(error.contains("surface: Outer"), "{error}");
     assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MaxX").is_none());
     assert!(load("Polygon(points: [(0, 0), (0.1, 0.05), (0.1, 0.1), (0, 0.1)])", "MinY").is_some());
 }

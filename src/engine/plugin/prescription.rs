@@ -48,6 +48,18 @@ impl Prescription {
         self.by
     }
 
+    /// The velocity of a place, m/s; of a displacement the difference over `apart`, s. None where only the condition knows it.
+    pub fn velocity_of_place(&self, apart: f64) -> Option<MotionOfPlace> {
+        match &self.motion {
+            Motion::Unknown => None,
+            Motion::Velocity(value) => Some(Arc::clone(value)),
+            Motion::Displacement(value) => {
+                let value = Arc::clone(value);
+                Some(Arc::new(move |point, t| (value(point, t + apart) - value(point, t)) / apart))
+            }
+        }
+    }
+
     /// Whether both prescribe the same motion along an axis, until `end`, s, to what is at `point` in the reference configuration. A motion that is not known agrees with none, and a velocity with a displacement
     /// where both are zero.
     pub fn agrees(&self, other: &Self, axis: usize, point: DVec3, end: f64) -> bool {

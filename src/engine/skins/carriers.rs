@@ -2,6 +2,9 @@
 //!
 //! Near symmetry planes mirror images of particles are carriers as well: an image stands for the particle that carries the image of the vertex. A skin
 //! that ends at a plane is then half of the skin of the whole body. At the ends of a period images a period away are carriers.
+//!
+//! Particles that have been put onto a held side stand for the cells that they had in their lattice: shares follow from where they were. By where they are now, the first layer beside the side would
+//! carry three quarters of a load that acts on its cell, and the next one five quarters.
 
 use glam::DVec3;
 
@@ -16,6 +19,14 @@ const WIDER: f64 = 1.25;
 const FEWEST: usize = 3;
 /// Searches after which a vertex has no particles near it.
 const SEARCHES: usize = 6;
+
+/// The particles of a body as carriers.
+pub(super) struct CarrierCells<'a> {
+    /// Where they are, m.
+    pub places: &'a [DVec3],
+    /// Where the middles of their cells are, m.
+    pub middles: &'a [DVec3],
+}
 
 /// A particle that carries a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -34,19 +45,19 @@ pub(super) struct Carrier {
 /// carriers too, without a share at the start.
 pub(super) fn carriers(
     vertices: &[DVec3],
-    particles: &[DVec3],
+    cells: &CarrierCells<'_>,
     maps: &[Map],
     spacing: f64,
     farther: f64,
 ) -> Result<Option<(Vec<u32>, Vec<Carrier>)>, NeighborError> {
     let farthest = farther * REACH * WIDER.powi(SEARCHES as i32) * spacing;
     let around = Aabb::around(vertices.iter().copied());
-    let images = images(particles, maps, Aabb { min: around.min - farthest, max: around.max + farthest });
+    let images = images(cells.middles, maps, Aabb { min: around.min - farthest, max: around.max + farthest });
     let places: Vec<DVec3> = images.iter().map(|image| image.0).collect();
     let mut all: Vec<Vec<Carrier>> = vec![Vec::new(); vertices.len()];
     let mut pending: Vec<usize> = (0..vertices.len()).collect();
     let (mut search, mut list) = (NeighborSearch::default(), NeighborList::default());
-    let fewest = FEWEST.min(particles.len());
+    let fewest = FEWEST.min(cells.places.len());
     let mut reach = REACH * spacing;
     for _ in 0..SEARCHES {
         let targets: Vec<DVec3> = pending.iter().map(|&k| vertices[k]).collect();
@@ -58,7 +69,8 @@ pub(super) fn carriers(
             if near.len() < fewest {
                 few.push(k);
             } else {
-                all[k] = shares(vertices[k], maps, &images, near, reach);
+                let found = near.iter().map(|&number| images[number as usize]);
+                all[k] = shares(vertices[k], (cells, maps), found, reach);
             }
         }
         pending = few;
@@ -94,15 +106,20 @@ fn images(particles: &[DVec3], maps: &[Map], within: Aabb) -> Vec<Image> {
     images
 }
 
-fn shares(vertex: DVec3, maps: &[Map], images: &[Image], near: &[u32], reach: f64) -> Vec<Carrier> {
-    let of = |&number: &u32| {
-        let (place, particle, map) = images[number as usize];
+fn shares(
+    vertex: DVec3,
+    (cells, maps): (&CarrierCells<'_>, &[Map]),
+    near: impl Iterator<Item = Image>,
+    reach: f64,
+) -> Vec<Carrier> {
+    let of = |(middle, particle, map): Image| {
         // For vectors a map is its own inverse.
-        let way = vertex - place;
+        let way = vertex - middle;
         let weight = (1.0 - way.length() / reach).max(0.0).powi(3);
-        Carrier { arm: maps[map as usize].vector(way), weight, particle, map }
+        let moved = cells.places[particle as usize] - cells.middles[particle as usize];
+        Carrier { arm: maps[map as usize].vector(way) - moved, weight, particle, map }
     };
-    let mut carriers: Vec<Carrier> = near.iter().map(of).collect();
+    let mut carriers: Vec<Carrier> = near.map(of).collect();
     let sum: f64 = carriers.iter().map(|carrier| carrier.weight).sum();
     carriers.iter_mut().for_each(|carrier| carrier.weight /= sum);
     carriers

@@ -77,9 +77,10 @@ impl SkinView<'_> {
         })
     }
 
-    /// Present distance of a vertex from a carrier, m.
+    /// Present distance of a vertex from the middle of the cell of a carrier, m.
     fn distance(&self, carrier: &Carrier) -> f64 {
-        (self.gradient[self.first_row + carrier.particle as usize].0 * carrier.arm).length()
+        let from_middle = self.skin.from_middle(carrier.particle, carrier.arm);
+        (self.gradient[self.first_row + carrier.particle as usize].0 * from_middle).length()
     }
 
     /// What the shares of a vertex are made of, if they follow the deformation.
@@ -88,11 +89,13 @@ impl SkinView<'_> {
         self.skin.reach.map(|reach| Scale::of(distances, reach))
     }
 
-    /// Where a particle or its image has a vertex that is at `arm` from it in the reference configuration, m, and the present arm as the particle sees it, m.
-    pub fn carried_by(&self, particle: u32, map: u32, arm: DVec3) -> (DVec3, DVec3) {
+    /// Where a particle or its image has a vertex that is at `arm` from it in the reference configuration, m; from the middle of its cell to the vertex, there and now, as the particle sees it, m.
+    pub fn carried_by(&self, particle: u32, map: u32, arm: DVec3) -> (DVec3, [DVec3; 2]) {
         let row = self.first_row + particle as usize;
-        let arm = self.gradient[row].0 * arm;
-        (self.skin.maps[map as usize].place(self.position[row].0 + arm), arm)
+        let gradient = self.gradient[row].0;
+        let middle = self.skin.from_middle(particle, arm);
+        let place = self.position[row].0 + gradient * arm;
+        (self.skin.maps[map as usize].place(place), [middle, gradient * middle])
     }
 
     /// A vector beside an image, as the particle sees it.

@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The transpose has the change of the shares with F: a force f on a vertex is s_j f on the particles, and the couples `[s_j f + (f . u_j) g_j] (x) (X - X_j)` with
-//! `u_j = y_j - x` and g_j the slope of the share along `F_j (X - X_j)`. Undeformed, all is as in Lagrangian bodies.
+//! `u_j = y_j - x` and g_j the slope of the share along `F_j (X - X_j)`. Undeformed, all is as in Lagrangian bodies. For particles that have been put onto a held side, distances and slopes are those from the
+//! middle of their cells.
 
 use glam::{DMat3, DVec3};
 
@@ -61,6 +62,8 @@ pub(super) struct FollowingShare {
     away: DVec3,
     /// g_j, 1/m.
     slope: DVec3,
+    /// From the middle of the cell of the carrier to the vertex in the reference configuration, m.
+    middle: DVec3,
 }
 
 /// Finds the shares at the ends of a patch.
@@ -68,12 +71,13 @@ pub(super) fn follow(view: &SkinView<'_>, ends: &[End], now: &[Vertex], out: &mu
     for_each_block((out, ends), &mut Vec::new(), &|_, (out, ends): (&mut [FollowingShare], &[End])| {
         for (out, end) in out.iter_mut().zip(ends) {
             let vertex = &now[end.vertex as usize];
-            let (place, arm) = view.carried_by(end.particle, end.map, end.arm);
-            let distance = arm.length();
+            let (place, [middle, now]) = view.carried_by(end.particle, end.map, end.arm);
+            let distance = now.length();
             *out = FollowingShare {
                 share: vertex.scale.share(distance),
                 away: view.back(end.map, place - vertex.place),
-                slope: arm * vertex.scale.slope(distance),
+                slope: now * vertex.scale.slope(distance),
+                middle,
             };
         }
     });
@@ -89,9 +93,13 @@ pub(super) fn on_particle(
     for (end, of) in ends.iter().zip(shares) {
         let f = force(end);
         let shared = of.share * f;
-        let couple = shared + of.slope * f.dot(of.away);
         sum.0 += shared;
-        sum.1 += DMat3::from_cols(couple * end.arm.x, couple * end.arm.y, couple * end.arm.z);
+        sum.1 += outer(shared, end.arm) + outer(of.slope * f.dot(of.away), of.middle);
     }
     sum
+}
+
+/// a (x) b
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

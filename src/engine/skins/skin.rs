@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::carriers::{Carrier, REACH, carriers};
+use super::carriers::{Carrier, CarrierCells, REACH, carriers};
 use super::following::CANDIDATES;
 use crate::plugin::{BodyPlan, Offer};
 use crate::scene::Dimension;
@@ -43,6 +43,8 @@ pub(crate) struct Skin {
     pub lightness: f64,
     /// Of every particle the length (area) for which it stands in a layer, m (m2).
     pub(super) layer: Vec<f64>,
+    /// Of every particle how far it stands from the middle of its cell in the reference configuration, m; empty if all stand there, or if shares are those of the start.
+    pub(super) moved: Vec<DVec3>,
     /// Reach of a vertex, m, if the shares of its carriers follow the deformation; none if they are those of the start.
     pub(super) reach: Option<f64>,
 }
@@ -61,12 +63,21 @@ impl Skin {
         let mut facets = shape.facets(dimension, folder, LENGTH[axes - 2] * body.spacing)?;
         repeats.iter().for_each(|repeat| leave_out(&mut facets, repeat, ON_PLANE * body.spacing));
         let maps = maps_of(repeats);
-        let particles: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let places: Vec<DVec3> = body.sites.iter().map(|site| site.position).collect();
+        let mut middles = places.clone();
+        body.sides.iter().flat_map(|side| &side.moved).for_each(|(k, way)| {
+            // Two conditions may hold one side.
+            let (k, axis) = (*k as usize, way.abs().max_position());
+            middles[k][axis] = places[k][axis] - way[axis];
+        });
+        let cells = CarrierCells { places: &places, middles: &middles };
         // Kernels of the present configuration.
         let reach = body.offers(Offer::PairControl).then_some(REACH * body.spacing);
         let farther = if reach.is_some() { CANDIDATES } else { 1.0 };
-        let (starts, carriers) =
-            carriers(&facets.points, &particles, &maps, body.spacing, farther).ok()??;
+        let is_moved = reach.is_some() && !body.sides.is_empty();
+        let moved = places.iter().zip(&middles).filter(|_| is_moved).map(|(now, middle)| now - middle);
+        let moved = moved.collect();
+        let (starts, carriers) = carriers(&facets.points, &cells, &maps, body.spacing, farther).ok()??;
         let normals: Vec<(DVec3, f64)> =
             (0..facets.corners.len()).map(|facet| facets.normal_and_measure(facet)).collect();
         let (facet_starts, facets_at) = facets_at_vertices(&facets);
@@ -88,6 +99,7 @@ impl Skin {
             maps,
             lightness,
             layer,
+            moved,
             reach,
         };
         skin.corner = skin.corners(&normals);
@@ -110,6 +122,12 @@ impl Skin {
     pub(super) fn carriers(&self, vertex: u32) -> &[Carrier] {
         let k = vertex as usize;
         &self.carriers[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+
+    /// From the middle of the cell of a particle to a vertex that is at `arm` from the particle, in the reference configuration, m.
+    #[inline]
+    pub(super) fn from_middle(&self, particle: u32, arm: DVec3) -> DVec3 {
+        self.moved.get(particle as usize).map_or(arm, |moved| arm + *moved)
     }
 
     /// What a carrier is an image by.
