@@ -49,7 +49,8 @@ impl Surface for BoxRegion {
             let below = Facing { normal: -axis, distance: self.corners.min[k] - point[k] };
             Facing { normal: axis, distance: point[k] - self.corners.max[k] }.outermost(below)
         };
-        let faces = [0, 1, 2].map(nearer_face);
+        // One by one: a mapped array would be called.
+        let faces = [nearer_face(0), nearer_face(1), nearer_face(2)];
         behind_all(point, &faces[..self.axes])
     }
 

@@ -79,8 +79,8 @@ impl SkinView<'_> {
 
     /// Present distance of a vertex from the middle of the cell of a carrier, m.
     fn distance(&self, carrier: &Carrier) -> f64 {
-        let from_middle = self.skin.from_middle(carrier.particle, carrier.arm);
-        (self.gradient[self.first_row + carrier.particle as usize].0 * from_middle).length()
+        let arm_from_middle = self.skin.arm_from_middle(carrier.particle, carrier.arm);
+        (self.gradient[self.first_row + carrier.particle as usize].0 * arm_from_middle).length()
     }
 
     /// What the shares of a vertex are made of, if they follow the deformation.
@@ -93,7 +93,7 @@ impl SkinView<'_> {
     pub fn carried_by(&self, particle: u32, map: u32, arm: DVec3) -> (DVec3, [DVec3; 2]) {
         let row = self.first_row + particle as usize;
         let gradient = self.gradient[row].0;
-        let middle = self.skin.from_middle(particle, arm);
+        let middle = self.skin.arm_from_middle(particle, arm);
         let place = self.position[row].0 + gradient * arm;
         (self.skin.maps[map as usize].place(place), [middle, gradient * middle])
     }

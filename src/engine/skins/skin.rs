@@ -126,7 +126,7 @@ impl Skin {
 
     /// From the middle of the cell of a particle to a vertex that is at `arm` from the particle, in the reference configuration, m.
     #[inline]
-    pub(super) fn from_middle(&self, particle: u32, arm: DVec3) -> DVec3 {
+    pub(super) fn arm_from_middle(&self, particle: u32, arm: DVec3) -> DVec3 {
         self.moved.get(particle as usize).map_or(arm, |moved| arm + *moved)
     }
 

@@ -202,7 +202,7 @@ impl Points {
     ) -> [Pressed; 3] {
         let (rule, normal) = (&self.coarse, a.normal);
         let area = on.patch.skin.measure[facet as usize] / rule.len() as f64;
-        let mut sums = [(Spring::default(), 0.0, 0.0); 3];
+        let mut pressed = [Pressed::default(); 3];
         for point in 0..rule.len() {
             let shares = rule.shares(point);
             let [p, q, r] = shares;
@@ -212,15 +212,18 @@ impl Points {
                 continue;
             }
             let spring = on.spring(&ToolView { distance, normal, approach }, area, extremes);
-            for ((sum, own, depth), share) in sums.iter_mut().zip(shares) {
-                sum.force += share * spring.force;
-                sum.stiffness += share * spring.stiffness;
-                sum.energy += share * spring.energy;
-                *own += share * area;
-                *depth -= share * area * distance;
+            for (on_vertex, share) in pressed.iter_mut().zip(shares) {
+                on_vertex.spring.force += share * spring.force;
+                on_vertex.spring.stiffness += share * spring.stiffness;
+                on_vertex.spring.energy += share * spring.energy;
+                on_vertex.area += share * area;
+                on_vertex.depth -= share * area * distance;
             }
         }
-        sums.map(|(spring, area, depth)| Pressed { force: spring.force * normal, spring, area, depth })
+        for on_vertex in &mut pressed {
+            on_vertex.force = on_vertex.spring.force * normal;
+        }
+        pressed
     }
 }
 
