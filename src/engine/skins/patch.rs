@@ -351,6 +351,14 @@ impl Patch {
         [self.vertex(a), self.vertex(b), self.vertex(c)]
     }
 
+    /// Where the vertices of a facet are, m.
+    #[inline]
+    pub fn places(&self, facet: u32) -> [DVec3; 3] {
+        // One by one: a mapped array would be called.
+        let [a, b, c] = self.corners(facet);
+        [a.place, b.place, c.place]
+    }
+
     /// Pushes the point of a facet with these shares of its vertices by a force, N, and a couple, N m, f (x) A of the reference configuration.
     pub fn push(&mut self, facet: u32, shares: [f64; 3], force: DVec3, couple: Option<&DMat3>) {
         let corners = self.skin.facets.corners[facet as usize];

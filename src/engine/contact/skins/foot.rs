@@ -28,10 +28,10 @@ pub(super) fn enclose(patch: &Patch, facets: &[u32], balls: &mut Vec<Ball>) {
     let axes = patch.skin.facets.axes;
     balls.resize(patch.skin.facets.corners.len(), (DVec3::ZERO, 0.0));
     for &facet in facets {
-        let corners = patch.corners(facet).map(|corner| corner.place);
+        let corners = patch.places(facet);
         let center = corners[..axes].iter().sum::<DVec3>() / axes as f64;
-        let squared = corners.map(|corner| corner.distance_squared(center));
-        let radius = squared[0].max(squared[1]).max(squared[2]).sqrt();
+        let squared = corners.iter().map(|corner| corner.distance_squared(center)).fold(0.0, f64::max);
+        let radius = squared.sqrt();
         balls[facet as usize] = (center, radius * (1.0 + 1e-9));
     }
 }
@@ -62,7 +62,7 @@ pub(in crate::contact) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -
         if center.distance_squared(x) > (reach + radius).powi(2) {
             continue;
         }
-        let corners = patch.corners(facet).map(|corner| corner.place);
+        let corners = patch.places(facet);
         let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
         let squared = point(&corners, shares).distance_squared(x);
         if squared < nearest.map_or(farthest * farthest, |(squared, ..)| squared) {
@@ -72,7 +72,7 @@ pub(in crate::contact) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -
     }
     let (squared, facet, shares) = nearest?;
     let x = of_facet(balls[facet as usize].0);
-    let corners = patch.corners(facet).map(|corner| corner.place);
+    let corners = patch.places(facet);
     let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();
     if inner == axes {
         let normal = directed_area(axes, &corners).normalize_or_zero();
@@ -106,7 +106,7 @@ fn mean_normal(patch: &Patch, facet: u32, shares: [f64; 3]) -> DVec3 {
         if second.is_some_and(|second| !vertices.contains(&second)) {
             continue;
         }
-        let corners = patch.corners(other).map(|corner| corner.place);
+        let corners = patch.places(other);
         let normal = directed_area(axes, &corners).normalize_or_zero();
         let angle = match (axes, second) {
             (3, None) => angle_at(&corners, vertices.iter().position(|&vertex| vertex == first).unwrap_or(0)),
