@@ -76,8 +76,7 @@ impl Motions {
 
     /// The mean velocity of some particles of a body.
     pub fn of_face<'a>(&'a self, body: &'a BodyPlan, face: &[u32], sim: &'a SimBuilder<'_>) -> Velocity<'a> {
-        let every = face.len().div_ceil(PLACES).max(1);
-        let some: Vec<usize> = face.iter().step_by(every).map(|&number| number as usize).collect();
+        let some: Vec<usize> = some_of(face).collect();
         Box::new(move |t| {
             let all = some.iter().map(|&number| self.of_particle(body, number, sim, t));
             all.sum::<DVec3>() / some.len().max(1) as f64
@@ -87,9 +86,7 @@ impl Motions {
     /// Whether a face moves as one at the start.
     pub fn is_flat(&self, body: &BodyPlan, face: &[u32], sim: &SimBuilder<'_>, speed: f64) -> bool {
         let mean = self.of_face(body, face, sim)(0.0);
-        let every = face.len().div_ceil(PLACES).max(1);
-        let mut some = face.iter().step_by(every);
-        some.all(|&number| self.of_particle(body, number as usize, sim, 0.0).distance(mean) <= FLAT * speed)
+        some_of(face).all(|number| self.of_particle(body, number, sim, 0.0).distance(mean) <= FLAT * speed)
     }
 
     /// The direction in which the first body comes towards the second one, if it moves towards it at all.
@@ -140,6 +137,12 @@ impl Motions {
         let speed = closing(touch);
         (speed > 0.0 && speed >= SUDDEN * largest).then_some((speed, touch))
     }
+}
+
+/// The particles of a face at which its motion is looked at.
+fn some_of(face: &[u32]) -> impl Iterator<Item = usize> {
+    let every = face.len().div_ceil(PLACES).max(1);
+    face.iter().step_by(every).map(|&number| number as usize)
 }
 
 /// The part of a span of time in which a gap closes, and what is left of the gap at its start.
