@@ -17,7 +17,7 @@ pub enum AfterYield {
 
 impl AfterYield {
     /// E_i, Pa, of row `k`.
-    #[inline]
+    #[inline(always)]
     pub fn modulus(self, rows: &FoldedRows<'_>, k: usize) -> f64 {
         match self {
             Self::YieldStress => rows.modulus[k].min(rows.strength[k]),

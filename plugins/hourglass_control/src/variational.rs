@@ -9,6 +9,7 @@
 //! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has worked for
 //! that: it is booked as released.
 
+use meshless_engine::parallel::{FourLanes, HotLoop, run_hot};
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 
 use crate::resistance::AfterYield;
@@ -23,11 +24,31 @@ pub struct Variational {
 
 impl FoldedTerm for Variational {
     fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy {
-        let factor = self.alpha / 6.0;
+        run_hot(AddBlock { term: self, rows })
+    }
+
+    fn stiffness_factor(&self) -> f64 {
+        self.alpha / 6.0
+    }
+}
+
+/// A block of particles, on the instruction path.
+struct AddBlock<'a, 'r> {
+    term: &'a Variational,
+    rows: &'a mut FoldedRows<'r>,
+}
+
+impl HotLoop for AddBlock<'_, '_> {
+    type Output = FoldedEnergy;
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, _: A) -> FoldedEnergy {
+        let Self { term, rows } = self;
+        let factor = term.alpha / 6.0;
         let mut energy = FoldedEnergy::default();
         let changes = !rows.memory.residual.is_empty();
         for k in 0..rows.deformation.len() {
-            let modulus = self.after_yield.modulus(rows, k);
+            let modulus = term.after_yield.modulus(rows, k);
             let stiffness = factor * modulus;
             rows.stress.add_scaled(k, -stiffness, &rows.displacement_gradient[k]);
             rows.stress.add_stiffness(k, stiffness);
@@ -45,9 +66,5 @@ impl FoldedTerm for Variational {
             }
         }
         energy
-    }
-
-    fn stiffness_factor(&self) -> f64 {
-        self.alpha / 6.0
     }
 }

@@ -77,6 +77,9 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     /// `a b + c`.
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
+    /// Asks the processor to bring a row into its cache, because it is going to be read or written; one beyond the end is asked for in vain.
+    fn prefetch<T>(self, rows: &[T], row: usize);
+
     /// The values whose bits are set, in their order; what follows them has no meaning.
     fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4];
 
@@ -200,6 +203,9 @@ impl FourLanes for Portable {
     }
 
     #[inline(always)]
+    fn prefetch<T>(self, _: &[T], _: usize) {}
+
+    #[inline(always)]
     fn pack(self, values: [u32; 4], bits: usize) -> [u32; 4] {
         let mut packed = [0; 4];
         let mut count = 0;
@@ -228,11 +234,16 @@ fn above_zero(x: f64) -> f64 {
 
 #[cfg(target_arch = "x86_64")]
 mod v3 {
+    use std::arch::x86_64::_MM_HINT_T0;
+
     use bytemuck::cast;
     use pulp::f64x4;
     use pulp::x86::V3;
 
     use super::{Arithmetic, Eight, FourLanes, Lanes4};
+
+    /// Bytes that a processor of this architecture brings into its cache at a time.
+    const CACHE_LINE: usize = 64;
 
     /// For every set of bits the bytes of the values whose bits are set.
     const PACKED: [[u8; 16]; 16] = {
@@ -339,6 +350,14 @@ mod v3 {
         #[inline(always)]
         fn mul_add(self, a: f64, b: f64, c: f64) -> f64 {
             a.mul_add(b, c)
+        }
+
+        #[inline(always)]
+        fn prefetch<T>(self, rows: &[T], row: usize) {
+            let row = rows.as_ptr().wrapping_add(row).cast::<i8>();
+            for line in 0..size_of::<T>().div_ceil(CACHE_LINE) {
+                self.sse._mm_prefetch::<_MM_HINT_T0>(row.wrapping_add(line * CACHE_LINE));
+            }
         }
 
         #[inline(always)]

@@ -48,6 +48,11 @@ impl<A: FourLanes> FourLanes for Plane<A> {
         Plane(self.0.eight())
     }
 
+    #[inline(always)]
+    fn prefetch<T>(self, rows: &[T], row: usize) {
+        self.0.prefetch(rows, row);
+    }
+
     pass_on! {
         mul_add(a: f64, b: f64, c: f64) -> f64;
         pack(values: [u32; 4], bits: usize) -> [u32; 4];

@@ -13,6 +13,9 @@ pub(super) struct BondSum<const D: usize> {
     pub traction: Lanes4,
 }
 
+/// Bonds between what is summed and what is asked for: some hundred cycles, which is what a row takes to arrive.
+const AHEAD: usize = 32;
+
 impl<const D: usize> BondSum<D> {
     const ZERO: Self = Self { columns: [Lanes4::ZERO; D], traction: Lanes4::ZERO };
 
@@ -20,12 +23,18 @@ impl<const D: usize> BondSum<D> {
     #[inline(always)]
     pub fn over<A: FourLanes>(a: A, bonds: &Bonds, stresses: &[CorrectedStress], i: usize) -> Self {
         let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+        let first = row.start;
         let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
         let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
         let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
         // By number: zipped iterators would be called, off the instruction path.
+        let ahead = &bonds.neighbors[(first + AHEAD).min(bonds.neighbors.len())..];
         for n in 0..pairs.len() {
             let (j, weight) = (pairs[n], weights[n]);
+            if 2 * n + 1 < ahead.len() {
+                a.prefetch(stresses, ahead[2 * n] as usize);
+                a.prefetch(stresses, ahead[2 * n + 1] as usize);
+            }
             even.add(a, &stresses[j[0] as usize], weight[0]);
             odd.add(a, &stresses[j[1] as usize], weight[1]);
         }

@@ -4,12 +4,12 @@
 //! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements keep the digits of
 //! small strains). In plane strain the third row and column are those of the identity.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::bonds::Bonds;
 use super::cracks::{EdgeRows, Mark};
-use super::frame::AffineFrame;
-use super::gather::{CorrectStress, Gather};
+use super::frame::{AffineFrame, CompleteStress};
+use super::gather::{AddIdentity, CorrectStress, Gather, Written};
 use super::hessian::HessianBlock;
 use super::rows::PackedParticle;
 use crate::linalg::Sym3;
@@ -74,6 +74,7 @@ impl DeformationPass<'_> {
         let (n, first) = (rows.deformation.len(), block.first);
         let mut stretch = [DVec3::ZERO; BLOCK];
         let (bonds, sites) = (self.bonds, self.sites);
+        let DeformationRows { stresses, self_force, edges, mut hessian } = own;
         let gather = Gather {
             bonds,
             sites,
@@ -83,13 +84,11 @@ impl DeformationPass<'_> {
             residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut block.volume,
+            written: Written { deformation: rows.deformation, stress: rows.stress, stresses, self_force },
         };
         run_hot_in(self.plane, gather);
-        let DeformationRows { stresses, self_force, edges, mut hessian } = own;
         hessian.after_fit(bonds, sites, first, &mut block.gradient[..n]);
-        for (f, h) in rows.deformation.iter_mut().zip(&block.gradient) {
-            *f = DMat3::IDENTITY + *h;
-        }
+        run_hot(AddIdentity { gradient: &block.gradient[..n], deformation: rows.deformation });
         let inverse_moment = &bonds.inverse_moment[first..first + n];
         let shares = bonds.carried.get(first..first + n);
         let carried = |k: usize| match shares {
@@ -104,11 +103,8 @@ impl DeformationPass<'_> {
         });
         hessian.take_stiffness(&constitutive.folded(&mut rows, block, stresses));
         self.add_terms(constitutive, constitutive.folded(&mut rows, block, stresses), edges, &mut sum);
-        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
-            self.frame.complete(stress, &sites[first + k]);
-            let first_moment = bonds.first_moment[first + k];
-            *self_force = stress.times(first_moment, stretch[k] - self.frame.gradient * first_moment);
-        }
+        let frame = self.frame;
+        run_hot(CompleteStress { frame, bonds, sites, first, stretch: &stretch[..n], stresses, self_force });
         sum.close(&rows, block);
         sum
     }

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
+use super::bonds::Bonds;
 use super::rows::PackedParticle;
-use crate::parallel::Lanes4;
+use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
 
@@ -42,23 +43,89 @@ impl AffineFrame {
     pub fn rest(&self, site: &PackedParticle) -> DVec3 {
         site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
     }
-}
 
-impl AffineFrame {
+    /// [`AffineFrame::rest`] in a hot loop, with the same bits: what a particle shows its neighbours must cancel with what it takes of itself.
+    #[inline(always)]
+    pub fn rest_in<A: FourLanes>(&self, a: A, site: &PackedParticle) -> Lanes4 {
+        let [x, y, z] = self.columns();
+        let [along_x, along_y, along_z, _] = site.reference.0;
+        let of_two = a.plus(a.scale(along_x, x), a.scale(along_y, y));
+        let affine = a.plus(of_two, a.scale(along_z, z));
+        a.minus(a.minus(site.displacement, Lanes4::new(self.displacement, 0.0)), affine)
+    }
+
     /// Takes the stress of a particle into the frame, and completes it by its affine traction.
     #[inline(always)]
-    pub fn complete(&self, stress: &mut CorrectedStress, site: &PackedParticle) {
+    fn complete<A: FourLanes>(&self, a: A, stress: &mut CorrectedStress, site: &PackedParticle) {
         let stiffness = stress.stiffness();
-        let Self { gradient, .. } = self;
-        for (column, add) in
-            stress.columns.iter_mut().zip([gradient.x_axis, gradient.y_axis, gradient.z_axis])
-        {
-            column.0[0] += stiffness * add.x;
-            column.0[1] += stiffness * add.y;
-            column.0[2] += stiffness * add.z;
+        let columns = self.columns();
+        let mut traction = Lanes4::ZERO;
+        for axis in 0..3 {
+            stress.columns[axis] = a.scale_add(stiffness, columns[axis], stress.columns[axis]);
+            traction = a.scale_add(site.reference.0[axis], stress.columns[axis], traction);
         }
-        stress.traction =
-            Lanes4::new(stress.times(site.reference.xyz(), self.rest(site)), site.reference.0[3]);
+        traction = a.scale_add(stiffness, self.rest_in(a, site), traction);
+        stress.traction = Lanes4([traction.0[0], traction.0[1], traction.0[2], site.reference.0[3]]);
+    }
+
+    /// The columns of H.
+    #[inline(always)]
+    fn columns(&self) -> [Lanes4; 3] {
+        let DMat3 { x_axis, y_axis, z_axis } = self.gradient;
+        [Lanes4::new(x_axis, 0.0), Lanes4::new(y_axis, 0.0), Lanes4::new(z_axis, 0.0)]
+    }
+}
+
+/// Completes the stresses of a block, and makes the part of the force that knows no stress but a particle's own.
+pub(in crate::formulations) struct CompleteStress<'a> {
+    pub frame: &'a AffineFrame,
+    pub bonds: &'a Bonds,
+    pub sites: &'a [PackedParticle],
+    /// First row of the block in the phase.
+    pub first: usize,
+    /// `sum_j V_j w_ij u_ij`.
+    pub stretch: &'a [DVec3],
+    pub stresses: &'a mut [CorrectedStress],
+    /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`.
+    pub self_force: &'a mut [DVec3],
+}
+
+impl HotLoop for CompleteStress<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        let Self { frame, bonds, sites, first, stretch, stresses, self_force } = self;
+        let columns = frame.columns();
+        let sites = &sites[first..first + stresses.len()];
+        let first_moments = &bonds.first_moment[first..first + stresses.len()];
+        for k in 0..stresses.len() {
+            let stress = &mut stresses[k];
+            frame.complete(a, stress, &sites[k]);
+            let moment = first_moments[k].to_array();
+            let (mut rest, mut force) = (Lanes4::new(stretch[k], 0.0), Lanes4::ZERO);
+            for axis in 0..3 {
+                rest = a.scale_add(-moment[axis], columns[axis], rest);
+                force = a.scale_add(moment[axis], stress.columns[axis], force);
+            }
+            self_force[k] = a.scale_add(stress.stiffness(), rest, force).xyz();
+        }
+    }
+}
+
+/// The stress of a ghost, to be completed.
+struct CompleteGhost<'a> {
+    frame: &'a AffineFrame,
+    stress: &'a mut CorrectedStress,
+    site: &'a PackedParticle,
+}
+
+impl HotLoop for CompleteGhost<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, a: A) {
+        self.frame.complete(a, self.stress, self.site);
     }
 }
 
@@ -92,7 +159,7 @@ pub(in crate::formulations) fn fill_ghosts(
             *column = Lanes4::new(column.xyz() - own.stiffness() * moved, column.0[3]);
         }
         let mut stress = plain.image(ghost.map);
-        frame.complete(&mut stress, &sites[ghost.row]);
+        run_hot(CompleteGhost { frame, stress: &mut stress, site: &sites[ghost.row] });
         stress.add_traction(-pull(ghost.row));
         stress
     });

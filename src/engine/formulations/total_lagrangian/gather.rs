@@ -24,13 +24,37 @@ pub(in crate::formulations) struct Gather<'a> {
     /// `sum_j V_j w_ij u_ij`.
     pub stretch: &'a mut [DVec3; BLOCK],
     pub volume: &'a mut [f64; BLOCK],
+    /// What is going to be written once the gradients are there.
+    pub written: Written<'a>,
+}
+
+/// Rows of the block that are written behind the sums; empty where that is not known. The sums leave time to fetch them: written at once, they would be waited for.
+#[derive(Clone, Copy, Default)]
+pub(in crate::formulations) struct Written<'a> {
+    pub deformation: &'a [DMat3],
+    pub stress: &'a [DMat3],
+    pub stresses: &'a [CorrectedStress],
+    pub self_force: &'a [DVec3],
+}
+
+impl Written<'_> {
+    #[inline(always)]
+    fn prefetch<A: FourLanes>(&self, a: A, k: usize) {
+        if k < self.stresses.len() {
+            a.prefetch(self.deformation, k);
+            a.prefetch(self.stress, k);
+            a.prefetch(self.stresses, k);
+            a.prefetch(self.self_force, k);
+        }
+    }
 }
 
 impl PlaneOrSpace for Gather<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, sites, first, count, gradient, residual, stretch, volume } = self;
+        let Self { bonds, sites, first, count, gradient, residual, stretch, volume, written } = self;
         for k in 0..count {
+            written.prefetch(a, k);
             let i = first + k;
             let site = sites[i];
             let DisplacementMoment { spread, stretched, square } =
@@ -67,6 +91,7 @@ pub(in crate::formulations) fn fit_gradients(
             residual: &mut residual,
             stretch: &mut stretch,
             volume: &mut volume,
+            written: Written::default(),
         };
         run_hot_in(plane, gather);
         gradient.copy_from_slice(&fitted[..gradient.len()]);
@@ -90,6 +115,26 @@ impl HotLoop for CorrectStress<'_> {
             let (x, y, z) = (p.x_axis, p.y_axis, p.z_axis);
             let columns = [Lanes4::new(x, 0.0), Lanes4::new(y, 0.0), Lanes4::new(z, 0.0)];
             out.columns = fit::<A, 3>(a, &columns, inverse);
+        }
+    }
+}
+
+/// Makes F = I + H of a block.
+pub(in crate::formulations) struct AddIdentity<'a> {
+    pub gradient: &'a [DMat3],
+    pub deformation: &'a mut [DMat3],
+}
+
+impl HotLoop for AddIdentity<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<A: FourLanes>(self, _: A) {
+        let Self { gradient, deformation } = self;
+        let n = gradient.len();
+        let deformation = &mut deformation[..n];
+        for k in 0..n {
+            deformation[k] = DMat3::IDENTITY + gradient[k];
         }
     }
 }

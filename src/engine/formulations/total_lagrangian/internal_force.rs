@@ -20,7 +20,7 @@ use super::cracks::Cracks;
 use super::frame::{AffineFrame, bodies_of, frame_of};
 use super::phase::PackedRows;
 use super::rows::PackedParticle;
-use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows_of};
+use crate::parallel::{FourLanes, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows_of};
 use crate::schedule::{Step, StepError};
 use crate::solids::CorrectedStress;
 use crate::symmetry::Ghosts;
@@ -105,7 +105,7 @@ impl PlaneOrSpace for InternalForceRows<'_> {
             if frames[frame].end <= i {
                 frame = frame_of(frames, i);
             }
-            let rest = Lanes4::new(frames[frame].rest(&site), 0.0);
+            let rest = frames[frame].rest_in(a, &site);
             let mut pull = a.scale_add(-sum.columns[0].0[3], rest, sum.traction);
             for axis in 0..D {
                 pull = a.scale_add(-site.reference.0[axis], sum.columns[axis], pull);

@@ -21,11 +21,12 @@ use glam::{DMat3, DVec3};
 
 use super::phase::UpdatedRows;
 use crate::formulations::total_lagrangian::{
-    AffineFrame, BodyKernel, Bonds, Gather, HessianBlock, PackedParticle, fill_ghosts,
+    AffineFrame, BodyKernel, Bonds, CompleteStress, Gather, HessianBlock, PackedParticle, Written,
+    fill_ghosts,
 };
 use crate::linalg::Sym3;
 use crate::neighbors::bounds;
-use crate::parallel::{BLOCK, run_hot_in};
+use crate::parallel::{BLOCK, run_hot, run_hot_in};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};
 use crate::symmetry::Ghosts;
 use crate::world::World;
@@ -144,6 +145,7 @@ impl ControlPass<'_> {
             residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut block.volume,
+            written: Written { stresses, self_force, ..Written::default() },
         };
         run_hot_in(*plane, gather);
         hessian.take_gradient(&block.gradient);
@@ -154,14 +156,10 @@ impl ControlPass<'_> {
         }
         stresses.fill(CorrectedStress::default());
         constitutive.fold(&mut constitutive.folded(rows, block, stresses), sum);
-        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
-            if !has_fit(k) {
-                *stress = CorrectedStress::default();
-            }
-            frame.complete(stress, &sites[first + k]);
-            let first_moment = bonds.first_moment[first + k];
-            *self_force = stress.times(first_moment, stretch[k] - frame.gradient * first_moment);
+        for k in (0..n).filter(|&k| !has_fit(k)) {
+            stresses[k] = CorrectedStress::default();
         }
+        run_hot(CompleteStress { frame, bonds, sites, first, stretch: &stretch[..n], stresses, self_force });
     }
 }
 

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use super::control::{ControlPass, ControlRows};
 use super::reference_fit::{FittedBlock, ReferenceFit};
 use crate::formulations::total_lagrangian::{
-    AffineFrame, Bonds, CorrectStress, HessianBlock, PackedParticle,
+    AffineFrame, Bonds, CompleteStress, CorrectStress, HessianBlock, PackedParticle, Written,
 };
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, run_hot, split_by_rows};
@@ -52,17 +52,18 @@ impl UpdatedGradientPass<'_> {
         let (n, first) = (rows.deformation.len(), block.first);
         let mut stretch = [DVec3::ZERO; BLOCK];
         let mut volume = [0.0; BLOCK];
+        let GradientRows { stresses, self_force, control, control_force, mut hessian } = own;
         let fitted = FittedBlock {
             gradient: &mut block.gradient,
             residual: &mut block.residual,
             stretch: &mut stretch,
             volume: &mut volume,
+            written: Written { deformation: rows.deformation, stress: rows.stress, stresses, self_force },
         };
         match self.fit {
             Some(fit) => fit.give(self.sites, first, n, fitted),
             None => fitted.sum(self.bonds, self.sites, self.plane, first, n),
         }
-        let GradientRows { stresses, self_force, control, control_force, mut hessian } = own;
         hessian.after_fit(self.bonds, self.sites, first, &mut block.gradient[..n]);
         let f_r = self.follow(&volume, &mut rows, block);
         let inverse_moment = &self.bonds.inverse_moment[first..first + n];
@@ -89,11 +90,8 @@ impl UpdatedGradientPass<'_> {
         if self.control.is_none() {
             constitutive.fold(&mut constitutive.folded(&mut rows, block, stresses), &mut sum);
         }
-        for (k, (stress, self_force)) in stresses.iter_mut().zip(self_force).enumerate() {
-            self.frame.complete(stress, &self.sites[first + k]);
-            let first_moment = self.bonds.first_moment[first + k];
-            *self_force = stress.times(first_moment, stretch[k] - self.frame.gradient * first_moment);
-        }
+        let (frame, bonds, sites) = (self.frame, self.bonds, self.sites);
+        run_hot(CompleteStress { frame, bonds, sites, first, stretch: &stretch[..n], stresses, self_force });
         sum.close(&rows, block);
         if let Some(pass) = &self.control {
             let own = ControlRows { stresses: control, self_force: control_force, hessian };

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::total_lagrangian::{Bonds, Gather, PackedParticle};
+use crate::formulations::total_lagrangian::{Bonds, Gather, PackedParticle, Written};
 use crate::parallel::{BLOCK, for_each_own_block, run_hot_in, share_rows_of};
 
 /// What the sums of the first pass give for all real rows of the phase.
@@ -24,13 +24,17 @@ pub(super) struct FittedBlock<'a> {
     pub residual: &'a mut [f64; BLOCK],
     pub stretch: &'a mut [DVec3; BLOCK],
     pub volume: &'a mut [f64; BLOCK],
+    pub written: Written<'a>,
 }
 
 impl FittedBlock<'_> {
     /// Sums over the bonds of the rows from `first` on, that many.
     pub fn sum(self, bonds: &Bonds, sites: &[PackedParticle], plane: bool, first: usize, count: usize) {
-        let Self { gradient, residual, stretch, volume } = self;
-        run_hot_in(plane, Gather { bonds, sites, first, count, gradient, residual, stretch, volume });
+        let Self { gradient, residual, stretch, volume, written } = self;
+        run_hot_in(
+            plane,
+            Gather { bonds, sites, first, count, gradient, residual, stretch, volume, written },
+        );
     }
 }
 
@@ -60,6 +64,7 @@ impl ReferenceFit {
                     residual: &mut error,
                     stretch: &mut sum,
                     volume: &mut volume,
+                    written: Written::default(),
                 };
                 block.sum(bonds, sites, plane, start + first, n);
                 gradient.copy_from_slice(&fitted[..n]);

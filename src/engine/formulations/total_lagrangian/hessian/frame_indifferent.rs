@@ -214,7 +214,7 @@ impl PlaneOrSpace for ResidualBlock<'_, '_> {
             let i = self.first + k;
             let site = &sites[i];
             let of_others = BondSum::<D>::over(a, bonds, slopes, i);
-            let rest = Lanes4::new(frame.rest(site), 0.0);
+            let rest = frame.rest_in(a, site);
             let mut sum = a.scale_add(-of_others.columns[0].0[3], rest, of_others.traction);
             for axis in 0..D {
                 sum = a.scale_add(-site.reference.0[axis], of_others.columns[axis], sum);
