@@ -14,6 +14,8 @@ mod closed;
 
 mod stabilized;
 
+mod driven;
+
 mod compression;
 
 mod filling;

@@ -2,6 +2,7 @@
 
 use super::closed::ClosedWatch;
 use super::compression::CompressionWatch;
+use super::driven;
 use super::filling::FillingWatch;
 use super::fit;
 use super::friction::FrictionOfParticle;
@@ -31,6 +32,9 @@ struct FlowWatch {
     lies: bool,
     /// The same of motion that stabilizers have taken.
     is_stabilized: bool,
+    /// Account of the diffusion of density, if there is one, and whether the user has been told what it takes of the work of walls.
+    diffusion: Option<String>,
+    is_driven: bool,
     closed: ClosedWatch,
     held_down: HeldDown,
     lost_volume: LostVolume,
@@ -50,13 +54,15 @@ struct FlowWatch {
 }
 
 /// Adds the system that looks.
-pub fn add(phases: Vec<PhaseId>, spacing: f64, sim: &mut SimBuilder<'_>) {
+pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &mut SimBuilder<'_>) {
     let watch = FlowWatch {
         intrusion: Intrusion::new(sim, spacing),
         passing: PassingWalls::new(sim),
         is_through: false,
         lies: false,
         is_stabilized: false,
+        diffusion,
+        is_driven: false,
         closed: ClosedWatch::default(),
         held_down: HeldDown::new(sim.gravity(), spacing),
         lost_volume: LostVolume::default(),
@@ -107,13 +113,15 @@ impl Run for FlowWatch {
         }
         if at_end {
             stabilized::look(&mut self.is_stabilized, &cloud, &mut self.scratch, step);
+            driven::look(&mut self.is_driven, self.diffusion.as_deref(), &cloud, step);
         }
         Ok(())
     }
 
     fn save(&self) -> Vec<u8> {
         let told = (&self.intrusion.told, &self.passing.told, &self.unevenness.told);
-        let bodies = (self.is_through, self.lies, self.is_stabilized, self.closed, &self.held_down.seen);
+        let at_end = (self.is_stabilized, self.is_driven);
+        let bodies = (self.is_through, self.lies, at_end, self.closed, &self.held_down.seen);
         postcard::to_stdvec(&(
             told,
             bodies,
@@ -129,7 +137,9 @@ impl Run for FlowWatch {
             return false;
         };
         self.lost_volume = lost;
-        (self.is_through, self.lies, self.is_stabilized, self.closed, self.held_down.seen) = bodies;
+        let at_end;
+        (self.is_through, self.lies, at_end, self.closed, self.held_down.seen) = bodies;
+        (self.is_stabilized, self.is_driven) = at_end;
         (self.intrusion.told, self.passing.told, self.unevenness.told) = told;
         (self.compression, self.filling) = (compression, filling);
         self.frames.resume(frames);
