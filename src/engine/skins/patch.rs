@@ -170,6 +170,8 @@ pub(crate) struct Patch {
     /// Of every vertex of the skin.
     last: Vec<Last>,
     now: Vec<Vertex>,
+    /// Whether all that carries them is there.
+    is_whole: bool,
     forces: Vec<DVec3>,
     couples: Vec<DMat3>,
     /// Whether there are couples on vertices in this step.
@@ -199,6 +201,7 @@ impl Patch {
             numbers: vec![NONE; vertices],
             last: vec![Last::UNKNOWN; vertices],
             now: Vec::with_capacity(vertices),
+            is_whole: false,
             forces: Vec::with_capacity(vertices),
             couples: Vec::with_capacity(vertices),
             has_couples: false,
@@ -302,6 +305,7 @@ impl Patch {
                 now[k] = Vertex { place, velocity, gradient, rate, mobility, is_there, scale };
             });
         });
+        self.is_whole = self.now.iter().all(|vertex| vertex.is_there);
         follow(view, &self.ends[..self.following.len()], &self.now, &mut self.following);
     }
 
@@ -349,6 +353,12 @@ impl Patch {
     pub fn corners(&self, facet: u32) -> [&Vertex; 3] {
         let [a, b, c] = self.skin.facets.corners[facet as usize];
         [self.vertex(a), self.vertex(b), self.vertex(c)]
+    }
+
+    /// Whether all that carries a facet is there.
+    #[inline]
+    pub fn is_there(&self, facet: u32) -> bool {
+        self.is_whole || self.corners(facet).iter().all(|corner| corner.is_there)
     }
 
     /// Where the vertices of a facet are, m.

@@ -73,8 +73,12 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         self.histories.reserve(count);
     }
 
-    /// Finds out which candidates, ascending, touch. Returns what `test` adds up.
-    pub fn find(&mut self, candidates: &[PairKey], test: impl Fn(PairKey, &mut E) -> Option<T> + Sync) -> E {
+    /// Finds out which candidates, ascending, touch. Returns what `test` adds up; it keeps an `S` from one candidate of a block to the next.
+    pub fn find<S: Default>(
+        &mut self,
+        candidates: &[PairKey],
+        test: impl Fn(PairKey, &mut E, &mut S) -> Option<T> + Sync,
+    ) -> E {
         if self.slots.capacity() < candidates.len() {
             self.reserve(2 * candidates.len());
         }
@@ -85,11 +89,11 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         let rows = (candidates, &mut slots[..], &mut numbers.within[..]);
         type Rows<'a, T> = (&'a [PairKey], &'a mut [(PairKey, T)], &'a mut [u32]);
         let all = for_each_block_in_tasks(BLOCKS_OF_TEST, rows, found, &|_, rows: Rows<'_, T>| {
-            let mut found = Found { count: 0, extra: E::default() };
+            let (mut found, mut kept) = (Found { count: 0, extra: E::default() }, S::default());
             let (candidates, slots, within) = rows;
             for (&key, number) in candidates.iter().zip(within) {
                 *number = NONE;
-                if let Some(met) = test(key, &mut found.extra) {
+                if let Some(met) = test(key, &mut found.extra, &mut kept) {
                     slots[found.count] = (key, met);
                     *number = found.count as u32;
                     found.count += 1;
@@ -195,7 +199,7 @@ mod tests {
     /// A step in which these pairs touch; returns which were remembered, and which have ended.
     fn step(contacts: &mut ActiveContacts<u32, u32, ()>, touching: &[PairKey]) -> (Vec<PairKey>, usize) {
         let candidates: Vec<PairKey> = (0..200).flat_map(|i| [(i, 0), (i, 2)]).collect();
-        contacts.find(&candidates, |key, ()| touching.contains(&key).then_some(key.0 + key.1));
+        contacts.find(&candidates, |key, (), (): &mut ()| touching.contains(&key).then_some(key.0 + key.1));
         assert!(contacts.met().iter().map(|met| met.0).eq(touching.iter().copied()));
         for (candidate, key) in (0..).zip(&candidates) {
             let number = contacts.numbers().of(candidate);
@@ -219,7 +223,7 @@ mod tests {
     /// The energies of contacts of these pairs; those of nodes below 100 hold nothing.
     fn stored(pairs: &[PairKey]) -> ContactEnergy {
         let mut contacts = ActiveContacts::<(), (), ()>::default();
-        contacts.find(pairs, |_, ()| Some(()));
+        contacts.find(pairs, |_, (), (): &mut ()| Some(()));
         contacts.respond(
             4_000,
             |(i, j), (), _, energies| {

@@ -136,7 +136,8 @@ impl ParticleContact {
             dt: step.clock.dt,
         };
         let Self { contacts, contact_nodes, search, .. } = self;
-        let least = contacts.find(search.pairs(), |key, least: &mut Least| pairs.touching(key, least));
+        let least =
+            contacts.find(search.pairs(), |key, least: &mut Least, (): &mut ()| pairs.touching(key, least));
         let moving = !pairs.interaction.is_elastic();
         contact_nodes[0].look(&pairs.first, contacts.numbers(), moving);
         contact_nodes[1].look(&pairs.second, contacts.numbers(), moving);

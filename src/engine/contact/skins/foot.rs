@@ -20,72 +20,153 @@ pub(super) struct Foot {
     pub distance: f64,
 }
 
-/// Centre of a facet, m, and how far it reaches from there, with something for round-off, m.
-pub(super) type Ball = (DVec3, f64);
+/// A facet in this step, with a ball around it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct FacetPlace {
+    center: DVec3,
+    /// How far it reaches from there, with something for round-off, m.
+    radius: f64,
+    /// Where its vertices are, m; segments have two, and the last one twice.
+    corners: [DVec3; 3],
+}
 
-/// Computes the balls around the facets of a patch; `balls` has one for every facet of the skin.
-pub(super) fn enclose(patch: &Patch, facets: &[u32], balls: &mut Vec<Ball>) {
+impl FacetPlace {
+    /// Where the point with these shares of its vertices is, m.
+    #[inline(always)]
+    pub fn point(&self, shares: [f64; 3]) -> DVec3 {
+        point(&self.corners, shares)
+    }
+}
+
+/// Computes where the facets of a patch are; `places` has one for every facet of the skin.
+pub(super) fn locate(patch: &Patch, facets: &[u32], places: &mut Vec<FacetPlace>) {
     let axes = patch.skin.facets.axes;
-    balls.resize(patch.skin.facets.corners.len(), (DVec3::ZERO, 0.0));
+    places.resize(patch.skin.facets.corners.len(), FacetPlace::default());
     for &facet in facets {
-        let corners = patch.places(facet);
-        let center = corners[..axes].iter().sum::<DVec3>() / axes as f64;
-        let squared = corners.iter().map(|corner| corner.distance_squared(center)).fold(0.0, f64::max);
-        let radius = squared.sqrt();
-        balls[facet as usize] = (center, radius * (1.0 + 1e-9));
+        let [a, b, c] = patch.places(facet);
+        let center = if axes == 2 { 0.5 * (a + b) } else { (a + b + c) / 3.0 };
+        let far = a.distance_squared(center).max(b.distance_squared(center)).max(c.distance_squared(center));
+        places[facet as usize] = FacetPlace { center, radius: far.sqrt() * (1.0 + 1e-9), corners: [a, b, c] };
     }
 }
 
 /// Facets of a patch among which a foot is looked for.
 #[derive(Clone, Copy)]
-pub(in crate::contact) struct NearFacets<'a> {
+pub(super) struct NearFacets<'a> {
     pub patch: &'a Patch,
-    /// Around all facets of the patch.
-    pub balls: &'a [Ball],
+    /// All facets of the patch.
+    pub places: &'a [FacetPlace],
     pub facets: &'a [u32],
-    /// Across periodic sides the image of a position that is nearest to a facet counts.
-    pub periodic: Periodic,
+    /// Across periodic sides the image of a position that is nearest to a facet counts, if there are any.
+    pub periodic: Option<Periodic>,
+}
+
+/// The facets in which points of one facet may have their feet, kept from one of its points to the next.
+pub(super) struct CloseFacets {
+    /// The facet of the points.
+    of: u32,
+    facets: [u32; ROOM],
+    /// How many there are; none if there is no room for them.
+    count: Option<usize>,
+}
+
+/// Room for facets that are close to one.
+const ROOM: usize = 16;
+
+impl Default for CloseFacets {
+    fn default() -> Self {
+        Self { of: u32::MAX, facets: [0; ROOM], count: None }
+    }
+}
+
+impl CloseFacets {
+    /// Those of `near` no farther than `farthest`, m, from that facet; all of them if there is no room.
+    #[inline(always)]
+    pub fn find<'a>(
+        &'a mut self,
+        (number, own): (u32, &FacetPlace),
+        near: &NearFacets<'a>,
+        farthest: f64,
+    ) -> &'a [u32] {
+        if self.of != number {
+            self.of = number;
+            let mut count = 0;
+            for &facet in near.facets {
+                let FacetPlace { center, radius, .. } = near.places[facet as usize];
+                let apart = center.distance_squared(near.image(own.center, center));
+                if apart <= (farthest + radius + own.radius).powi(2) {
+                    self.facets[count % ROOM] = facet;
+                    count += 1;
+                }
+            }
+            self.count = (count <= ROOM).then_some(count);
+        }
+        self.count.map_or(near.facets, |count| &self.facets[..count])
+    }
+}
+
+impl NearFacets<'_> {
+    /// The image of a position that is nearest to the centre of a facet, m.
+    #[inline(always)]
+    fn image(&self, x: DVec3, center: DVec3) -> DVec3 {
+        self.periodic.map_or(x, |periodic| center + periodic.minimal_image(x - center))
+    }
+
+    /// The facet with the point nearest to `x`, with the square of its distance, m2, and the shares of the vertices there, if that is less than `farthest`, m. Of facets that
+    /// are equally near it is the first one.
+    #[inline(always)]
+    fn nearest(&self, x: DVec3, farthest: f64) -> Option<(f64, u32, [f64; 3])> {
+        let Self { patch, places, facets, .. } = *self;
+        let axes = patch.skin.facets.axes;
+        let (mut begin, mut least) = (*facets.first()?, f64::INFINITY);
+        for &facet in facets {
+            let center = places[facet as usize].center;
+            let squared = center.distance_squared(self.image(x, center));
+            if squared < least {
+                (begin, least) = (facet, squared);
+            }
+        }
+        let mut nearest = (farthest * farthest, 0, [0.0; 3]);
+        let (mut reach, mut is_found) = (farthest, false);
+        // Begun where the centre is nearest, so that most of the others are passed over.
+        for &facet in [begin].iter().chain(facets) {
+            let FacetPlace { center, radius, corners } = &places[facet as usize];
+            let x = self.image(x, *center);
+            if center.distance_squared(x) > (reach + radius).powi(2) {
+                continue;
+            }
+            let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
+            let squared = point(corners, shares).distance_squared(x);
+            if squared < nearest.0 || (squared == nearest.0 && facet < nearest.1) {
+                (nearest, reach, is_found) = ((squared, facet, shares), squared.sqrt(), true);
+            }
+        }
+        is_found.then_some(nearest)
+    }
 }
 
 /// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls are farther than the nearest
 /// one so far are passed over.
-pub(in crate::contact) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
-    let NearFacets { patch, balls, facets, periodic } = *near;
-    let is_periodic = periodic.any();
-    let of_facet = |center: DVec3| if is_periodic { center + periodic.minimal_image(x - center) } else { x };
+pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
+    let NearFacets { patch, places, .. } = *near;
     let axes = patch.skin.facets.axes;
-    let mut nearest: Option<(f64, u32, [f64; 3])> = None;
-    let mut reach = farthest;
-    for &facet in facets {
-        let (center, radius) = balls[facet as usize];
-        let x = of_facet(center);
-        if center.distance_squared(x) > (reach + radius).powi(2) {
-            continue;
-        }
-        let corners = patch.places(facet);
-        let shares = if axes == 2 { on_segment(x, corners) } else { on_triangle(x, corners) };
-        let squared = point(&corners, shares).distance_squared(x);
-        if squared < nearest.map_or(farthest * farthest, |(squared, ..)| squared) {
-            nearest = Some((squared, facet, shares));
-            reach = squared.sqrt();
-        }
-    }
-    let (squared, facet, shares) = nearest?;
-    let x = of_facet(balls[facet as usize].0);
-    let corners = patch.places(facet);
+    let (squared, facet, shares) = near.nearest(x, farthest)?;
+    let FacetPlace { center, corners, .. } = &places[facet as usize];
+    let x = near.image(x, *center);
     let inner = shares[..axes].iter().filter(|share| **share > 0.0).count();
     if inner == axes {
-        let normal = directed_area(axes, &corners).normalize_or_zero();
+        let normal = directed_area(axes, corners).normalize_or_zero();
         let distance = (x - corners[0]).dot(normal);
         return Some(Foot { x, facet, shares, normal, distance });
     }
     // Outside if in front of the mean of the facets that meet there.
-    let arm = x - point(&corners, shares);
+    let arm = x - point(corners, shares);
     let sign = if arm.dot(mean_normal(patch, facet, shares)) < 0.0 { -1.0 } else { 1.0 };
     let distance = sign * squared.sqrt();
     Some(Foot { x, facet, shares, normal: arm.normalize_or_zero() * sign, distance })
 }
 
+#[inline(always)]
 fn point(corners: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
     shares[0] * corners[0] + shares[1] * corners[1] + shares[2] * corners[2]
 }
@@ -96,9 +177,7 @@ fn mean_normal(patch: &Patch, facet: u32, shares: [f64; 3]) -> DVec3 {
     let skin = &patch.skin;
     let axes = skin.facets.axes;
     let own = skin.corners_of(facet);
-    let on: [Option<u32>; 3] =
-        [0, 1, 2].map(|k| if k < axes && shares[k] > 0.0 { Some(own[k]) } else { None });
-    let mut ends = on.into_iter().flatten();
+    let mut ends = own.iter().zip(shares).filter(|(_, share)| *share > 0.0).map(|(&vertex, _)| vertex);
     let (Some(first), second) = (ends.next(), ends.next()) else { return DVec3::ZERO };
     let mut sum = DVec3::ZERO;
     for &other in skin.facets_at(first) {
@@ -123,14 +202,15 @@ fn angle_at(corners: &[DVec3; 3], k: usize) -> f64 {
 }
 
 /// Shares of the ends of a segment at the point nearest to `x`.
-fn on_segment(x: DVec3, [a, b, _]: [DVec3; 3]) -> [f64; 3] {
+#[inline(always)]
+fn on_segment(x: DVec3, &[a, b, _]: &[DVec3; 3]) -> [f64; 3] {
     let along = b - a;
     let part = ((x - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
     [1.0 - part, part, 0.0]
 }
 
 /// Shares of the corners of a triangle at the point nearest to `x` (Ericson, Real-Time Collision Detection (2005), section 5.1.5).
-fn on_triangle(x: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+fn on_triangle(x: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
     let (ab, ac, ap, bp, cp) = (b - a, c - a, x - a, x - b, x - c);
     let (d1, d2, d3, d4, d5, d6) = (ab.dot(ap), ac.dot(ap), ab.dot(bp), ac.dot(bp), ab.dot(cp), ac.dot(cp));
     if d1 <= 0.0 && d2 <= 0.0 {

@@ -1,9 +1,11 @@
-//! Facets of two skins that may touch each other, searched again when the bodies may have moved by the skin of the search.
+//! Facets of two skins that may touch each other, searched again when the skins have moved by the margin of the search.
 //!
+//! Bounds of the speeds of the bodies say when the skins may have moved so far. Then their vertices are looked at, and where they have moved less, the facets are kept.
 //! The search covers regions of the skins, which are searched again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 
+use super::displaced::approach;
 use super::near_tool::{FASTER, MARGIN};
 use super::region::SkinRegion;
 use crate::contact::response::PairKey;
@@ -16,6 +18,8 @@ use crate::skins::{Skin, SkinView};
 const NEAR: f64 = 1.5;
 /// How far the corners of a facet are from its centre at most, over the spacing, in two and three dimensions, and by how much it may be stretched before a period is too short.
 const LONGEST: [f64; 2] = [0.25, 0.75];
+/// Share of the margin that must be left for the facets to be kept.
+const KEPT: f64 = 0.3;
 const STRETCHED: f64 = 2.0;
 
 /// The facets of two skins that are near each other.
@@ -26,8 +30,11 @@ pub(super) struct NearSkins {
     has_room: bool,
     periodic: Periodic,
     regions: [SkinRegion; 2],
-    /// Where the vertices are, m.
+    /// Where the vertices are, m, and where they were when the facets were found.
     places: [Vec<DVec3>; 2],
+    found_at: [Vec<DVec3>; 2],
+    /// Whether any facets were near each other then.
+    is_near: bool,
     /// Centres of the facets of the regions, m.
     centers: [Vec<DVec3>; 2],
     /// Facets that have others near them.
@@ -53,6 +60,8 @@ impl NearSkins {
             has_room: false,
             periodic,
             regions: skins.map(SkinRegion::new),
+            found_at: vertices.clone(),
+            is_near: false,
             places: vertices,
             centers: skins.map(|skin| Vec::with_capacity(skin.facets.corners.len())),
             near: Vec::new(),
@@ -88,13 +97,13 @@ impl NearSkins {
         }
     }
 
-    /// Finds the facets near each other, and the points on them.
+    /// Finds the facets near each other, and the points on them. Says whether there may be others than before.
     pub fn find(
         &mut self,
         skins: [&Skin; 2],
         views: &[SkinView<'_>; 2],
         points: usize,
-    ) -> Result<(), NeighborError> {
+    ) -> Result<bool, NeighborError> {
         let spacing = 0.5 * (skins[0].spacing + skins[1].spacing);
         let near = NEAR * spacing;
         let is_old = self.regions.iter().any(SkinRegion::is_old);
@@ -102,6 +111,9 @@ impl NearSkins {
             (0..2).for_each(|side| self.regions[side].take_all(skins[side]));
         }
         (0..2).for_each(|side| self.look(side, &views[side]));
+        if !is_old && self.is_near && self.keeps(near, MARGIN * spacing) {
+            return Ok(false);
+        }
         let mut largest = [0, 1].map(|side| self.find_centers(side, skins[side]));
         if !std::mem::replace(&mut self.has_room, true) {
             self.make_room(skins, points, largest[0] + largest[1] + near)?;
@@ -131,7 +143,26 @@ impl NearSkins {
         if gap <= near {
             self.pair(skins, largest[0] + largest[1] + near, points)?;
         }
-        Ok(())
+        self.is_near = gap <= near;
+        for side in 0..2 {
+            let (places, found_at) = (&self.places[side], &mut self.found_at[side]);
+            let vertices = self.regions[side].vertices.iter().map(|&vertex| vertex as usize);
+            vertices.for_each(|vertex| found_at[vertex] = places[vertex]);
+        }
+        Ok(true)
+    }
+
+    /// Keeps the facets within `near`, m, if the vertices of the regions have moved so little that no others come closer than `margin`, m, soon.
+    fn keeps(&mut self, near: f64, margin: f64) -> bool {
+        let Self { regions, found_at, places, .. } = self;
+        let of_side = |side: usize| (&regions[side].vertices[..], &found_at[side][..], &places[side][..]);
+        let beyond = near + regions[0].left.min(regions[1].left);
+        let left = (near - approach([of_side(0), of_side(1)])).min(beyond) - margin;
+        let keeps = left > KEPT * (near - margin);
+        if keeps {
+            self.left = left;
+        }
+        keeps
     }
 
     /// Pairs the facets of the regions whose centres are no farther apart than `reach`, m.

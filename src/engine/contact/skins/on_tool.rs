@@ -244,7 +244,7 @@ impl SkinOnTool {
         touching.extend(
             numbers.filter(|(_, k)| pressed[*k as usize].spring.force > 0.0).map(|(vertex, _)| (*vertex, 0)),
         );
-        contacts.find(touching, |(vertex, _), ()| Some(patch.number(vertex)));
+        contacts.find(touching, |(vertex, _), (), (): &mut ()| Some(patch.number(vertex)));
         let place = |vertex: &Vertex| sides.near(vertex.place, tool);
         let velocity = |vertex: &Vertex| vertex.velocity - tool.velocity_at(place(vertex));
         let respond = |_: PairKey, number: &u32, before: &History, energies: &mut ContactEnergy| {

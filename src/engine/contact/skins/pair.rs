@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::foot::{Ball, Foot, enclose};
+use super::foot::{CloseFacets, FacetPlace, Foot, locate};
 use super::near_skins::NearSkins;
 use super::side::{FacetPoint, PointPush, PointTouch, SkinSide, shift_foot};
 use crate::contact::active::{ActiveContacts, Least};
@@ -41,8 +41,8 @@ pub(in crate::contact) struct SkinPair {
     rule: QuadratureRule,
     near: NearSkins,
     periodic: Periodic,
-    /// Around the facets of each side that are near the other.
-    balls: [Vec<Ball>; 2],
+    /// Where the facets of each side are that are near the other.
+    places: [Vec<FacetPlace>; 2],
     /// The points of each side against the facets of the other.
     pub passes: [ActiveContacts<PointTouch, PointPush, Least>; 2],
 }
@@ -56,10 +56,10 @@ impl SkinPair {
             contacts.reserve(rule.len() * skin.facets.corners.len());
             contacts
         });
-        let balls = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
+        let places = skins.each_ref().map(|skin| Vec::with_capacity(skin.facets.corners.len()));
         let near = NearSkins::new(skins.each_ref().map(|skin| &**skin), periodic);
         let patches = skins.map(Patch::new);
-        Self { interaction, patches, keeps_reference: false, rule, near, periodic, balls, passes }
+        Self { interaction, patches, keeps_reference: false, rule, near, periodic, places, passes }
     }
 
     /// Least period of the domain with which the contact works, m.
@@ -98,16 +98,17 @@ impl SkinPair {
     ) -> Result<(ContactEnergy, f64), NeighborError> {
         if self.near.is_old(speed, dt) {
             let [first, second] = self.patches.each_ref().map(|patch| &*patch.skin);
-            self.near.find([first, second], &views, self.rule.len())?;
-            for (patch, facets) in self.patches.iter_mut().zip(&self.near.facets) {
-                patch.select(facets.iter().copied());
+            if self.near.find([first, second], &views, self.rule.len())? {
+                for (patch, facets) in self.patches.iter_mut().zip(&self.near.facets) {
+                    patch.select(facets.iter().copied());
+                }
             }
         }
         let Interaction { damping_ratio, .. } = self.interaction;
         let wanted = Wanted { mobility: damping_ratio > 0.0, gradients: !self.interaction.is_elastic() };
         self.patches.iter_mut().zip(&views).for_each(|(patch, view)| patch.update(view, dt, wanted));
-        for (side, balls) in self.balls.iter_mut().enumerate() {
-            enclose(&self.patches[side], &self.near.facets[side], balls);
+        for (side, places) in self.places.iter_mut().enumerate() {
+            locate(&self.patches[side], &self.near.facets[side], places);
         }
         let mut energies = ContactEnergy::default();
         let (mut stiffest, mut gap) = (Largest::default(), Least::default());
@@ -135,13 +136,18 @@ impl SkinPair {
     /// What the points of one side do, and the least gap of points that do not touch, m.
     fn evaluate(&mut self, side: usize, dt: f64) -> (ContactEnergy, Least) {
         let length = self.length();
-        let Self { interaction, patches, rule, near, periodic, balls, passes, .. } = self;
-        let (own, other, balls) = (&patches[side], &patches[1 - side], &balls[1 - side][..]);
-        let at = SkinSide { interaction, own, other, balls, rule, periodic: *periodic, length, dt };
+        let periodic = self.periodic.any().then_some(self.periodic);
+        let Self { interaction, patches, rule, near, places, passes, .. } = self;
+        let (own, other) = (&patches[side], &patches[1 - side]);
+        let places = [&places[side][..], &places[1 - side][..]];
+        let at = SkinSide { interaction, own, other, places, rule, periodic, length, dt };
         let facets_near = |point: u32| near.facets_near(side, at.point(point).facet);
-        let gap = passes[side].find(&near.candidates[side], |(point, _), gap: &mut Least| {
-            at.touching(point, facets_near(point), gap)
-        });
+        let gap = passes[side].find(
+            &near.candidates[side],
+            |(point, _), gap: &mut Least, close: &mut CloseFacets| {
+                at.touching(point, facets_near(point), gap, close)
+            },
+        );
         let energies = passes[side].respond(
             at.rule.len() * at.own.skin.facets.corners.len(),
             |(point, _), touch, before, energies| at.respond(point, touch, before, energies),

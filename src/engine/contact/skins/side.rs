@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::foot::{Ball, Foot, NearFacets, foot, slopes};
+use super::foot::{CloseFacets, FacetPlace, Foot, NearFacets, foot, slopes};
 use crate::contact::active::Least;
 use crate::contact::laws::Touch;
 use crate::contact::response::{ContactEnergy, ContactState, History, Interaction, Losses};
@@ -69,10 +69,11 @@ pub(super) struct SkinSide<'a> {
     pub interaction: &'a Interaction,
     pub own: &'a Patch,
     pub other: &'a Patch,
-    /// Around the facets of the other one.
-    pub balls: &'a [Ball],
+    /// Where the facets of both are.
+    pub places: [&'a [FacetPlace]; 2],
     pub rule: &'a QuadratureRule,
-    pub periodic: Periodic,
+    /// Of the domain, if it has periodic sides.
+    pub periodic: Option<Periodic>,
     /// Length for which the law holds, m.
     pub length: f64,
     /// Length of the step, s.
@@ -119,7 +120,12 @@ impl SkinSide<'_> {
         energies.losses.add(&losses);
         energies.stored += response.spring.energy + response.history.energy();
         energies.ahead += 0.5 * dt * response.force.dot(velocity);
-        let across = response.force - response.force.dot(foot.normal) * foot.normal;
+        // Without friction nothing acts across the normal but round-off, which would make couples.
+        let across = if interaction.friction == 0.0 {
+            DVec3::ZERO
+        } else {
+            response.force - response.force.dot(foot.normal) * foot.normal
+        };
         let stiffness = response.spring.stiffness / area;
         let energy = response.spring.energy / weight;
         let heat = losses.friction;
@@ -129,7 +135,7 @@ impl SkinSide<'_> {
     /// Takes in the energy of a contact that has ended; `facets` are those of the other skin near the point.
     pub fn end(&self, point: u32, facets: &[u32], history: &History, energies: &mut ContactEnergy) {
         if !history.is_elastic() {
-            let nearest = self.nearest(point, facets);
+            let nearest = self.nearest(point, facets, &mut CloseFacets::default());
             let velocity = nearest.map_or(DVec3::ZERO, |touch| self.motion(point, &touch).velocity);
             energies.losses.add_work(1.0, history, velocity, self.dt);
         }
@@ -148,22 +154,28 @@ impl SkinSide<'_> {
     }
 
     /// The point of the other skin nearest to a point of this one, on either side.
-    fn nearest(&self, point: u32, facets: &[u32]) -> Option<PointTouch> {
+    #[inline(always)]
+    fn nearest(&self, point: u32, facets: &[u32], close: &mut CloseFacets) -> Option<PointTouch> {
         let FacetPoint { facet, shares } = self.point(point);
-        let corners = self.own.corners(facet);
-        let x: DVec3 = (0..3).map(|k| shares[k] * corners[k].place).sum();
-        let near = NearFacets { patch: self.other, balls: self.balls, facets, periodic: self.periodic };
-        let foot = foot(&near, x, DEPTH * self.length)?;
+        let (own, farthest) = (&self.places[0][facet as usize], DEPTH * self.length);
+        let near = NearFacets { patch: self.other, places: self.places[1], facets, periodic: self.periodic };
+        let facets = close.find((facet, own), &near, farthest);
+        let foot = foot(&NearFacets { facets, ..near }, own.point(shares), farthest)?;
         Some(PointTouch { foot, weight: 0.0 })
     }
 
     /// A point that touches; else it takes in how far it is from that.
     #[inline(always)]
-    pub fn touching(&self, point: u32, facets: &[u32], gap: &mut Least) -> Option<PointTouch> {
+    pub fn touching(
+        &self,
+        point: u32,
+        facets: &[u32],
+        gap: &mut Least,
+        close: &mut CloseFacets,
+    ) -> Option<PointTouch> {
         let FacetPoint { facet, shares } = self.point(point);
-        let PointTouch { foot, .. } = self.nearest(point, facets)?;
-        let there = self.other.corners(foot.facet);
-        if !self.own.corners(facet).iter().chain(&there).all(|corner| corner.is_there) {
+        let PointTouch { foot, .. } = self.nearest(point, facets, close)?;
+        if !self.own.is_there(facet) || !self.other.is_there(foot.facet) {
             return None;
         }
         if foot.distance >= 0.0 {
@@ -192,6 +204,12 @@ impl SkinSide<'_> {
         let FacetPoint { facet, shares } = self.point(point);
         let (own, other) = (self.own.corners(facet), self.other.corners(touch.foot.facet));
         let below = touch.foot.shares;
+        if self.interaction.is_elastic() {
+            // Neither the velocity across the normal nor the mobility counts.
+            let at_foot: DVec3 = (0..3).map(|k| below[k] * other[k].velocity).sum();
+            let velocity = self.velocity(point) - at_foot;
+            return PointMotion { velocity, arm: DVec3::ZERO, mobility: DVec3::ZERO };
+        }
         let gradient = (0..3).fold(DMat3::ZERO, |sum, k| sum + other[k].gradient * below[k]);
         let arm = gradient.inverse() * (touch.foot.x - self.place(&touch.foot));
         // The normal force acts at the foot, and the stretch between foot and point does not move it.

@@ -73,9 +73,10 @@ impl SurfaceContact {
                 contacts.reserve(nodes.len());
             }
             let on = OnSurface { interaction, sides, nodes, tool, dt, together: &[] };
-            let near = contacts.find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes| {
-                on.touching(node, near_nodes)
-            });
+            let near = contacts
+                .find(nearby.candidates(), |(node, _), near_nodes: &mut NearNodes, (): &mut ()| {
+                    on.touching(node, near_nodes)
+                });
             (near, on.act_together(contacts.met()))
         })?;
         if let Some(Together { on_node, on_tool }) = &self.together {
