@@ -32,6 +32,7 @@ pub fn standard_plugins() -> Registry {
         .with(tensile_control::register)
         .with(xsph::register)
         .with(failure::register)
+        .with(remove_fragments::register)
         .with(heat_conduction::register)
         .with(rerun_recorder::register)
 }

@@ -32,6 +32,15 @@ const PLUGINS: &[(&str, Of, [&str; 2])] = &[
         ["criterion: MaximumPrincipalStrain(limit: 0.02)", "criterion: MaximumPrincipalStress(limit: 1e4)"],
     ),
     (
+        "failure",
+        Of::Solids,
+        [
+            "criterion: MaximumPrincipalStrain(limit: 0.02), then: RemovedAtSurface",
+            "criterion: MaximumPrincipalStrain(limit: 0.03), then: RemovedAtSurface",
+        ],
+    ),
+    ("remove_fragments", Of::Solids, ["", "least_volume: 0.3, particles: 3"]),
+    (
         "heat_conduction",
         Of::Solids,
         ["conductivity: 10.0, specific_heat: 500.0", "conductivity: 1.0, specific_heat: 900.0"],

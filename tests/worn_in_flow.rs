@@ -50,6 +50,47 @@ fn a_fragment_that_bears_no_pressure_takes_no_energy_from_walls() {
     assert!(given.abs() < 0.1 * work, "{given} J of {work}");
 }
 
+#[test]
+fn what_a_fluid_crushes_ends_the_run_or_is_taken_out() {
+    let chip = |name: &str, shape: &str, formulation: &str, plugin: &str| {
+        format!(
+            r#"(name: "{name}", material: "jelly", shape: {shape}, spacing: 1e-3, formulation: {formulation}, plugins: [hourglass_control(){plugin}])"#
+        )
+    };
+    let square = "Box(min: (0.009, 0.009), max: (0.011, 0.011))";
+    let mut alone = channel(1.5e4, &chip("chip", square, "TotalLagrangian()", ""), square);
+    let error = alone.run(|_| true).expect_err("a law that bears no such pressure").to_string();
+    assert!(error.contains("det F <= 0") && error.contains("`remove_fragments()`"), "{error}");
+    // Two of four particles, one of them turned, and one of 48.
+    let turned = |min: &str, max: &str, degrees: f64, about: &str| {
+        format!("Rotate(shape: Box(min: {min}, max: {max}), angle_degrees: {degrees:?}, about: {about})")
+    };
+    let small = [
+        "Box(min: (0.004, 0.006), max: (0.006, 0.008))".to_owned(),
+        turned("(0.013, 0.011)", "(0.015, 0.013)", 30.0, "(0.014, 0.012)"),
+    ];
+    let large = turned("(0.006, 0.006)", "(0.014, 0.012)", 20.0, "(0.01, 0.009)");
+    for formulation in
+        ["TotalLagrangian()", "UpdatedLagrangian()", "UpdatedLagrangian(update: Every(3))", "Eulerian()"]
+    {
+        let two = ["a", "b"].map(|name| name.to_owned());
+        let two = two
+            .iter()
+            .zip(&small)
+            .map(|(name, shape)| chip(name, shape, formulation, ", remove_fragments(particles: 1)"));
+        let (two, shape) = (two.collect::<Vec<_>>().join(", "), format!("Union([{}])", small.join(", ")));
+        let one = chip("a", &large, formulation, ", remove_fragments()");
+        // The fluid fills their place at a fifth of its speed of sound, which costs some per cent of its energy.
+        for (bodies, shape, particles, error) in [(two, shape, 8, 0.01), (one, large.clone(), 48, 0.05)] {
+            let mut sim = channel(1.5e4, &bodies, &shape);
+            sim.run(|_| true).unwrap_or_else(|error| panic!("{formulation}: {error}"));
+            assert_eq!(sim.summary().removed_of.values().sum::<usize>(), particles, "{formulation}");
+            let found = sim.ledger().relative_error();
+            assert!(found.abs() < error, "{formulation}, {particles} particles: {found}");
+        }
+    }
+}
+
 /// The warning of a channel under a pressure in which half of the uppermost layer of a slab on its floor is worn off at the start.
 fn worn(pressure: f64) -> Option<String> {
     let shape = "Box(min: (0, 0), max: (0.02, 0.008))";

@@ -22,10 +22,9 @@ const SURROUNDED: f64 = 0.05;
 pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: &[BodyId]) {
     let set = BodySet::new(bodies.iter().copied());
     sim.add_column_to::<Exposed>(&set);
-    let phases = sim.phases_of(&set);
     sim.add_system(
         System::new(Stage::PostStep, "exposure", Exposure { bodies: bodies.to_vec() })
-            .on_phases(phases)
+            .on_bodies(set)
             .by_body()
             .reads::<Position>()
             .reads::<Damage>()

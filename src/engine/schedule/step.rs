@@ -117,6 +117,17 @@ pub enum StepError {
     },
 }
 
+impl StepError {
+    /// The same with what is known about the cause, which starts with `: `.
+    #[must_use]
+    pub fn with_detail(mut self, text: &str) -> Self {
+        if let Self::Unstable { detail, .. } = &mut self {
+            text.clone_into(detail);
+        }
+        self
+    }
+}
+
 /// Warns of something that has grown: in the place of the warning that begins alike, if there is one.
 pub fn warn_anew(warnings: &mut Vec<String>, begin: &str, text: String) {
     match warnings.iter_mut().find(|warning| warning.starts_with(begin)) {

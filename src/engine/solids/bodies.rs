@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DMat3;
 
-use super::constitutive::{Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
+use super::constitutive::{CRUSHED, Constitutive, MAX_TERMS, SolidBlock, SolidColumns, SolidRows, SolidSum};
 use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
@@ -287,7 +287,7 @@ impl SolidBodies {
             body.book(sum, &self.terms, step.ledger);
             if sum.inverted > 0 && body.law.needs_positive_volume() {
                 let particle = sum.inverted - 1 - step.world.body(body.id).rows.start;
-                return Err(step.unstable("negative volume (det F <= 0)", body.id, particle));
+                return Err(step.unstable(CRUSHED[0], body.id, particle).with_detail(CRUSHED[1]));
             }
         }
         Ok(())

@@ -16,6 +16,13 @@ use crate::world::{
     PiolaStress,
 };
 
+/// What is said of a particle that has turned inside out, and what to do about it.
+pub(super) const CRUSHED: [&str; 2] = [
+    "negative volume (det F <= 0)",
+    ": its material cannot bear what presses or twists it there. Debris that a fluid or a tool crushes is taken out by \
+    `remove_fragments()` in the plugins of the body; a body that is to stay needs a stiffer material, a smaller load, or a finer spacing",
+];
+
 /// Largest number of folded terms on one body.
 pub(super) const MAX_TERMS: usize = 4;
 

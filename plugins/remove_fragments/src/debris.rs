@@ -1,0 +1,100 @@
+//! Which particles are debris.
+
+use meshless_engine::plugin::SimBuilder;
+use meshless_engine::removal::RemovalRule;
+use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
+use meshless_engine::solids::SolidPhase;
+use meshless_engine::world::{BodyId, BodySet, Column, DeformationGradient, Removed};
+
+use crate::IsDebris;
+
+/// Adds what marks and removes the debris of some bodies.
+pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, least_volume: f64, particles: usize) {
+    let set = BodySet::new(bodies.iter().copied());
+    sim.add_column_to::<IsDebris>(&set);
+    sim.add_removal_rule(Debris { bodies: bodies.clone() });
+    let marking = Marking { bodies, least_volume, pieces: Pieces { particles, found: Vec::new() } };
+    sim.add_system(
+        System::new(Stage::PostStep, "debris", marking)
+            .on_bodies(set)
+            .by_body()
+            .reads::<DeformationGradient>()
+            .reads::<Removed>()
+            .writes::<IsDebris>(),
+    );
+}
+
+/// Marks debris at the end of a step, with the lists of that step, so that a run that goes on from a checkpoint finds the same.
+struct Marking {
+    bodies: Vec<BodyId>,
+    least_volume: f64,
+    pieces: Pieces,
+}
+
+impl Run for Marking {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let Self { bodies, least_volume, pieces } = self;
+        for &body in bodies.iter().filter(|&&body| step.part.is_due(step.world, body)) {
+            let (view, rows) = step.world.body_view(body);
+            let Some(solid) = step.resources.solid(step.world.body(body).phase) else { continue };
+            let (deformation, removed) = (view.read::<DeformationGradient>()?, view.read::<Removed>()?);
+            let mut debris = view.write::<IsDebris>()?;
+            for row in rows {
+                let is_debris = removed[row] == Removed::NO
+                    && (deformation[row].0.determinant() < *least_volume || pieces.is_small(&*solid, row));
+                debris[row] = IsDebris(u32::from(is_debris));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Finds pieces of few particles.
+struct Pieces {
+    /// Pieces of fewer particles are small.
+    particles: usize,
+    /// What has been found of the piece of a particle; at most `particles` rows.
+    found: Vec<usize>,
+}
+
+impl Pieces {
+    /// Whether a particle belongs to a piece of fewer particles. One that has so many neighbours that it cannot ends the search at once, so that a whole body costs a look at its
+    /// rows.
+    fn is_small(&mut self, solid: &dyn SolidPhase, row: usize) -> bool {
+        let Self { particles, found } = self;
+        found.clear();
+        found.push(row);
+        let mut next = 0;
+        while next < found.len() && found.len() < *particles {
+            solid.neighbors(found[next], &mut |j, _| {
+                let source = solid.ghosts().source(j);
+                if found.len() < *particles && !found.contains(&source) {
+                    found.push(source);
+                }
+            });
+            next += 1;
+        }
+        found.len() < *particles
+    }
+}
+
+/// Names what has been marked.
+struct Debris {
+    bodies: Vec<BodyId>,
+}
+
+impl RemovalRule for Debris {
+    fn rows(&mut self, step: &Step<'_>, body: BodyId, out: &mut Vec<u32>) -> Result<(), StepError> {
+        if !self.bodies.contains(&body) {
+            return Ok(());
+        }
+        let (view, rows) = step.world.body_view(body);
+        let debris = view.read::<IsDebris>()?;
+        out.extend(rows.filter(|&row| debris[row].0 == 1).map(|row| row as u32));
+        Ok(())
+    }
+
+    fn access(&self) -> Vec<Access> {
+        vec![Access { column: IsDebris::NAME, mode: Mode::Reads }]
+    }
+}

@@ -1,0 +1,72 @@
+//! Takes debris of solids out of the run: particles that are crushed, and pieces too small to have an interior.
+//!
+//! What the law of a body cannot bear squeezes its particles to nothing, until they turn inside out and the run ends. What is left of a body that has failed may be single particles, whose
+//! deformation gradient is fitted to one or two neighbours and means nothing. Neither is a solid that the spacing resolves.
+
+mod debris;
+
+use meshless_engine::column;
+use meshless_engine::plugin::{BodyKind, Plugin, Registry, SetupError, SimBuilder};
+use meshless_engine::scene::Dimension;
+use meshless_engine::world::BodyId;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Registers the plugin.
+pub fn register(registry: &mut Registry) {
+    registry.plugin::<RemoveFragments>();
+}
+
+column! {
+    /// Whether a particle has been crushed, or belonged to a piece that is too small, at the end of the last step: 1 or 0.
+    pub struct IsDebris(u32) = "debris", "-", "1";
+}
+
+/// Takes crushed particles and small pieces of solids out of the run.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RemoveFragments {
+    /// Volume over that of the start below which a particle is crushed; zero: none is.
+    pub least_volume: f64,
+    /// Pieces of fewer particles are taken out; 1: none is. A piece is what hangs together by kernels. Default: 5 in the plane and 7 in space, a particle with its
+    /// nearest neighbours.
+    pub particles: Option<usize>,
+}
+
+impl Default for RemoveFragments {
+    fn default() -> Self {
+        Self { least_volume: 0.2, particles: None }
+    }
+}
+
+/// Largest number of particles of a piece that is looked for.
+const MOST: usize = 100;
+
+impl Plugin for RemoveFragments {
+    const NAME: &'static str = "remove_fragments";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        let volume = self.least_volume;
+        if !(0.0..=0.9).contains(&volume) {
+            return Err(SetupError::parameter(
+                "least_volume",
+                format!("`least_volume` must be from 0 to 0.9, found {volume}"),
+                "it is a volume over that of the start; what is squeezed to less is taken out",
+            ));
+        }
+        let of_dimension = if sim.dimension() == Dimension::Two { 5 } else { 7 };
+        let particles = self.particles.unwrap_or(of_dimension);
+        if !(1..=MOST).contains(&particles) {
+            return Err(SetupError::parameter(
+                "particles",
+                format!("`particles` must be from 1 to {MOST}, found {particles}"),
+                "pieces of fewer particles are taken out; 1 takes out crushed particles alone",
+            ));
+        }
+        let solid = |id: &BodyId| sim.body(*id).solid_law().is_ok();
+        let bodies: Vec<BodyId> = sim.scope_of(BodyKind::Solid)?.iter().filter(solid).collect();
+        debris::add(sim, bodies, volume, particles);
+        Ok(())
+    }
+}
