@@ -71,7 +71,8 @@ impl FailingLaw {
         if was_torn || self.then.is_torn(volume, &cofactor) {
             if !was_torn {
                 // What it held, and what its last stress does on the way here.
-                own.fracture[k].0 += own.energy[k].0 + 0.5 * own.mean[k].0 * (volume - own.volume[k].0);
+                let held = own.energy[k].0 + 0.5 * own.mean[k].0 * (volume - own.volume[k].0);
+                own.fracture[k].0 += rows.share[k] * held;
             }
             (own.energy[k].0, own.volume[k].0, own.mean[k].0) = (0.0, f64::INFINITY, 0.0);
             (rows.stress[k], rows.energy[k]) = (DMat3::ZERO, 0.0);
@@ -105,7 +106,8 @@ impl FailingLaw {
         if rows.dt > 0.0 {
             let change = *f - own.deformation[k].0;
             let work = 0.5 * double_dot(&(rows.stress_before[k] + rows.stress[k]), &change);
-            own.fracture[k].0 += work - (stored - own.energy[k].0) - rows.plastic_work[k];
+            let released = work - (stored - own.energy[k].0) - rows.plastic_work[k];
+            own.fracture[k].0 += rows.share[k] * released;
         }
         rows.energy[k] = stored;
     }
@@ -177,6 +179,7 @@ impl SolidLaw for FailingLaw {
         self.inner.stress(&mut StressRows {
             dt: rows.dt,
             deformation: &given[..n],
+            share: rows.share,
             stress_before: rows.stress_before,
             stress: rows.stress,
             energy: rows.energy,
@@ -197,7 +200,8 @@ impl SolidLaw for FailingLaw {
                 continue;
             }
             let stress = cauchy(&rows.stress[k], &given[k]);
-            if rows.dt > 0.0 {
+            // What carries nothing of its stress does not fail by it.
+            if rows.dt > 0.0 && rows.share[k] > 0.0 {
                 let seen = CriterionInput {
                     deformation: &given[k],
                     stress: &stress,

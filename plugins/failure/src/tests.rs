@@ -85,6 +85,7 @@ impl Specimen {
             law.stress(&mut StressRows {
                 dt,
                 deformation: &[f],
+                share: &[1.0],
                 stress_before: &[before],
                 stress: &mut stress,
                 energy: &mut energy,
@@ -246,6 +247,7 @@ fn a_law_that_does_not_fail_is_left_as_it_is() {
         bare.stress(&mut StressRows {
             dt: 1e-6,
             deformation: &[f],
+            share: &[1.0],
             stress_before: &[DMat3::ZERO],
             stress: &mut stress,
             energy: &mut energy,

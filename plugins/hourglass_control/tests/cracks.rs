@@ -60,6 +60,7 @@ impl SolidLaw for Crumbling {
         self.law.stress(&mut StressRows {
             dt: rows.dt,
             deformation: rows.deformation,
+            share: rows.share,
             stress_before: rows.stress_before,
             stress: rows.stress,
             energy: rows.energy,

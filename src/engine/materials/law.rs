@@ -118,6 +118,9 @@ pub struct StressRows<'a> {
     pub dt: f64,
     /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
+    /// Share of what a particle makes of its stress that it carries, 1 as a rule, other beside what is held. The caller takes the outputs by that share; energy that a
+    /// law books in columns of its own has to be multiplied with it.
+    pub share: &'a [f64],
     /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first. Empty for a law that does not ask for it by [`SolidLaw::reads_last_stress`].
     pub stress_before: &'a [DMat3],
     /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account, in this and in the other

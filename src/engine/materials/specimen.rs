@@ -66,6 +66,7 @@ impl Specimen {
         law.stress(&mut StressRows {
             dt,
             deformation: &[deformation],
+            share: &[1.0],
             stress_before: &[self.stress],
             stress: &mut stress,
             energy: &mut energy,

@@ -195,6 +195,8 @@ pub struct SolidBlock {
     /// Young's modulus as it is now, Pa.
     modulus: [f64; BLOCK],
     strength: [f64; BLOCK],
+    /// Share of what its stress makes that a particle carries.
+    share: [f64; BLOCK],
     /// Plastic work of the step per reference volume, J/m3.
     plastic_work: [f64; BLOCK],
     /// Stress at the end of the last step, Pa; after the law, the one that enters the force where there is damping.
@@ -212,6 +214,7 @@ thread_local! {
             energy: [0.0; BLOCK],
             modulus: [0.0; BLOCK],
             strength: [0.0; BLOCK],
+            share: [1.0; BLOCK],
             plastic_work: [0.0; BLOCK],
             stress: [DMat3::ZERO; BLOCK],
         })
@@ -219,8 +222,9 @@ thread_local! {
 }
 
 impl SolidBlock {
-    /// Leaves a share of what a particle holds and resists: all else would hold it against rotation.
-    fn carry(&mut self, k: usize, share: f64) {
+    /// Leaves the share of what a particle holds and resists that it carries: all else would hold it against rotation.
+    fn carry(&mut self, k: usize) {
+        let share = self.share[k];
         self.energy[k] *= share;
         self.modulus[k] *= share;
         self.plastic_work[k] *= share;
@@ -271,9 +275,15 @@ impl Constitutive<'_> {
         block.stress[..before].copy_from_slice(&rows.stress[..before]);
         block.strength[..n].fill(f64::INFINITY);
         block.plastic_work[..n].fill(0.0);
+        let mut is_whole = true;
+        for (k, share) in block.share[..n].iter_mut().enumerate() {
+            *share = carried(k);
+            is_whole &= *share == 1.0;
+        }
         self.law.stress(&mut StressRows {
             dt: self.dt,
             deformation: rows.deformation,
+            share: &block.share[..n],
             stress_before: &block.stress[..before],
             stress: rows.stress,
             energy: &mut block.energy[..n],
@@ -285,19 +295,14 @@ impl Constitutive<'_> {
         let gradient = &block.gradient;
         let fitted = |k: usize| DMat3::IDENTITY + gradient[k];
         refit::from_law(refits, first, fitted, rows.deformation, rows.stress);
-        let mut is_whole = true;
-        for k in 0..n {
-            let share = carried(k);
-            if share != 1.0 {
-                is_whole = false;
-                block.carry(k, share);
-            }
+        if !is_whole {
+            (0..n).for_each(|k| block.carry(k));
         }
         if rows.damping.strain.is_empty() && is_whole {
             make(rows.stress);
         } else {
-            for (k, (made, stress)) in block.stress.iter_mut().zip(&*rows.stress).enumerate() {
-                *made = if is_whole { *stress } else { *stress * carried(k) };
+            for ((made, stress), share) in block.stress.iter_mut().zip(&*rows.stress).zip(&block.share) {
+                *made = *stress * *share;
             }
             let damping = Damping {
                 elastic: self.law.elastic(),

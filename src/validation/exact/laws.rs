@@ -56,6 +56,7 @@ fn stress_and_energy(material: &Material, deformation: DMat3) -> Result<(DMat3, 
     law.stress(&mut StressRows {
         dt: 0.0,
         deformation: &[deformation],
+        share: &[1.0],
         stress_before: &[DMat3::ZERO],
         stress: &mut stress,
         energy: &mut energy,
