@@ -1,9 +1,8 @@
-//! Loads on a face beside a side that is held along its normal alone.
+//! Loads on a `face` beside a side that is held along its normal alone. Loads by `surface` are warned of where they are added, and contact where it reaches such a side.
 //!
 //! The particles of such a side stand on it, and the load of their cells acts at arms of half a spacing. These bend the layers beside the edge as long as nothing takes the moment, which the other half of the body does behind a symmetry plane.
 
 use crate::boundaries::{PressureLoad, Traction};
-use crate::notation::number;
 use crate::plugin::{BodyKind, Plugin, SimBuilder};
 use crate::scene::{Item, Scene, Select};
 
@@ -31,15 +30,6 @@ fn of_load(item: &Item, sim: &SimBuilder<'_>) -> Option<String> {
             side.plane.0 != axis && side.moved.iter().any(|(number, _)| is_loaded(number))
         };
         let side = body.sides.iter().find(meets).filter(|_| body.kind == BodyKind::Solid)?;
-        let (of_side, at) = side.plane;
-        let name = ["X", "Y", "Z"][of_side];
-        Some(format!(
-            "`{}` on `{face:?}` of body `{}` reaches its side at {} = {} m, which is held along its normal alone: stresses in the two particles beside that edge are some 20 % off, however fine they are; `Symmetry(plane: {name}, at: {})` in the place of that support has 1 %",
-            item.name(),
-            body.name,
-            name.to_lowercase(),
-            number(at),
-            number(at)
-        ))
+        Some(side.reached_by(&format!("`{}` on `{face:?}` of body `{}`", item.name(), body.name)))
     })
 }

@@ -1,5 +1,6 @@
 //! Conditions: supports, prescribed motion and loads. A condition is one file and one line of [`register`].
 
+mod beside_held;
 mod body_force;
 mod broken_skin;
 mod displacement;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::beside_held;
 use super::field::VectorField;
 use super::symmetry::planes_of;
 use crate::notation::{place, quantity};
@@ -150,6 +151,11 @@ pub(super) fn apply(
         total += facets.iter().map(|facet| facet.2).sum::<f64>();
         if facets.is_empty() {
             continue;
+        }
+        // A load on a `face` is warned of where the scene is built, with what it does to other bodies.
+        if select.surface.is_some() {
+            let warning = beside_held::warning(label, sim.body(skin.body), &skin, &chosen);
+            warning.into_iter().for_each(|warning| sim.warn(warning));
         }
         let mut patch = Patch::new(skin);
         patch.select(chosen);

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::error::SetupError;
 use super::offers::{BodyKind, Offer};
 use crate::materials::{FluidLaw, Law, Material, SolidLaw};
+use crate::notation::number;
 use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
@@ -21,6 +22,17 @@ pub struct HeldSide {
     pub plane: (usize, f64),
     /// The particles, by their numbers, ascending, and how far they have been moved, m.
     pub moved: Vec<(u32, DVec3)>,
+}
+
+impl HeldSide {
+    /// What is said of a load or a contact that reaches the side across its normal, such as "`Pressure` on the body `b`".
+    pub fn reached_by(&self, what: &str) -> String {
+        let (axis, at) = (["X", "Y", "Z"][self.plane.0], number(self.plane.1));
+        format!(
+            "{what} reaches its side at {} = {at} m, which is held along its normal alone: stresses in the two particles beside that edge are some 20 % off, however fine they are; `Symmetry(plane: {axis}, at: {at})` in the place of that support has 1 %",
+            axis.to_lowercase()
+        )
+    }
 }
 
 /// A body whose particles are placed.

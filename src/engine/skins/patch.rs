@@ -417,7 +417,6 @@ impl Patch {
     }
 
     /// The particles of the patch, with the force, N, and the couple, N m, on each.
-    #[cfg(test)]
     pub fn on_particles(&self) -> impl Iterator<Item = (usize, DVec3, DMat3)> {
         let rows = self.particles.iter().zip(&self.on_particles);
         rows.map(|(particle, (force, couple))| (*particle as usize, *force, *couple))

@@ -1,5 +1,6 @@
 //! The system of all contacts of a scene.
 
+use super::beside_held::ReachedSide;
 use super::fragile::{Acts, Fragile, break_skins};
 use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
@@ -36,6 +37,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
         stored: bodies.iter().map(|body| (body, 0.0)).collect(),
         energies: Vec::with_capacity(touching.len()),
         gone: Vec::new(),
+        reached: bodies.iter().flat_map(|body| ReachedSide::of(sim.body(body))).collect(),
         touching,
         acts,
         fragile,
@@ -81,6 +83,8 @@ struct Contacts {
     energies: Vec<((BodyId, BodyId), ContactEnergy)>,
     /// Rigid bodies that have been taken out of the run.
     gone: Vec<BodyId>,
+    /// Sides held along their normals that contact may reach.
+    reached: Vec<ReachedSide>,
 }
 
 /// A body that touches others.
@@ -149,6 +153,10 @@ impl Contacts {
                 energies = energies.taken_over();
             }
             self.energies.push(((first, second), energies));
+        }
+        let Self { touching, reached, .. } = self;
+        for patch in touching.iter().flat_map(Touching::patches) {
+            reached.iter_mut().for_each(|side| side.look(patch, step));
         }
         energy::book(step, &self.energies, &mut self.stored);
         self.add_couples(step);

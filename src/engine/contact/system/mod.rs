@@ -4,6 +4,8 @@ mod fragile;
 
 mod touching;
 
+mod beside_held;
+
 mod contacts;
 
 pub(super) use contacts::{Planned, add};
