@@ -152,10 +152,10 @@ pub fn metals() -> Source {
 
 /// Strips that break, each in another way, and go on.
 pub fn failing() -> Source {
-    let strip = |name: &str, at: f64, failure: &str| {
+    let strip = |name: &str, at: f64, plugins: &str| {
         format!(
             r#"(name: "{name}", material: "brittle", shape: Box(min: (0, {at:?}), max: (1.0, {:?})), spacing: 0.04,
-                formulation: TotalLagrangian, plugins: [hourglass_control(), failure({failure})])"#,
+                formulation: TotalLagrangian, plugins: [hourglass_control(), {plugins}])"#,
             at + 0.4
         )
     };
@@ -163,13 +163,14 @@ pub fn failing() -> Source {
         strip(
             "rubble",
             0.0,
-            "criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(factor: 0.1)",
+            "failure(criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(factor: 0.1))",
         ),
-        strip("liquid", 1.0, "criterion: MaximumPrincipalStress(limit: 0.05), then: NoDeviator"),
+        strip("liquid", 1.0, "failure(criterion: MaximumPrincipalStress(limit: 0.05), then: NoDeviator)"),
         strip(
             "gone",
             2.0,
-            "criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: Removed",
+            "failure(criterion: MaximumPrincipalStrain(limit: 0.05), growth: CrackSpeed(), then: Removed),
+             remove_fragments(particles: 12, least_volume: 0.8)",
         ),
     ];
     let text = format!(
