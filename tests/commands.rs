@@ -68,7 +68,7 @@ fn a_check_reviews_bodies_by_what_they_are() {
         let text = SCENE
             .replace("formulation: TotalLagrangian", body)
             .replace("conditions: [Fix(on: Select(face: MinX))],", "");
-        let text = text.replace("materials: {", "materials: {\"steel\": Steel, ");
+        let text = text.replace("materials: {", "materials: {\"steel\": Steel, \"metal\": Al6061T6, ");
         std::fs::write(folder.path().join("body.ron"), text).expect("a scene");
         let output = meshless(folder.path(), &["check", "body.ron"]);
         assert!(output.status.success(), "{}", err(&output));
@@ -81,6 +81,9 @@ fn a_check_reviews_bodies_by_what_they_are() {
     let rigid = "formulation: Rigid()), Body(name: \"block\", material: \"steel\", shape: Box(min: (0.5, 0.0), max: (0.6, 0.1)), spacing: 0.01, formulation: Rigid()";
     let notes = check(rigid);
     assert!(!notes.contains("hourglass_control") && !notes.contains("plastic flow"), "{notes}");
+    let plastic = "formulation: TotalLagrangian), Body(name: \"bar\", material: \"metal\", shape: Box(min: (0.5, 0.0), max: (0.6, 0.1)), spacing: 0.01, formulation: TotalLagrangian";
+    let notes = check(plastic);
+    assert!(notes.contains("steps is a lower bound: plastic flow compresses particles"), "{notes}");
     let held = "formulation: TotalLagrangian)], conditions: [Fix(on: Select()";
     let notes = check(held);
     assert!(notes.contains("conditions move all of body `beam`"), "{notes}");

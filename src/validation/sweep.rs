@@ -30,6 +30,8 @@ macro_rules! flows {
     };
 }
 flows!(
+    "abrasive_flow",
+    "abrasive_flow_3d",
     "dam_break",
     "dam_break_3d",
     "dam_break_obstacle",
@@ -44,9 +46,15 @@ flows!(
 /// Where the scenes are, and beside them the meshes that they name: from any folder.
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/scenes");
 
-/// Plugins of fluids.
-const PLUGINS: &[&str] =
-    &["density_diffusion", "particle_shifting", "tensile_control", "xsph", "artificial_viscosity"];
+/// Plugins of fluids, at their defaults where they have one for everything.
+const PLUGINS: &[&str] = &[
+    "density_diffusion()",
+    "particle_shifting()",
+    "tensile_control()",
+    "xsph()",
+    "artificial_viscosity()",
+    "local_damping(rate: 1.0)",
+];
 
 /// Share of all energy that walls may give.
 const WALLS: f64 = 0.05;
@@ -70,11 +78,7 @@ fn sweep(registry: &Registry, steps: u64) -> Result<Vec<Check>> {
 /// # Errors
 /// No such flow, a value that cannot be set, or a run that fails.
 pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u64) -> Result<Vec<Check>> {
-    let (_, text) = FLOWS.iter().find(|(name, _)| *name == flow).context("no such flow")?;
-    let mut source = Source::new(format!("{SCENES}/{flow}.ron"), *text);
-    for (path, value) in set {
-        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
-    }
+    let source = source_of(flow, set)?;
     let mut checks = Vec::new();
     for plugin in PLUGINS {
         checks.extend(run(registry, (flow, source.clone()), plugin, steps)?);
@@ -82,8 +86,30 @@ pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u6
     Ok(checks)
 }
 
+/// What one of the flows, as it is shipped but for values set as `--set path=value` does, warns of within so many steps.
+///
+/// # Errors
+/// No such flow, a value that cannot be set, or a run that fails.
+pub fn warnings_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u64) -> Result<Vec<String>> {
+    // A program without a recorder would warn of that.
+    let (scene, source) = scene::parse(without(source_of(flow, set)?, "rerun_recorder")?)?;
+    let mut simulation = assembly::build(&scene, &source, registry)?;
+    simulation.run(|simulation| simulation.clock().step < steps)?;
+    Ok(simulation.warnings().to_vec())
+}
+
+fn source_of(flow: &str, set: &[(&str, &str)]) -> Result<Source> {
+    let (_, text) = FLOWS.iter().find(|(name, _)| *name == flow).context("no such flow")?;
+    let mut source = Source::new(format!("{SCENES}/{flow}.ron"), *text);
+    for (path, value) in set {
+        source = source.with_override(path, value).map_err(|problem| source.error(vec![problem]))?;
+    }
+    Ok(source)
+}
+
 fn run(registry: &Registry, (flow, source): (&str, Source), plugin: &str, steps: u64) -> Result<[Check; 5]> {
     let (scene, source) = scene::parse(with_plugin(source, plugin)?)?;
+    let plugin = name_of(plugin);
     let mut simulation = assembly::build(&scene, &source, registry)?;
     simulation.start()?;
     let at_start = volumes(&simulation);
@@ -101,25 +127,37 @@ fn run(registry: &Registry, (flow, source): (&str, Source), plugin: &str, steps:
     ])
 }
 
-/// The scene with a plugin at its default on all of its fluids.
+/// The name in the text of a plugin.
+fn name_of(plugin: &str) -> &str {
+    plugin.split('(').next().unwrap_or(plugin)
+}
+
+/// The scene with a plugin on all of its fluids, in the place of the one of its name.
 fn with_plugin(source: Source, plugin: &str) -> Result<Source> {
-    let (scene, mut source) = scene::parse(source)?;
+    let name = name_of(plugin);
     // What all bodies have of that name would have none left to act on.
-    if scene.plugins.iter().any(|item| item.name() == plugin) {
-        let others = scene.plugins.iter().filter(|item| item.name() != plugin);
-        let list: Vec<&str> = others.map(|item| item.text()).collect();
-        let set = source.with_override("plugins", &format!("[{}]", list.join(", ")));
-        source = set.map_err(|problem| source.error(vec![problem]))?;
-    }
+    let (scene, mut source) = scene::parse(without(source, name)?)?;
     for body in scene.bodies.iter().filter(|body| body.formulation.name() == "Fluid") {
         let others =
-            body.plugins.iter().filter(|item| item.name() != plugin).map(|item| item.text().to_owned());
-        let list: Vec<String> = others.chain([format!("{plugin}()")]).collect();
+            body.plugins.iter().filter(|item| item.name() != name).map(|item| item.text().to_owned());
+        let list: Vec<String> = others.chain([plugin.to_owned()]).collect();
         let set =
             source.with_override(&format!("bodies.{}.plugins", body.name), &format!("[{}]", list.join(", ")));
         source = set.map_err(|problem| source.error(vec![problem]))?;
     }
     Ok(source)
+}
+
+/// The scene without the plugin of that name among those of all bodies.
+fn without(source: Source, name: &str) -> Result<Source> {
+    let (scene, source) = scene::parse(source)?;
+    let others = scene.plugins.iter().filter(|item| item.name() != name);
+    let list: Vec<&str> = others.map(|item| item.text()).collect();
+    if list.len() == scene.plugins.len() {
+        return Ok(source);
+    }
+    let set = source.with_override("plugins", &format!("[{}]", list.join(", ")));
+    Ok(set.map_err(|problem| source.error(vec![problem]))?)
 }
 
 /// Volume of the fluids by their density, m3, and the volume that particles away from surfaces have over the room that they take.
