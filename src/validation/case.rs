@@ -112,6 +112,7 @@ macro_rules! for_each_case {
             F16 fluids::cylinder_array::CASE;
             X1 coupled::water_on_plate::CASE;
             X2 coupled::dam_break_obstacle::CASE;
+            X3 coupled::elastic_gate::CASE;
             X4 coupled::abrasive_flow::CASE;
             X5 coupled::closed_box::CASE;
             X6 coupled::viscous_layers::CASE;

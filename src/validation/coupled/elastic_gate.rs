@@ -1,0 +1,140 @@
+//! X3: a rubber gate in front of water, and the gate alone under a load that is held.
+
+use anyhow::{Context, Result};
+use meshless_engine::glam::DVec3;
+use meshless_engine::plugin::Registry;
+use meshless_engine::simulation::Simulation;
+
+use crate::case::Case;
+use crate::check::{Check, Tolerance};
+use crate::measure::{Kind, MaterialPoint, Record, body, relax, run};
+use crate::template::Template;
+
+pub(crate) const CASE: Case =
+    Case { id: "X3", title: "elastic gate", resolutions: &[8, 12, 16], ci_resolution: 12, run: elastic_gate };
+
+/// Thickness of the gate and its free length, m.
+const THICKNESS: f64 = 5.0e-3;
+const LENGTH: f64 = 79.0e-3;
+/// Young's modulus, Pa, Poisson's ratio, and where the end of the dry gate comes to rest, m: to the side and up.
+const DRY: [(f64, f64, [f64; 2]); 2] =
+    [(12.0e6, 0.4, [32.64e-3, 8.22e-3]), (7.8e6, 0.47, [41.45e-3, 13.82e-3])];
+const SOURCE: &str = "elastica in plane strain, reference.csv";
+/// Particles across from which on the gate is put into water too, and compared with half as many.
+const FINE: usize = 16;
+/// Strain energy of which the hourglass control may store a share.
+const SHARE: f64 = 0.1;
+
+/// `across` is the number of particles over the thickness of the gate.
+fn elastic_gate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let mut checks = Vec::new();
+    // The tests have the values of the experiment alone.
+    let count = if across == CASE.ci_resolution { 1 } else { DRY.len() };
+    for material in &DRY[..count] {
+        checks.extend(dry(registry, across, *material)?);
+    }
+    // The displacements of the one that every resolution has.
+    checks[..2].iter_mut().for_each(|check| check.converges = true);
+    if across >= FINE {
+        checks.extend(wet(registry, across)?);
+    }
+    Ok(checks)
+}
+
+fn dry(
+    registry: &Registry,
+    across: usize,
+    (young, poisson, end): (f64, f64, [f64; 2]),
+) -> Result<Vec<Check>> {
+    let spacing = THICKNESS / across as f64;
+    let path = "tests/validation/elastic_gate/dry.ron";
+    let text = include_str!("../../../tests/validation/elastic_gate/dry.ron");
+    let mut simulation = Template::new(path, text)
+        .set("materials.rubber.young", young)?
+        .set("materials.rubber.poisson", poisson)?
+        .set("bodies.gate.spacing", spacing)?
+        .set("bodies.gate.shape.max", format!("({THICKNESS}, {})", 3.0 * spacing))?
+        .build(registry)?;
+    let gate = body(&simulation, "gate")?;
+    let middle = MaterialPoint::new(&simulation, gate, DVec3::new(0.5 * THICKNESS, -LENGTH, 0.0))?;
+    relax(&mut simulation)?;
+    let moved = middle.displacement(&simulation)?;
+    let name = |what: &str| format!("dry gate, {} MPa: {what}", young / 1e6);
+    let check = |what, measured, reference| {
+        let tolerance = Tolerance::Relative(0.02);
+        Check::new(name(what), measured, reference, tolerance, "m", SOURCE)
+    };
+    Ok(vec![
+        check("its end, to the side", moved.x, end[0]),
+        check("its end, up", moved.y, end[1]),
+        Check::below(name("control over strain energy"), control_share(&simulation), SHARE, "resolved"),
+    ])
+}
+
+/// Energy in the hourglass control over that in the strain.
+fn control_share(simulation: &Simulation) -> f64 {
+    let ledger = simulation.ledger();
+    ledger.total_named("hourglass") / ledger.total_named("strain")
+}
+
+/// The gate in water, fine, coarse, and with a coefficient of the control of a fifth.
+fn wet(registry: &Registry, across: usize) -> Result<Vec<Check>> {
+    let fine = flood(registry, across, 5.0)?;
+    let coarse = flood(registry, across / 2, 5.0)?;
+    let soft = flood(registry, across, 1.0)?;
+    let pair = |name: &str, measured, reference, tolerance, source| {
+        Check::new(name, measured, reference, Tolerance::Relative(tolerance), "m", source)
+    };
+    let (half, control) = ("the finer run", "the default of the control");
+    Ok(vec![
+        pair("in water, half the fineness: to the side", coarse.moved[0], fine.moved[0], 0.03, half),
+        pair("in water, half the fineness: up", coarse.moved[1], fine.moved[1], 0.06, half),
+        pair("in water, a fifth of the control: to the side", soft.moved[0], fine.moved[0], 0.03, control),
+        pair("in water, a fifth of the control: up", soft.moved[1], fine.moved[1], 0.03, control),
+        Check::below("in water: control over strain energy", fine.share, SHARE, "resolved"),
+        fine.balance,
+    ])
+}
+
+/// What the gate in water shows.
+struct Flood {
+    /// Largest displacement of its lower corner to the side and up, m.
+    moved: [f64; 2],
+    /// Energy of the control over strain energy at the largest displacement.
+    share: f64,
+    balance: Check,
+}
+
+fn flood(registry: &Registry, across: usize, alpha: f64) -> Result<Flood> {
+    let wet = 4.0 * THICKNESS / across as f64;
+    let side = 4.0 * wet;
+    let path = "tests/validation/elastic_gate/scene.ron";
+    let text = include_str!("../../../tests/validation/elastic_gate/scene.ron");
+    let mut simulation = Template::new(path, text)
+        .set("bodies.water.spacing", wet)?
+        .set("bodies.tank.spacing", wet)?
+        .set("bodies.gate.spacing", THICKNESS / across as f64)?
+        .set("bodies.gate.plugins", format!("[hourglass_control(alpha: {alpha:?})]"))?
+        .set("bodies.tank.shape[0][0].min", format!("({}, 0.0)", -side))?
+        .set("bodies.tank.shape[0][1].min", format!("({}, {})", -side, -side))?
+        .build(registry)?;
+    let gate = body(&simulation, "gate")?;
+    let corner = MaterialPoint::new(&simulation, gate, DVec3::new(0.1 + THICKNESS, 0.0, 0.0))?;
+    let (mut aside, mut up) = (Record::default(), Record::default());
+    let (mut largest, mut share) = (0.0, 0.0);
+    let balance = run(&mut simulation, |simulation| {
+        let (time, moved) = (simulation.clock().time, corner.displacement(simulation)?);
+        aside.push(time, moved.x);
+        up.push(time, moved.y);
+        if moved.x > largest {
+            (largest, share) = (moved.x, control_share(simulation));
+        }
+        Ok(())
+    })?;
+    let peak = |record: &Record| record.maximum().context("the gate does not come back");
+    Ok(Flood {
+        moved: [peak(&aside)?.1, peak(&up)?.1],
+        share,
+        balance: balance.check_of("in water", Kind::Smooth),
+    })
+}
