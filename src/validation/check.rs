@@ -32,6 +32,34 @@ pub struct Check {
     pub source: &'static str,
     /// Whether its error has to fall from one resolution to the next.
     pub converges: bool,
+    /// How fast it has to fall, where a case says so.
+    pub rate: Option<ConvergenceRate>,
+}
+
+/// How fast an error has to fall with the spacing, and where it has to lead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConvergenceRate {
+    /// Factor by which it falls when the spacing is halved, at least.
+    pub per_halving: f64,
+    /// Largest relative error at a spacing of zero, as the line through the two finest runs has it.
+    pub extrapolated: f64,
+}
+
+impl ConvergenceRate {
+    /// Whether errors at ascending resolutions fall so fast.
+    pub fn is_met(self, errors: &[(usize, f64)]) -> bool {
+        errors.windows(2).all(|pair| {
+            let halvings = (pair[1].0 as f64 / pair[0].0 as f64).log2();
+            pair[1].1.abs() * self.per_halving.powf(halvings) <= pair[0].1.abs()
+        }) && at_no_spacing(errors).is_some_and(|error| error.abs() <= self.extrapolated)
+    }
+}
+
+/// The error at a spacing of zero, from the line through those of the two finest runs.
+pub fn at_no_spacing(errors: &[(usize, f64)]) -> Option<f64> {
+    let [.., (coarse, first), (fine, second)] = errors else { return None };
+    let (coarse, fine) = (*coarse as f64, *fine as f64);
+    Some((fine * second - coarse * first) / (fine - coarse))
 }
 
 impl Check {
@@ -44,7 +72,7 @@ impl Check {
         unit: &'static str,
         source: &'static str,
     ) -> Self {
-        Self { name: name.into(), measured, reference, tolerance, unit, source, converges: false }
+        Self { name: name.into(), measured, reference, tolerance, unit, source, converges: false, rate: None }
     }
 
     /// A pure number that has to stay below a bound.
@@ -61,6 +89,12 @@ impl Check {
     #[must_use]
     pub fn converging(self) -> Self {
         Self { converges: true, ..self }
+    }
+
+    /// The same check, whose error has to fall that fast.
+    #[must_use]
+    pub fn converging_at(self, rate: ConvergenceRate) -> Self {
+        Self { converges: true, rate: Some(rate), ..self }
     }
 
     /// The same check with a relative tolerance that many times as wide: for a formulation that is compared with another.
@@ -109,6 +143,17 @@ mod tests {
         assert!(check(-2.01, Tolerance::Absolute(0.02)));
         assert!(check(-3.0, Tolerance::Below) && !check(-2.0, Tolerance::Below));
         assert!(check(-1.0, Tolerance::Above) && !check(-2.0, Tolerance::Above));
+    }
+
+    #[test]
+    fn errors_of_first_order_fall_at_their_rate_and_lead_to_none() {
+        let rate = ConvergenceRate { per_halving: 1.6, extrapolated: 0.015 };
+        assert!(rate.is_met(&[(20, 0.04), (40, 0.02), (80, 0.01)]));
+        // Too slow; to another value; a single run.
+        assert!(!rate.is_met(&[(20, 0.04), (40, 0.03), (80, 0.015)]));
+        assert!(!rate.is_met(&[(20, 0.1), (40, 0.05), (80, -0.001)]));
+        assert!(!rate.is_met(&[(20, 0.01)]));
+        assert!(at_no_spacing(&[(20, 0.06), (40, 0.04)]).is_some_and(|error| (error - 0.02).abs() < 1e-12));
     }
 
     #[test]

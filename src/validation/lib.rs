@@ -16,5 +16,5 @@ pub mod sweep;
 mod template;
 
 pub use case::{CASES, Case};
-pub use check::{Check, Tolerance};
+pub use check::{Check, ConvergenceRate, Tolerance, at_no_spacing};
 pub use template::Template;

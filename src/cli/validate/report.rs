@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use meshless_engine::plugin::Registry;
-use meshless_validation::{Case, Check, Tolerance};
+use meshless_validation::{Case, Check, Tolerance, at_no_spacing};
 
 use crate::cli::failure::Failure;
 use crate::cli::text::say;
@@ -54,13 +54,20 @@ impl Report {
         let runs: Vec<_> = self.done.iter().filter(|(id, ..)| *id == case.id).collect();
         let Some((_, _, last)) = runs.last() else { return };
         let mut lines = Vec::new();
-        for name in last.iter().filter(|check| check.converges).map(|check| &check.name) {
+        for check in last.iter().filter(|check| check.converges) {
+            let name = &check.name;
             let errors: Vec<(usize, f64)> = runs
                 .iter()
                 .filter_map(|(_, n, checks)| Some((*n, checks.iter().find(|c| c.name == *name)?.error())))
                 .collect();
-            let falls = errors.len() == case.resolutions.len() && falls(&errors);
-            let list: Vec<String> = errors.iter().map(|(n, e)| format!("{n}: {:+.3} %", 100.0 * e)).collect();
+            let falls = errors.len() == case.resolutions.len()
+                && falls(&errors)
+                && check.rate.is_none_or(|rate| rate.is_met(&errors));
+            let mut list: Vec<String> =
+                errors.iter().map(|(n, e)| format!("{n}: {:+.3} %", 100.0 * e)).collect();
+            if let Some(error) = check.rate.and_then(|_| at_no_spacing(&errors)) {
+                list.push(format!("extrapolated: {:+.3} %", 100.0 * error));
+            }
             lines.push((falls, format!("  convergence of {name}: {}", list.join(", "))));
         }
         for (falls, text) in lines {

@@ -45,13 +45,16 @@ fn touching_surfaces(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok((ratios, balance))
     };
     let (without, balance) = slides(0.0)?;
-    let (with, _) = slides(0.3)?;
+    let (with, rubbed) = slides(0.3)?;
     let rms = (without.iter().map(|ratio| ratio * ratio).sum::<f64>() / without.len() as f64).sqrt();
     let mean = with.iter().sum::<f64>() / with.len() as f64;
     Ok(vec![
-        Check::below("blocks, friction 0: tangential over normal force, rms", rms, 0.01, "no friction"),
+        Check::below("blocks, friction 0: tangential over normal force, rms", rms, 0.01, "no friction")
+            .converging(),
         balance.check_of("blocks, friction 0", Kind::Smooth),
-        Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb"),
+        Check::new("blocks, friction 0.3", -mean, 0.3, Tolerance::Relative(0.02), "1", "law of Coulomb")
+            .converging(),
+        rubbed.check_of("blocks, friction 0.3", Kind::Smooth),
     ])
 }
 

@@ -6,7 +6,7 @@ use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Density, Mass, Position};
 
 use crate::case::Case;
-use crate::check::{Check, Tolerance};
+use crate::check::{Check, ConvergenceRate, Tolerance};
 use crate::measure::{Kind, Record, body, run};
 use crate::template::Template;
 
@@ -24,6 +24,9 @@ const SOURCE: &str = "boundary elements, no friction";
 const DEPTH: f64 = 0.04;
 /// Places of the front over the width of the column, and the largest error of the times at 40 particles across.
 const PLACES: [(f64, f64); 4] = [(2.0, 0.035), (3.0, 0.025), (4.0, 0.02), (5.0, 0.02)];
+
+/// How fast these errors fall, and the largest of them without a spacing.
+const RATE: ConvergenceRate = ConvergenceRate { per_halving: 1.6, extrapolated: 0.015 };
 
 fn dam_front(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let spacing = 1.0 / across as f64;
@@ -53,7 +56,7 @@ fn dam_front(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let tolerance = Tolerance::Relative(error * (40.0 / across as f64).max(1.0));
         let name = format!("T at which the front is at {z} a");
         let check = Check::new(name, measured, reference, tolerance, "1", SOURCE);
-        checks.push(check.converging());
+        checks.push(check.converging_at(RATE));
     }
     checks.push(balance.check(Kind::Smooth));
     Ok(checks)

@@ -85,7 +85,8 @@ fn settle(registry: &Registry, across: usize, solid: bool, shifted: bool) -> Res
             Tolerance::Relative(0.01),
             "m",
             "volume over area",
-        ),
+        )
+        .converging(),
         Check::below(format!("what shifting gives, {name}"), given, 1e-3, "shifting is no source of energy"),
     ])
 }

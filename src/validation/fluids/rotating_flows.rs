@@ -72,11 +72,13 @@ fn cylinders(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             "N m",
             source,
         )
+        .converging()
     };
     Ok(vec![
         of("inner", sums[0]),
         of("outer", sums[1]),
-        Check::new("heat of friction", viscosity, work, Tolerance::Relative(0.03), "J", "torque times angle"),
+        Check::new("heat of friction", viscosity, work, Tolerance::Relative(0.03), "J", "torque times angle")
+            .converging(),
     ])
 }
 
@@ -110,14 +112,17 @@ fn disc(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         let exact = reference.0.iter().find(|row| (row.0 - time).abs() < 1e-9).context("no such time")?.1;
         let found = spin.0.iter().find(|row| row.0 >= time - 1e-9).context("no such time")?.1;
         let name = format!("rate of the disc after {time} s");
-        checks.push(Check::new(
-            name,
-            found,
-            exact,
-            Tolerance::Relative(0.05),
-            "rad/s",
-            "finite volumes in r, reference.csv",
-        ));
+        checks.push(
+            Check::new(
+                name,
+                found,
+                exact,
+                Tolerance::Relative(0.05),
+                "rad/s",
+                "finite volumes in r, reference.csv",
+            )
+            .converging(),
+        );
     }
     checks.push(balance.check_of("disc", Kind::Smooth));
     Ok(checks)

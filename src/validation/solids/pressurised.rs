@@ -100,7 +100,7 @@ fn sphere(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         "tests/validation/hollow_sphere/scene.ron",
         include_str!("../../../tests/validation/hollow_sphere/scene.ron"),
     );
-    let tolerance = if across < 16 { 0.1 } else { 0.02 };
+    let tolerance = if across < 16 { 0.1 } else { 0.01 };
     let radius = |x: DVec3| x.length();
     let shell = Shell { scene, body: "shell", tolerance, exact: of_sphere, radius };
     let simulation = at_rest(&shell, registry, across)?;
