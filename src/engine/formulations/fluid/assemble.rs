@@ -204,6 +204,7 @@ fn cloud(
         periods: Periods::new(&periodic),
         before: Vec::new(),
         records: vec![FlowParticle::default(); total],
+        is_still: Vec::new(),
         blocks,
         pairs: FlowPairs::new(skins, periodic, ends, thin, plane).with_gaps(gaps),
         near: NearRows::default(),

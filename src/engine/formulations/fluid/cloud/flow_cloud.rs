@@ -50,6 +50,8 @@ pub struct FlowCloud {
     /// Positions of boundary particles at the start of the step, of bodies that take sub-steps alone.
     pub(in crate::formulations::fluid) before: Vec<DVec3>,
     pub(in crate::formulations::fluid) records: Vec<FlowParticle>,
+    /// Of every group: whether the places and volumes of its rows are those of the step before.
+    pub(in crate::formulations::fluid) is_still: Vec<bool>,
     pub(in crate::formulations::fluid) pairs: FlowPairs,
     /// The blocks of passes in single precision; none in double precision.
     pub(in crate::formulations::fluid) blocks: Option<Box<Blocks>>,

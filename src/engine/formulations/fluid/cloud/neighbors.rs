@@ -87,6 +87,8 @@ impl Run for Neighbors {
             if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;
                 cloud.pack(step.world)?;
+                // What is told apart now are rows of before and after, of a body that may have moved.
+                cloud.is_still.fill(false);
                 cloud.read_positions(&mut self.built);
             }
             cloud.write_list_positions(step.world, &self.built)?;

@@ -25,6 +25,7 @@ impl FlowCloud {
         if let Some(blocks) = &mut blocks {
             blocks.packed.resize(self.records.len(), Packed::default());
         }
+        self.is_still.clear();
         for group in &self.groups {
             let (view, rows) = (world.phase(group.phase), group.rows.clone());
             let (x, v, removed) =
@@ -39,7 +40,7 @@ impl FlowCloud {
                 Some(blocks) => (Some(&blocks.units), Some(&mut blocks.packed[group.cloud.clone()])),
                 None => (None, None),
             };
-            moved = moved.with(if group.fluid().is_some() {
+            let of_group = if group.fluid().is_some() {
                 let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
                 let pressure = view.read::<Pressure>()?;
                 let fluid = (&mass[rows.clone()], &density[rows.clone()], &pressure[rows]);
@@ -52,7 +53,9 @@ impl FlowCloud {
                 sum_over_blocks((common, volume, packed), &|_, (common, volume, packed): WithPacked<_>| {
                     run_hot(PackBoundary(common, volume, packed, units))
                 })
-            });
+            };
+            self.is_still.push(of_group.is_zero());
+            moved = moved.with(of_group);
         }
         Ok(moved)
     }

@@ -34,6 +34,11 @@ impl DisplacementBounds {
         Self { low: smaller(self.low, other.low), high: larger(self.high, other.high) }
     }
 
+    /// Whether nothing has moved, and the fourth lane has not changed either.
+    pub fn is_zero(&self) -> bool {
+        self.low.0 == [0.0; 4] && self.high.0 == [0.0; 4]
+    }
+
     /// Most that a displacement of one box and one of the other differ, m; zero where one has none.
     pub fn farthest(self, other: Self) -> f64 {
         (self.high.xyz() - other.low.xyz())
@@ -69,7 +74,7 @@ impl Growing {
         Self { spread: DisplacementBounds::NONE, sum: Lanes4::ZERO }
     }
 
-    /// Adds a displacement; the fourth lane does not matter.
+    /// Adds a displacement; the fourth lane matters to [`DisplacementBounds::is_zero`] alone.
     #[inline(always)]
     pub fn add<A: FourLanes>(&mut self, a: A, d: Lanes4) {
         self.spread.low = a.smaller(d, self.spread.low);

@@ -123,6 +123,24 @@ fn the_force_is_that_of_the_distance_and_its_opposite_is_on_the_wall() {
     }
 }
 
+/// The motion of a wall that rests is kept: it must not be when it has moved.
+#[test]
+fn a_wall_that_has_risen_repels_where_it_is() {
+    let rise = 2.0 * SPACING;
+    let mut sim = rain(2, 4.6, DVec3::new(0.0, -1.0, 0.0), 0.5, WALL);
+    sim.run(|sim| sim.clock().time < 0.01).expect("a run");
+    let (view, rows) = sim.world().body_view(BodyId(1));
+    view.write::<Position>().expect("places")[rows].iter_mut().for_each(|x| x.0.y += rise);
+    let mut lowest = f64::INFINITY;
+    sim.run(|sim| {
+        lowest = column::<Position>(sim, 0).into_iter().map(|x| x.0.y).fold(lowest, f64::min);
+        sim.clock().time < 0.1
+    })
+    .expect("a run");
+    assert!(lowest < rise + 0.15 * SPACING, "{lowest}");
+    assert!(lowest > rise - 0.5 * SPACING, "{lowest}");
+}
+
 #[test]
 fn a_body_that_is_hit_gets_the_momentum() {
     for body in

@@ -75,9 +75,8 @@ impl Repulsion {
             let view = step.world.phase(surface.group.phase);
             let reference = view.read_near::<ReferencePosition>()?;
             let reference = &reference[surface.group.rows.clone()];
-            surface.wear(cloud);
+            let motion = surface.look(cloud, reference);
             let surface = &*surface;
-            let motion = surface.motion(cloud, reference);
             let rows = (&mut out[..], close);
             for_each_block(rows, &mut Vec::new(), &|_, (out, close): (&mut [Repelled], &[u32])| {
                 for (out, &i) in out.iter_mut().zip(close) {

@@ -34,6 +34,8 @@ pub struct BoundaryShape {
     pub spacing: f64,
     /// Whether it has lost particles.
     pub is_worn: bool,
+    /// The last motion, of a body that has one; none where it has not been looked for.
+    kept: Option<Option<BodyMotion>>,
     /// Distance of the nearest of its particles beyond which a particle is not beside it, m.
     pub reach: f64,
 }
@@ -56,24 +58,35 @@ impl BoundaryShape {
         let body = sim.body(group.body);
         let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
         let region = shape.region(sim.dimension(), sim.folder(), "shape").ok()?;
-        Some(Self { group: group.clone(), region, stiffness, spacing: body.spacing, is_worn: false, reach })
+        Some(Self {
+            group: group.clone(),
+            region,
+            stiffness,
+            spacing: body.spacing,
+            is_worn: false,
+            kept: None,
+            reach,
+        })
     }
 
-    /// Takes notice of the first particle that is gone.
-    pub fn wear(&mut self, cloud: &FlowCloud) {
-        if !self.is_worn {
-            let records = &cloud.records[self.group.cloud.clone()];
-            let gone = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
-                records.iter().filter(|record| record.volume() <= 0.0).count() as f64
-            });
-            self.is_worn = gone > 0.0;
+    /// The motion of the body, if it is one map, and whether it has lost particles; both are known already of a body that has not moved since the last step, in which it was
+    /// looked at. `reference` are the places of its particles in the scene.
+    pub fn look(&mut self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
+        let is_own = |group: &Group| group.cloud.start == self.group.cloud.start;
+        let is_still = cloud.groups.iter().zip(&cloud.is_still).any(|(group, still)| *still && is_own(group));
+        if let Some(motion) = self.kept.filter(|_| is_still) {
+            return motion;
         }
+        let records = &cloud.records[self.group.cloud.clone()];
+        self.is_worn = self.is_worn || has_gone(records);
+        let motion = BodyMotion::new(records, reference, self.spacing, cloud.plane);
+        self.kept = Some(motion);
+        motion
     }
 
-    /// The motion of the body, if it is one map; `reference` are the places of its particles in the scene.
-    pub fn motion(&self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
-        let records = &cloud.records[self.group.cloud.clone()];
-        BodyMotion::new(records, reference, self.spacing, cloud.plane)
+    /// In a step in which the body is not looked at.
+    pub fn forget_motion(&mut self) {
+        self.kept = None;
     }
 
     /// Whether particle `i` is farther than `range`, m, from a body with that motion.
@@ -187,6 +200,14 @@ impl BoundaryShape {
         }
         place.map.transpose() * gradient
     }
+}
+
+/// Whether a particle is gone.
+fn has_gone(records: &[FlowParticle]) -> bool {
+    let gone = sum_over_blocks(records, &|_, records: &[FlowParticle]| {
+        records.iter().filter(|record| record.volume() <= 0.0).count() as f64
+    });
+    gone > 0.0
 }
 
 /// The vector between two particles of a body, now and in the body as the scene has it, m: of the images that are nearest to `from`, which need not be those that are nearest to

@@ -57,16 +57,23 @@ impl WallShapes {
     }
 
     /// Writes down the faces before all fluid particles that have several walls within the support.
-    pub fn find(&self, cloud: &FlowCloud, step: &Step<'_>, out: &mut Vec<Front>) -> Result<(), StepError> {
+    pub fn find(
+        &mut self,
+        cloud: &FlowCloud,
+        step: &Step<'_>,
+        out: &mut Vec<Front>,
+    ) -> Result<(), StepError> {
         out.clear();
         if !self.are_asked && !self.part(cloud) {
+            self.shapes.iter_mut().for_each(BoundaryShape::forget_motion);
             return Ok(());
         }
         let rows = self.rows();
-        for shape in &self.shapes {
+        for shape in &mut self.shapes {
             let view = step.world.phase(shape.group.phase);
             let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
-            let motion = shape.motion(cloud, reference);
+            let motion = shape.look(cloud, reference);
+            let shape = &*shape;
             for i in (0..cloud.fluid).filter(|&i| cloud.is_close[i] != 0) {
                 let walls = part(cloud.near_row(i), &rows);
                 let own = part(walls, &shape.group.cloud);
