@@ -215,6 +215,7 @@ fn cloud(
         reach,
         repelled: Vec::new(),
         edges: BoundaryEdges::default(),
+        ends: Vec::new(),
         gap_forces: Vec::new(),
         gap_work: 0.0,
         loads: Vec::new(),

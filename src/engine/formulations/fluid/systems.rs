@@ -1,8 +1,8 @@
 //! The systems of a flow and of its effect on its boundaries.
 
 use crate::formulations::fluid::cloud::{
-    ACCOUNTS, COMPRESSION_RATES, EDGES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition, NEIGHBORS,
-    Neighbors, REPELLED, Role, SPINS,
+    ACCOUNTS, COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, Group, ListPosition,
+    NEIGHBORS, Neighbors, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::coupling::add_force_on_bodies;
 use crate::formulations::fluid::density::{ApplyState, Continuity, DensityShift};
@@ -12,7 +12,7 @@ use crate::formulations::fluid::rotation::Spin;
 use crate::formulations::fluid::setup::advice;
 use crate::formulations::fluid::walls::{
     EdgeForces, EdgeMotion, GapPressure, PreviousVelocity, RangeShortfall, Repulsion, WallCompression,
-    WallState,
+    WallEnds, WallState,
 };
 use crate::formulations::fluid::warnings::watch;
 use crate::pair::{BodyTerms, PhaseTerms, add_work_systems};
@@ -30,6 +30,8 @@ const COMPRESSION: &str = "fluid_compression";
 const WALL_COMPRESSION: &str = "wall_compression";
 /// Label of the system that finds how walls move at edges.
 const EDGE_MOTION: &str = "motion_at_edges";
+/// Label of the system that lets fluids go on past the ends of walls.
+const WALL_ENDS: &str = "wall_ends";
 /// Label of the system that gives walls their pressure.
 const WALL_PRESSURE: &str = "wall_pressure";
 
@@ -126,6 +128,18 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
                 .after(COMPRESSION),
         );
         before = EDGE_MOTION;
+    }
+    if let Some(ends) = WallEnds::new(groups, sim) {
+        sim.add_system(
+            System::new(Stage::Neighbors, WALL_ENDS, ends)
+                .on_phases(boundaries.iter().copied().chain([fluid]))
+                .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .touches_packed(COMPRESSION_RATES, Mode::Writes)
+                .touches_packed(ENDS, Mode::Writes)
+                .reads_near::<ReferencePosition>()
+                .after(before),
+        );
+        before = WALL_ENDS;
     }
     if pulls {
         sim.add_system(

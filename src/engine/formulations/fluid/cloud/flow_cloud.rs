@@ -9,6 +9,7 @@ use super::group::{FluidState, Group};
 use super::neighborhood::Neighborhood;
 use super::repelled::Repelled;
 use super::viscosities::Viscosities;
+use super::wall_end::WallEnd;
 use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::formulations::fluid::lists::{FlowPairs, NearRows};
@@ -71,6 +72,8 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) repelled: Vec<Repelled>,
     /// Edges between walls that move against each other.
     pub(in crate::formulations::fluid) edges: BoundaryEdges,
+    /// Fluid particles past the ends of walls, in the order of rows.
+    pub(in crate::formulations::fluid) ends: Vec<WallEnd>,
     /// Force on every boundary particle beside a gap, N; empty where there is none.
     pub(in crate::formulations::fluid) gap_forces: Vec<DVec3>,
     /// Work of these forces since the start of the run, J.

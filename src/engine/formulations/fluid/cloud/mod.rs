@@ -14,6 +14,8 @@ mod repelled;
 
 mod edges;
 
+mod wall_end;
+
 mod flow_cloud;
 
 mod pack;
@@ -47,6 +49,7 @@ pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};
 pub use rows::RowSums;
-pub use shared::{COMPRESSION_RATES, EDGES, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
+pub use shared::{COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
 pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};
+pub use wall_end::WallEnd;

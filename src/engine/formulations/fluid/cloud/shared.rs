@@ -8,6 +8,8 @@ pub const COMPRESSION_RATES: &str = "compression_rates";
 pub const REPELLED: &str = "repelled_particles";
 /// Faces and particles at edges between walls that move against each other.
 pub const EDGES: &str = "wall_edges";
+/// Fluid particles past the ends of walls.
+pub const ENDS: &str = "wall_ends";
 /// Forces on boundary particles beside gaps that no particle of a fluid fits into.
 pub const GAP_FORCES: &str = "gap_forces";
 /// Accelerations of fluid particles by loads.

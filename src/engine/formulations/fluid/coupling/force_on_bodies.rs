@@ -148,6 +148,7 @@ impl Coupling {
             cloud.repel(group, to, parts_to);
             cloud.press_gaps(group, to, parts_to);
             cloud.lean_on_edges(group, to, parts_to);
+            cloud.let_go(group, to);
             if side == 0 {
                 self.drag.clear();
                 self.drag.resize(group.rows.len(), 0.0);

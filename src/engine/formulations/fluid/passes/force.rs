@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{
-    ACCOUNTS, EDGES, FLOW_RECORDS, FlowCloud, GAP_FORCES, PARTS, REPELLED, Role, SPINS,
+    ACCOUNTS, EDGES, ENDS, FLOW_RECORDS, FlowCloud, GAP_FORCES, PARTS, REPELLED, Role, SPINS,
 };
 use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::pair::{BodyTerms, PhaseTerms};
@@ -22,6 +22,7 @@ pub fn reads_flow(system: System) -> System {
         .touches_packed(REPELLED, Mode::Reads)
         .touches_packed(GAP_FORCES, Mode::Reads)
         .touches_packed(EDGES, Mode::Reads)
+        .touches_packed(ENDS, Mode::Reads)
 }
 
 /// Makes the forces on the particles of one phase.
@@ -58,6 +59,7 @@ impl Run for FlowForce {
             cloud.repel(group, total, forces);
             cloud.press_gaps(group, total, forces);
             cloud.lean_on_edges(group, total, forces);
+            cloud.let_go(group, total);
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);

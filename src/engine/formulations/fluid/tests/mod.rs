@@ -22,6 +22,8 @@ mod repulsion;
 
 mod worn;
 
+mod ends;
+
 mod thin;
 
 mod sub_cycled;

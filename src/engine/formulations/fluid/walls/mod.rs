@@ -18,9 +18,12 @@ mod wall_state;
 
 mod edges;
 
+mod ends;
+
 mod gaps;
 
 pub use edges::{EdgeForces, EdgeMotion};
+pub use ends::WallEnds;
 pub use gaps::GapPressure;
 pub use repulsion::{RangeShortfall, Repulsion};
 pub use surface_distance::apart;

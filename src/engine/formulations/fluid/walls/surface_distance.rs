@@ -163,7 +163,7 @@ impl BoundaryShape {
     }
 
     /// Distance from the shape or from its nearest periodic image, m, exact up to the reach.
-    fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
+    pub fn distance(&self, cloud: &FlowCloud, at: DVec3) -> f64 {
         if !cloud.periods.any() {
             return self.region.clearance(at);
         }
@@ -186,19 +186,44 @@ impl BoundaryShape {
         distance
     }
 
+    /// Distance of another place from the shape, by the motion at a place, m.
+    pub fn distance_from(&self, cloud: &FlowCloud, place: &PlaceInBody, way: DVec3) -> f64 {
+        if place.shares.only.is_some() {
+            return f64::INFINITY;
+        }
+        self.distance(cloud, place.at + place.map * way)
+    }
+
+    /// Whether the foot of a particle is on a face of the shape: one there, zero on an edge, less than one near an edge.
+    pub fn on_face(&self, cloud: &FlowCloud, place: &PlaceInBody) -> f64 {
+        if place.shares.only.is_some() {
+            return 1.0;
+        }
+        let depth = 0.5 * self.spacing;
+        let out = self.gradient(cloud, place.at).normalize_or_zero();
+        let below = place.at - (place.distance + depth) * out;
+        // As far below a face as it is from any other one.
+        (5.0 * (-self.distance(cloud, below) / depth - 0.8)).clamp(0.0, 1.0)
+    }
+
+    /// Gradient of the distance in the scene, by central differences.
+    pub fn gradient(&self, cloud: &FlowCloud, place: DVec3) -> DVec3 {
+        let step = 1e-4 * self.spacing;
+        let axes = if cloud.plane { 2 } else { 3 };
+        let mut gradient = DVec3::ZERO;
+        for (axis, unit) in DVec3::AXES.into_iter().enumerate().take(axes) {
+            let at = |side: f64| self.distance(cloud, place + side * step * unit);
+            gradient[axis] = (at(1.0) - at(-1.0)) / (2.0 * step);
+        }
+        gradient
+    }
+
     /// Gradient of the distance with respect to the place in space, by central differences.
     pub fn direction(&self, cloud: &FlowCloud, place: &PlaceInBody) -> DVec3 {
         if place.shares.only.is_some() {
             return place.at;
         }
-        let step = 1e-4 * self.spacing;
-        let axes = if cloud.plane { 2 } else { 3 };
-        let mut gradient = DVec3::ZERO;
-        for (axis, unit) in DVec3::AXES.into_iter().enumerate().take(axes) {
-            let at = |side: f64| self.distance(cloud, place.at + side * step * unit);
-            gradient[axis] = (at(1.0) - at(-1.0)) / (2.0 * step);
-        }
-        place.map.transpose() * gradient
+        place.map.transpose() * self.gradient(cloud, place.at)
     }
 }
 

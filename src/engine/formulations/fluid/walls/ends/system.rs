@@ -1,0 +1,177 @@
+//! Takes what is no expansion out of the rates of compression beside the ends of walls.
+
+use glam::{DMat3, DVec3};
+
+use super::edges::add_edges;
+use super::faces::FacesBefore;
+use super::forces::WITHIN;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd};
+use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
+use crate::linalg::dyad;
+use crate::parallel::for_each_block;
+use crate::plugin::SimBuilder;
+use crate::schedule::{Run, Step, StepError};
+use crate::world::ReferencePosition;
+
+/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the first row are at half of it.
+const BEFORE: f64 = 0.85;
+
+/// Number of places that are looked at on the way along a wall.
+const WAY: usize = 6;
+/// Distance from a wall at which such a place is clear of it, over the spacing: those of the first row are at half of it.
+const CLEAR: f64 = 0.15;
+
+/// Finds the particles past the ends of walls.
+pub struct WallEnds {
+    shapes: Vec<BoundaryShape>,
+    /// Rows of the particles of walls at convex edges; none before the first step.
+    edges: Option<Vec<usize>>,
+    /// Fluid particles within the support of one of these.
+    beside: Vec<u32>,
+    faces: FacesBefore,
+    /// What is along walls for each of the particles beside edges, and the ways along walls.
+    found: Vec<(WallEnd, DVec3)>,
+}
+
+impl WallEnds {
+    /// That of the walls of a flow that do not pull; none without such walls.
+    pub fn new(groups: &[Group], sim: &SimBuilder<'_>) -> Option<Self> {
+        let walls = groups.iter().filter(|group| group.has_ends());
+        // Nothing is repelled here.
+        let shape = |group| BoundaryShape::of(group, Vec::new(), 0.0, sim);
+        let shapes: Vec<BoundaryShape> = walls.filter_map(shape).collect();
+        (!shapes.is_empty()).then_some(Self {
+            shapes,
+            edges: None,
+            beside: Vec::new(),
+            faces: FacesBefore::default(),
+            found: Vec::new(),
+        })
+    }
+
+    /// The rows at edges, which are found once; and room for all particles.
+    fn find_edges(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
+        if self.edges.is_some() {
+            return Ok(());
+        }
+        let mut edges = Vec::new();
+        for shape in &mut self.shapes {
+            shape.reach = cloud.kernel.support;
+            let view = step.world.phase(shape.group.phase);
+            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
+            add_edges(shape, cloud, reference, &mut edges);
+        }
+        if !edges.is_empty() {
+            self.faces.reserve(cloud.fluid);
+            self.beside.reserve(cloud.fluid);
+            self.found.reserve(cloud.fluid);
+        }
+        self.edges = Some(edges);
+        Ok(())
+    }
+
+    /// Finds the fluid particles beside edges, and takes them and those around them in. Whether there are any.
+    fn find_beside(&mut self, cloud: &FlowCloud) -> bool {
+        let Self { edges, beside, faces, .. } = self;
+        faces.clear();
+        beside.clear();
+        let limit = (WITHIN * cloud.kernel.support).powi(2);
+        for &w in edges.iter().flatten() {
+            let at = cloud.records[w].position();
+            for &i in cloud.pairs.boundary.row(w - cloud.fluid) {
+                let x = cloud.offset(at, cloud.records[i as usize].position());
+                if x.length_squared() < limit && faces.take_in(i) {
+                    beside.push(i);
+                }
+            }
+        }
+        beside.sort_unstable();
+        for &i in &*beside {
+            let fluids = cloud.near_row(i as usize).iter().take_while(|&&j| (j as usize) < cloud.fluid);
+            fluids.for_each(|&j| _ = faces.take_in(j));
+        }
+        !beside.is_empty()
+    }
+
+    /// Finds the faces before the particles that have been taken in.
+    fn find_faces(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
+        let Self { shapes, faces, .. } = self;
+        for shape in shapes {
+            let view = step.world.phase(shape.group.phase);
+            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
+            let motion = shape.look(cloud, reference);
+            let shape = &*shape;
+            let limit = BEFORE * shape.spacing;
+            faces.add(|i| {
+                let place = (cloud.is_close[i] != 0)
+                    .then(|| shape.place(cloud, i, reference, motion.as_ref()))?
+                    .filter(|place| place.distance < limit)?;
+                let nearness = 1.0 - (place.distance.max(0.0) / limit).powi(2);
+                let normal = shape.direction(cloud, &place).normalize_or_zero();
+                Some(nearness * shape.on_face(cloud, &place) * dyad(normal, normal))
+            });
+        }
+        Ok(())
+    }
+
+    /// Finds what is along walls for the particles beside edges.
+    fn find_along(&mut self, cloud: &FlowCloud) {
+        let Self { beside, faces, found, .. } = self;
+        let nothing = |&i: &u32| (WallEnd { i: i as usize, along: DMat3::ZERO }, DVec3::ZERO);
+        found.clear();
+        found.extend(beside.iter().map(nothing));
+        for_each_block(&mut found[..], &mut Vec::new(), &|_, found: &mut [(WallEnd, DVec3)]| {
+            for (end, way) in found {
+                if let Some(along_walls) = cloud.along_walls(end.i, faces) {
+                    (end.along, *way) = along_walls;
+                }
+            }
+        });
+    }
+
+    /// What of all ways along a wall is open, zero to one: whether one meets no wall on the way `along` it from particle `i`, within the support.
+    fn find_open(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
+        let Self { shapes, found, .. } = self;
+        for shape in shapes {
+            let view = step.world.phase(shape.group.phase);
+            let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
+            let motion = shape.look(cloud, reference);
+            let shape = &*shape;
+            for_each_block(&mut found[..], &mut Vec::new(), &|_, found: &mut [(WallEnd, DVec3)]| {
+                for (end, along) in found.iter_mut().filter(|(end, _)| end.along != DMat3::ZERO) {
+                    if let Some(place) = shape.place(cloud, end.i, reference, motion.as_ref()) {
+                        let nearest = (1..=WAY)
+                            .map(|k| k as f64 / WAY as f64 * cloud.kernel.support)
+                            .map(|way| shape.distance_from(cloud, &place, way * *along))
+                            .fold(f64::INFINITY, f64::min);
+                        end.along *= (nearest / (CLEAR * shape.spacing)).clamp(0.0, 1.0);
+                    }
+                }
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Run for WallEnds {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        let mut cloud = step.resources.get_mut::<FlowCloud>();
+        let half = 0.5 * step.clock.dt;
+        let mut ends = std::mem::take(&mut cloud.ends);
+        ends.clear();
+        ends.reserve(cloud.fluid);
+        self.find_edges(&cloud, step)?;
+        if self.find_beside(&cloud) {
+            self.find_faces(&cloud, step)?;
+            self.find_along(&cloud);
+            self.find_open(&cloud, step)?;
+            ends.extend(self.found.iter().map(|(end, _)| *end).filter(|end| end.along != DMat3::ZERO));
+        } else {
+            self.shapes.iter_mut().for_each(BoundaryShape::forget_motion);
+        }
+        let mut rates = std::mem::take(&mut cloud.compression);
+        ends.iter().for_each(|end| rates[end.i] -= cloud.rate_along(end, half));
+        (cloud.compression, cloud.ends) = (rates, ends);
+        Ok(())
+    }
+}
