@@ -12,6 +12,7 @@ use common::{
     all_plugins, crash, double, eulerian, failing, failing_metals, flow, metals, of_many_tasks, removal,
     simulation, with_formulation,
 };
+use meshless::formulations::fluid::FlowCloud;
 use meshless::parallel::own_rows;
 use meshless::ranks::{self, Cut};
 use meshless::record::StateHash;
@@ -100,6 +101,73 @@ fn flows() {
     assert_equal_bits("three dimensions", &flow(3), 60);
     assert_equal_bits("double precision", &double(&flow(3)), 60);
     assert_equal_bits("thin bodies", &thin(), 150);
+}
+
+/// Water that falls from a step in a tank along which it slides: loops need what is near their own particles and no more. The tank moves, or stands still.
+fn sliding(is_solid: bool, moves: bool, plugins: &str) -> Source {
+    let [water, outer, inner, at] = match is_solid {
+        true => [
+            "(0, 0, 0), max: (0.2, 0.5, 0.2)",
+            "(-0.15, -0.15, -0.15), max: (0.85, 0.7, 0.35)",
+            "(0, 0, 0), max: (0.7, 1, 0.2)",
+            "(0.1, 0, 0.1)",
+        ],
+        false => {
+            ["(0, 0), max: (0.2, 0.5)", "(-0.1, -0.1), max: (0.8, 0.7)", "(0, 0), max: (0.7, 1)", "(0.1, 0)"]
+        }
+    };
+    let (dimension, spacing) = if is_solid { ("Three", 0.05) } else { ("Two", 0.02) };
+    let motion =
+        if moves { r#"Velocity(on: Select(body: "tank"), value: ("0.2*sin(20*t)", None))"# } else { "" };
+    let text = format!(
+        r#"(dimension: {dimension}, gravity: (0.0, -9.81), domain: (min: (-0.3, -0.3, -0.3), max: (1.0, 0.9, 0.6), outside: Remove),
+            materials: {{"water": Fluid(density: 1000.0, eos: Tait(gamma: 7.0))}},
+            bodies: [
+                (name: "water", material: "water", shape: Box(min: {water}), spacing: {spacing:?}, formulation: Fluid,
+                 velocity: (0.5, 0.0), plugins: [{plugins}]),
+                (name: "tank", material: "wall", shape: Difference(Box(min: {outer}), Box(min: {inner})),
+                 spacing: {spacing:?}, formulation: Wall(slip: Free)),
+            ],
+            conditions: [{motion}],
+            probes: [Probe(name: "level", at: {at}, quantity: WaterLevel())],
+            plugins: [artificial_viscosity(alpha: 0.02, beta: 0.0)],
+            time: (end: 10.0))"#
+    );
+    Source::new("sliding.ron", text)
+}
+
+#[test]
+fn flows_that_slide_along_walls() {
+    assert_equal_bits("a tank that stands still", &sliding(true, false, "density_diffusion()"), 300);
+    assert_equal_bits("a tank that moves", &sliding(true, true, ""), 150);
+    assert_equal_bits("in the plane", &of_many_tasks(&sliding(false, true, "density_diffusion()")), 30);
+    assert_equal_bits("shifted", &sliding(false, false, "density_diffusion(), particle_shifting()"), 300);
+}
+
+/// Who looks at particles of other ranks sees them as they are.
+#[test]
+fn probes_and_neighbours_of_a_flow_are_those_of_one_rank() {
+    let look = || {
+        let mut sim = simulation(&sliding(true, false, "density_diffusion()"));
+        let mut seen = Vec::new();
+        for steps in [20, 25, 60] {
+            sim.run(|sim| sim.clock().step < steps).expect("a run");
+            let level = sim.measure("level").expect("a level");
+            seen.extend(level.into_iter().map(|(_, value)| value.to_bits()));
+            let cloud = FlowCloud::whole(sim.resources()).expect("a flow");
+            let counts = cloud.neighbor_counts(BodyId(0)).expect("counts");
+            seen.extend(counts.into_iter().map(|count| count as u64));
+            seen.extend(cloud.records().iter().map(|record| record.pressure().to_bits()));
+        }
+        seen
+    };
+    let alone = look();
+    assert!(alone.iter().any(|&bits| bits != 0));
+    for size in [2, 3] {
+        // Here old rows are unusable.
+        let seen = on_ranks(size, 1, |_| look());
+        assert!(seen.iter().all(|of_rank| *of_rank == alone), "{size} ranks");
+    }
 }
 
 #[test]

@@ -22,7 +22,7 @@ impl Neighbors {
     /// Counts the neighbours of the particles of a body: those of the reference configuration in solids, those that are near now
     /// in fluids. None where particles have no neighbours of their own.
     pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, Failure> {
-        if let Some(cloud) = sim.resources().try_get::<FlowCloud>()
+        if let Some(cloud) = FlowCloud::whole(sim.resources())
             && let Some(counts) = cloud.neighbor_counts(body)
         {
             return Ok(Self::of(&counts));

@@ -24,6 +24,7 @@ pub fn add(bodies: BodySet, sim: &mut SimBuilder<'_>) {
             .on_bodies(bodies)
             .after_any("wall_pressure")
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
             .reads_near::<Density>()
             .writes::<DensityGradient>(),
     );

@@ -50,10 +50,11 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
-    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a set has for a neighbour, ascending. `last` is memory that is kept.
+    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a set has for a neighbour, ascending; nothing for sets whose number is not
+    /// wanted. `last` is memory that is kept.
     pub fn join<const N: usize>(
         &mut self,
-        sets: &[[u32; N]],
+        (sets, is_wanted): (&[[u32; N]], impl Fn(usize) -> bool),
         (other, first): (&Self, u32),
         last: &mut Vec<u32>,
     ) {
@@ -63,8 +64,9 @@ impl NeighborList {
         // For every neighbour the number, from one on, of the last set that has it: most are in several lists of a set.
         last.clear();
         last.resize(other.indices.iter().max().map_or(0, |&most| most as usize + 1), 0);
-        for (set, number) in sets.iter().zip(1..) {
+        for (set, number) in sets.iter().zip(1_u32..) {
             let start = self.indices.len();
+            let set = if is_wanted(number as usize - 1) { &set[..] } else { &[] };
             for &j in set.iter().flat_map(|&row| other.row((row - first) as usize)) {
                 if last[j as usize] != number {
                     last[j as usize] = number;

@@ -34,5 +34,5 @@ pub use list::NeighborList;
 pub use parting::{Parted, Parting};
 pub use periodic::Periodic;
 pub use periodic::SHIFT;
-pub use search::NeighborSearch;
+pub use search::{Boxes, NeighborSearch};
 pub use verlet::VerletList;

@@ -46,6 +46,8 @@ pub(super) struct Query<'a> {
     pub order: Order<'a>,
     /// Half the edges of the boxes around the targets, m, where targets are boxes: a source within the radius of the box is a neighbour.
     pub halves: Option<&'a [DVec3]>,
+    /// The targets whose neighbours are wanted, ascending; none where those of all are.
+    pub only: Option<&'a [Range<usize>]>,
 }
 
 /// Order of a row.
@@ -60,6 +62,11 @@ pub(super) enum Order<'a> {
 }
 
 impl Query<'_> {
+    #[inline(always)]
+    fn is_wanted(&self, i: usize) -> bool {
+        self.only.is_none_or(|only| only.iter().any(|rows| rows.contains(&i)))
+    }
+
     /// Replaces what the list holds.
     pub fn fill(&self, buffers: &mut Buffers, list: &mut NeighborList) {
         let uniform =
@@ -145,6 +152,10 @@ impl<const D: usize, const PERIODIC: bool, const UNIFORM: bool, const BOXES: boo
         ends.clear();
         let mut used = 0;
         for i in self.rows {
+            if !self.query.is_wanted(i) {
+                ends.push(used);
+                continue;
+            }
             let start = used;
             let x_i = targets.positions[i];
             let support_i = if UNIFORM { 0.0 } else { targets.support_of(i) };

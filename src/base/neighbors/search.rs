@@ -1,5 +1,7 @@
 //! The search: checks of the input, the grid, then the rows.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::grid::Grid;
@@ -33,6 +35,21 @@ struct SearchTask<'a> {
     periodic: &'a Periodic,
     /// Half the edges of the boxes around the targets, m, where targets are boxes.
     halves: Option<&'a [DVec3]>,
+    /// The targets whose neighbours are wanted, ascending; none where those of all are.
+    only: Option<&'a [Range<usize>]>,
+}
+
+/// Boxes around which is looked for neighbours.
+#[derive(Clone, Copy)]
+pub struct Boxes<'a> {
+    /// Their centres, m.
+    pub centers: &'a [DVec3],
+    /// Half of their edges, m.
+    pub halves: &'a [DVec3],
+    /// The boxes whose rows are wanted, ascending; the rows of the others stay empty.
+    pub wanted: &'a [Range<usize>],
+    /// Where the groups of sources end that order a row.
+    pub groups: &'a [u32],
 }
 
 impl NeighborSearch {
@@ -48,7 +65,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None, only: None };
         self.build(cloud, cloud, wanted, list)
     }
 
@@ -65,7 +82,8 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: true, skin, groups: Some(groups), periodic, halves: None };
+        let wanted =
+            SearchTask { same_set: true, skin, groups: Some(groups), periodic, halves: None, only: None };
         self.build(cloud.first(targets), cloud, wanted, list)
     }
 
@@ -82,7 +100,7 @@ impl NeighborSearch {
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: false, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: false, skin, groups: None, periodic, halves: None, only: None };
         self.build(targets, sources, wanted, list)
     }
 
@@ -101,7 +119,8 @@ impl NeighborSearch {
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(positions, self.sources.largest_support);
         targets.check("target")?;
-        let wanted = SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: None };
+        let wanted =
+            SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: None, only: None };
         let radius = self.radius(targets, wanted)?;
         self.fill(targets, radius, wanted, list);
         Ok(())
@@ -112,27 +131,60 @@ impl NeighborSearch {
     /// # Errors
     /// See [`NeighborError`].
     pub fn sort(&mut self, sources: Cloud<'_>, skin: f64, periodic: &Periodic) -> Result<(), NeighborError> {
-        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None };
+        let wanted = SearchTask { same_set: true, skin, groups: None, periodic, halves: None, only: None };
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
-    /// Lists the sources of the search before that are within the support radius and the skin of each of the boxes around these centres, m, with these halves of
-    /// their edges, m. Otherwise as [`NeighborSearch::of_others`].
+    /// Lists the sources of the search before that are within the support radius and the skin of each of some boxes. Otherwise as [`NeighborSearch::of_others`].
     ///
     /// # Errors
     /// See [`NeighborError`].
     pub fn of_boxes(
         &mut self,
-        (centers, halves, groups): (&[DVec3], &[DVec3], &[u32]),
+        boxes: Boxes<'_>,
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        let mut buffers = std::mem::take(&mut self.buffers);
+        let done = self.of_boxes_with(&mut buffers, boxes, skin, periodic, list);
+        self.buffers = buffers;
+        done
+    }
+
+    /// The same, as long as the search stays as it is, in memory of its own.
+    ///
+    /// # Errors
+    /// See [`NeighborError`].
+    pub fn of_more_boxes(
+        &self,
+        boxes: Boxes<'_>,
+        skin: f64,
+        periodic: &Periodic,
+        list: &mut NeighborList,
+    ) -> Result<(), NeighborError> {
+        self.of_boxes_with(&mut Buffers::default(), boxes, skin, periodic, list)
+    }
+
+    fn of_boxes_with(
+        &self,
+        buffers: &mut Buffers,
+        Boxes { centers, halves, wanted, groups }: Boxes<'_>,
         skin: f64,
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let targets = Cloud::uniform(centers, self.sources.largest_support);
-        let wanted =
-            SearchTask { same_set: false, skin, groups: Some(groups), periodic, halves: Some(halves) };
+        let wanted = SearchTask {
+            same_set: false,
+            skin,
+            groups: Some(groups),
+            periodic,
+            halves: Some(halves),
+            only: Some(wanted),
+        };
         let radius = self.radius(targets, wanted)?;
-        self.fill(targets, radius, wanted, list);
+        self.query(targets, radius, wanted).fill(buffers, list);
         Ok(())
     }
 
@@ -205,7 +257,13 @@ impl NeighborSearch {
 
     /// Lists the neighbours of the targets in the grid.
     fn fill(&mut self, targets: Cloud<'_>, radius: f64, wanted: SearchTask<'_>, list: &mut NeighborList) {
-        let SearchTask { same_set, skin, groups, periodic, halves } = wanted;
+        let mut buffers = std::mem::take(&mut self.buffers);
+        self.query(targets, radius, wanted).fill(&mut buffers, list);
+        self.buffers = buffers;
+    }
+
+    fn query<'a>(&'a self, targets: Cloud<'a>, radius: f64, wanted: SearchTask<'a>) -> Query<'a> {
+        let SearchTask { same_set, skin, groups, periodic, halves, only } = wanted;
         let GridSources { count, bounds: (low, high), .. } = self.sources;
         let more = if same_set { (low, high) } else { targets.bounds() };
         let solid = low.z.min(more.0.z) < high.z.max(more.1.z);
@@ -214,9 +272,7 @@ impl NeighborSearch {
             Some(ends) if ends.iter().all(|&end| end as usize >= count) => Order::Cells,
             Some(ends) => Order::Groups(ends),
         };
-        let query =
-            Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order, halves };
-        query.fill(&mut self.buffers, list);
+        Query { grid: &self.grid, targets, same_set, radius, skin, periodic, solid, order, halves, only }
     }
 }
 

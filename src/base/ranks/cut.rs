@@ -7,9 +7,16 @@ const UNEVEN: f64 = 1.05;
 /// Share that a rank without one is taken to have had.
 const LEAST: f64 = 1e-3;
 
+/// Load of a rank over the mean above which blocks that differ are divided by their weights.
+const UNEVEN_WEIGHTS: f64 = 1.1;
+
 /// Shares of the ranks in every loop: rank r computes the part from `bounds[r]` to `bounds[r + 1]`. Results do not depend on it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cut(Vec<f64>);
+pub struct Cut {
+    bounds: Vec<f64>,
+    /// Of loops over that many blocks, which differ: where the part of each rank ends.
+    weighed: Vec<(usize, Vec<usize>)>,
+}
 
 impl Cut {
     /// Equal shares of `size` ranks.
@@ -32,7 +39,7 @@ impl Cut {
         // The last rank with a share has all that is left, whatever rounding makes of the sum.
         let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0);
         bounds[last + 1..].fill(1.0);
-        Self(bounds)
+        Self { bounds, weighed: Vec::new() }
     }
 
     /// A cut by which ranks that have worked for so long, s, on their shares are ready together; none where they nearly are, or where nothing was measured.
@@ -42,7 +49,7 @@ impl Cut {
             return None;
         }
         // Half of the way: times scatter.
-        let share = |rank: usize| self.0[rank + 1] - self.0[rank];
+        let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];
         let speeds: Vec<f64> =
             (0..seconds.len()).map(|k| share(k).max(LEAST) / seconds[k].max(1e-9)).collect();
         let all: f64 = speeds.iter().sum();
@@ -52,13 +59,44 @@ impl Cut {
 
     /// Blocks of rank `rank` among `count`.
     pub fn blocks(&self, rank: usize, count: usize) -> Range<usize> {
-        let bound = |k: usize| ((self.0[k] * count as f64).round() as usize).min(count);
+        if let Some((_, ends)) = self.weighed.iter().find(|(weighed, _)| *weighed == count) {
+            return rank.checked_sub(1).map_or(0, |before| ends[before])..ends[rank];
+        }
+        let bound = |k: usize| ((self.bounds[k] * count as f64).round() as usize).min(count);
         bound(rank)..bound(rank + 1)
+    }
+
+    /// The cut that gives ranks their shares of the weights of blocks, in loops over as many; none where they have them, or where nothing weighs.
+    pub fn weighed(&self, weights: &[f64]) -> Option<Self> {
+        let (count, sum) = (weights.len(), weights.iter().sum::<f64>());
+        let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];
+        let load = |rank: usize| weights[self.blocks(rank, count)].iter().sum::<f64>();
+        let is_uneven = |rank: usize| load(rank) > UNEVEN_WEIGHTS * share(rank).max(1.0 / count as f64) * sum;
+        if sum <= 0.0 || !(0..self.size()).any(is_uneven) {
+            return None;
+        }
+        let (mut end, mut before) = (0, 0.0);
+        let ends = self.bounds[1..].iter().map(|bound| {
+            // A block goes to the rank that has the most of it.
+            while end < count && before + 0.5 * weights[end] < bound * sum {
+                before += weights[end];
+                end += 1;
+            }
+            end
+        });
+        let mut ends: Vec<usize> = ends.collect();
+        // Whatever rounding makes of the sum: the last rank with a share has all that is left.
+        let last = (0..self.size()).rposition(|rank| share(rank) > 0.0).unwrap_or(0);
+        ends[last..].fill(count);
+        let mut cut = self.clone();
+        cut.weighed.retain(|(weighed, _)| *weighed != count);
+        cut.weighed.push((count, ends));
+        (cut != *self).then_some(cut)
     }
 
     /// Number of ranks.
     pub fn size(&self) -> usize {
-        self.0.len() - 1
+        self.bounds.len() - 1
     }
 }
 
@@ -86,7 +124,7 @@ mod tests {
         let speeds = [1.0, 2.0, 1.0];
         let mut cut = Cut::even(3);
         for _ in 0..20 {
-            let seconds: Vec<f64> = (0..3).map(|k| (cut.0[k + 1] - cut.0[k]) / speeds[k]).collect();
+            let seconds: Vec<f64> = (0..3).map(|k| (cut.bounds[k + 1] - cut.bounds[k]) / speeds[k]).collect();
             cut = cut.balanced(&seconds).unwrap_or(cut);
         }
         let blocks: Vec<usize> = (0..3).map(|rank| cut.blocks(rank, 1000).len()).collect();
@@ -96,6 +134,30 @@ mod tests {
         );
         assert_eq!(Cut::even(2).balanced(&[1.0, 1.02]), None);
         assert_eq!(Cut::even(2).balanced(&[0.0, 0.0]), None);
+    }
+
+    #[test]
+    fn blocks_that_differ_are_divided_by_their_weights() {
+        // All work is in the second quarter.
+        let weights: Vec<f64> = (0..100).map(|k| if (25..50).contains(&k) { 1.0 } else { 0.0 }).collect();
+        for shares in [vec![1.0, 1.0], vec![1.0, 3.0], vec![2.0, 0.0, 1.0, 2.0], vec![1.0, 1.0, 0.0]] {
+            let even = Cut::by_weights(&shares);
+            let cut = even.weighed(&weights).expect("another cut");
+            let mut end = 0;
+            for (rank, share) in shares.iter().enumerate() {
+                let part = cut.blocks(rank, weights.len());
+                assert_eq!(part.start, end);
+                end = part.end;
+                let load: f64 = weights[part].iter().sum();
+                assert!((load - 25.0 * share / shares.iter().sum::<f64>()).abs() <= 0.5, "{shares:?} {rank}");
+            }
+            assert_eq!(end, weights.len());
+            assert_eq!(cut.blocks(1, 99), even.blocks(1, 99));
+            assert_eq!(cut.weighed(&weights), None);
+        }
+        assert_eq!(Cut::even(2).weighed(&[1.0; 64]), None);
+        assert_eq!(Cut::even(2).weighed(&[0.0; 64]), None);
+        assert_eq!(Cut::even(2).weighed(&[]), None);
     }
 
     #[test]

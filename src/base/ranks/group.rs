@@ -126,6 +126,11 @@ pub fn balanced_cut() -> Option<Cut> {
     with(|group| group.cut.balanced(&seconds))?
 }
 
+/// How loops are divided; none in a program that runs alone.
+pub fn cut() -> Option<Cut> {
+    with(|group| group.cut.clone())
+}
+
 /// Divides loops anew, between two steps, with the same cut on all ranks.
 ///
 /// # Panics
@@ -151,7 +156,7 @@ pub fn traffic() -> Traffic {
 }
 
 /// The values of all ranks.
-fn gather(value: u64) -> Vec<u64> {
+pub(super) fn gather(value: u64) -> Vec<u64> {
     let values = with(|group| {
         let (rank, size) = (group.ranks.rank(), group.ranks.size());
         let mut values = vec![0_u64; size];

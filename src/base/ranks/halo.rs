@@ -79,19 +79,55 @@ impl Halo {
 
     /// [`Halo::fill`] for rows of `size` bytes.
     pub fn fill_bytes(&self, bytes: &mut [u8], size: usize) {
+        self.fill_parts(
+            size,
+            bytes,
+            &mut |bytes, row, to| to.extend_from_slice(&bytes[row * size..(row + 1) * size]),
+            &mut |bytes, row, from| bytes[row * size..(row + 1) * size].copy_from_slice(from),
+        );
+        self.unread
+            .iter()
+            .for_each(|&row| bytes[row as usize * size..(row as usize + 1) * size].fill(SPOILED));
+    }
+
+    /// Gives the rows of the halo what their ranks take out of `rows`: `take` gives it for a row, `put` gets it for a row of the halo.
+    pub fn fill_with<S: ?Sized, T: Pod>(
+        &self,
+        rows: &mut S,
+        take: impl Fn(&S, usize) -> T,
+        mut put: impl FnMut(&mut S, usize, T),
+    ) {
+        self.fill_parts(
+            size_of::<T>(),
+            rows,
+            &mut |rows, row, to| to.extend_from_slice(bytemuck::bytes_of(&take(rows, row))),
+            &mut |rows, row, from| put(rows, row, bytemuck::pod_read_unaligned(from)),
+        );
+    }
+
+    fn fill_parts<S: ?Sized>(
+        &self,
+        size: usize,
+        rows: &mut S,
+        take: &mut dyn FnMut(&S, usize, &mut Vec<u8>),
+        put: &mut dyn FnMut(&mut S, usize, &[u8]),
+    ) {
         group::with(|group| {
             let (mut out, mut into) = (std::mem::take(&mut group.parts), std::mem::take(&mut group.received));
             out.clear();
-            let at = |row: u32| row as usize * size..(row as usize + 1) * size;
-            self.send.iter().for_each(|&row| out.extend_from_slice(&bytes[at(row)]));
+            self.send.iter().for_each(|&row| take(rows, row as usize, &mut out));
             into.resize(self.receive.len() * size, 0);
             let in_bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size).collect::<Vec<_>>();
             group.exchange((&out, &in_bytes(&self.send_cuts)), (&mut into, &in_bytes(&self.receive_cuts)));
             for (&row, from) in self.receive.iter().zip(into.chunks_exact(size)) {
-                bytes[at(row)].copy_from_slice(from);
+                put(rows, row as usize, from);
             }
-            self.unread.iter().for_each(|&row| bytes[at(row)].fill(SPOILED));
             (group.parts, group.received) = (out, into);
         });
+    }
+
+    /// The rows of other ranks that are not in the halo, where these are made unusable.
+    pub fn unread(&self) -> &[u32] {
+        &self.unread
     }
 }

@@ -12,6 +12,7 @@ mod cut;
 mod exchange;
 mod group;
 mod halo;
+mod join;
 mod tree;
 
 pub use collective::Ranks;
@@ -19,8 +20,9 @@ pub use cut::Cut;
 pub use exchange::{share, share_bodies, share_some, spoil_others};
 pub(crate) use group::work;
 pub use group::{
-    Traffic, abort, agree, any, balanced_cut, enter, has_several, is_first, own_blocks, set_cut,
+    Traffic, abort, agree, any, balanced_cut, cut, enter, has_several, is_first, own_blocks, set_cut,
     spoil_old_rows, traffic,
 };
 pub use halo::Halo;
+pub use join::{concatenate, join};
 pub(crate) use tree::{complete, maximal_subtrees};

@@ -16,7 +16,7 @@ const VISCOUS: f64 = 0.01;
 
 /// Notes on the support of fluids; the simulation has done some steps.
 pub fn notes(scene: &Scene, sim: &Simulation) -> Vec<String> {
-    let Some(cloud) = sim.resources().try_get::<FlowCloud>() else { return Vec::new() };
+    let Some(cloud) = FlowCloud::whole(sim.resources()) else { return Vec::new() };
     let fluids: Vec<(&Group, &FluidState)> =
         cloud.groups.iter().filter_map(|group| Some((group, group.fluid()?))).collect();
     let Some((first, _)) = fluids.first() else { return Vec::new() };

@@ -73,6 +73,18 @@ impl FourOfColumn {
         ])
     }
 
+    /// The bits in which any component differs.
+    #[inline(always)]
+    pub fn difference(self, other: Self) -> u64 {
+        let mut bits = [0; 4];
+        for row in 0..3 {
+            for lane in 0..4 {
+                bits[lane] |= self.0[row].0[lane].to_bits() ^ other.0[row].0[lane].to_bits();
+            }
+        }
+        bits[0] | bits[1] | bits[2] | bits[3]
+    }
+
     /// Products of components.
     #[inline(always)]
     pub fn times<A: FourLanes>(self, a: A, other: Self) -> Self {

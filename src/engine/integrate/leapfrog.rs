@@ -3,6 +3,7 @@
 //! A force acts through the mobility, the inverse mass per axis. Where it is zero the motion is prescribed and the
 //! force acts on the constraint; its work, -f.v of the two half-steps, is booked here.
 
+use std::any::TypeId;
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
@@ -74,6 +75,8 @@ struct MotionSum {
     twice_kinetic: f64,
     /// Largest squared acceleration, m2/s4.
     acceleration_squared: f64,
+    /// Bits that any component has changed.
+    changed: u64,
 }
 
 impl BlockSum for MotionSum {
@@ -82,6 +85,7 @@ impl BlockSum for MotionSum {
         self.constraint_power += next.constraint_power;
         self.twice_kinetic += next.twice_kinetic;
         self.acceleration_squared = self.acceleration_squared.max(next.acceleration_squared);
+        self.changed |= next.changed;
     }
 }
 
@@ -142,8 +146,8 @@ impl Run for KickDrift {
             let force = view.read_own::<Force>()?;
             let mobility = view.read_own::<Mobility>()?;
             let mass = view.read_own::<Mass>()?;
-            let mut velocity = view.write_own::<Velocity>()?;
-            let mut position = view.write_own::<Position>()?;
+            let mut velocity = view.write_unmarked::<Velocity>()?;
+            let mut position = view.write_unmarked::<Position>()?;
             let slices = (
                 &mut position[rows.clone()],
                 (&mut velocity[rows.clone()], &force[rows.clone()], &mobility[rows.clone()], &mass[rows]),
@@ -152,6 +156,12 @@ impl Run for KickDrift {
             let sum = for_each_own_block(slices, &mut self.sums, &|_, (positions, rows): (_, Rows<'_>)| {
                 run_hot(FirstKick { dt, gravity, positions, rows })
             });
+            drop((velocity, position));
+            // What stands still needs no exchange.
+            if sum.changed != 0 {
+                view.mark_own(TypeId::of::<Velocity>());
+                view.mark_own(TypeId::of::<Position>());
+            }
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
             step.ledger.add(gravity_work, id, dt * sum.gravity_power);
         }
@@ -173,14 +183,18 @@ impl HotLoop for FirstKick<'_> {
     fn run<A: FourLanes>(self, a: A) -> MotionSum {
         let gravity = FourOfColumn::splat(self.gravity);
         let (mut gravity_power, mut constraint_power) = (Lanes4::ZERO, Lanes4::ZERO);
+        let mut changed = 0;
         let positions: &mut [f64] = bytemuck::cast_slice_mut(self.positions);
         let of = KickComponents::new(self.rows);
         for k in 0..of.fours() {
             let (f, mobility, mass, at) = of.four(k);
             let (x, velocity) = (&mut positions[at.clone()], &mut of.velocity[at]);
-            let v = FourOfColumn::load(velocity).plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
+            let (before, place) = (FourOfColumn::load(velocity), FourOfColumn::load(x));
+            let v = before.plus_scaled(a, 0.5 * self.dt, f.times(a, mobility));
             v.store(velocity);
-            FourOfColumn::load(x).plus_scaled(a, self.dt, v).store(x);
+            let moved = place.plus_scaled(a, self.dt, v);
+            moved.store(x);
+            changed |= v.difference(before) | moved.difference(place);
             let weight = mass.times(a, gravity);
             gravity_power = weight.dot_onto(a, v, gravity_power);
             constraint_power = f.where_held(a, mobility).dot_onto(a, v, constraint_power);
@@ -188,6 +202,7 @@ impl HotLoop for FirstKick<'_> {
         MotionSum {
             gravity_power: gravity_power.sum(),
             constraint_power: constraint_power.sum(),
+            changed,
             ..MotionSum::default()
         }
     }
@@ -213,7 +228,7 @@ impl Run for Kick {
             let force = view.read_own::<Force>()?;
             let mobility = view.read_own::<Mobility>()?;
             let mass = view.read_own::<Mass>()?;
-            let mut velocity = view.write_own::<Velocity>()?;
+            let mut velocity = view.write_unmarked::<Velocity>()?;
             let slices = (
                 &mut velocity[rows.clone()],
                 &force[rows.clone()],
@@ -223,10 +238,13 @@ impl Run for Kick {
             let sum = for_each_own_block(slices, &mut self.sums, &|_, rows: Rows<'_>| {
                 run_hot(SecondKick { dt, rows })
             });
+            drop(velocity);
+            if sum.changed != 0 {
+                view.mark_own(TypeId::of::<Velocity>());
+            }
             step.ledger.add(constraints, id, -0.5 * dt * sum.constraint_power);
             step.ledger.set(kinetic, id, 0.5 * sum.twice_kinetic);
             if !sum.twice_kinetic.is_finite() {
-                drop(velocity);
                 let broken =
                     view.read::<Velocity>()?[rows].iter().position(|v| !v.0.is_finite()).unwrap_or(0);
                 return Err(step.unstable("velocity is not a finite number", id, broken));
@@ -251,7 +269,7 @@ impl HotLoop for SecondKick<'_> {
     #[inline(always)]
     fn run<A: FourLanes>(self, a: A) -> MotionSum {
         let (mut constraint_power, mut twice_kinetic) = (Lanes4::ZERO, Lanes4::ZERO);
-        let mut acceleration_squared = Lanes4::ZERO;
+        let (mut acceleration_squared, mut changed) = (Lanes4::ZERO, 0);
         let of = KickComponents::new(self.rows);
         for k in 0..of.fours() {
             let (f, mobility, mass, at) = of.four(k);
@@ -261,6 +279,7 @@ impl HotLoop for SecondKick<'_> {
             let acceleration = f.times(a, mobility);
             let v = before.plus_scaled(a, 0.5 * self.dt, acceleration);
             v.store(velocity);
+            changed |= v.difference(before);
             twice_kinetic = mass.times(a, v).dot_onto(a, v, twice_kinetic);
             acceleration_squared = a.larger(acceleration.squares(a), acceleration_squared);
         }
@@ -269,6 +288,7 @@ impl HotLoop for SecondKick<'_> {
             constraint_power: constraint_power.sum(),
             twice_kinetic: twice_kinetic.sum(),
             acceleration_squared: p.max(q).max(r.max(s)),
+            changed,
             ..MotionSum::default()
         }
     }

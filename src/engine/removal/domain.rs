@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::system::RemovalRule;
-use crate::parallel::{BLOCK, for_each_block};
+use crate::parallel::{BLOCK, for_each_block, for_each_own_block};
 use crate::plugin::SimBuilder;
+use crate::ranks;
 use crate::rigid::is_rigid;
 use crate::scene::{Axis, Dimension, Outside};
 use crate::schedule::{Step, StepError};
@@ -58,16 +59,24 @@ impl RemovalRule for RemoveOutside {
     fn rows(&mut self, step: &Step<'_>, body: BodyId, out: &mut Vec<u32>) -> Result<(), StepError> {
         let Self { domain, counts } = self;
         let (view, rows) = step.world.body_view(body);
-        let position = view.read::<Position>()?;
-        let position = &position[rows.clone()];
         let outside = |x: &Position| !domain.contains(x.0);
-        let any = for_each_block(position, counts, &|_, block: &[Position]| {
+        let count = |_, block: &[Position]| {
             let mut count = 0;
             for x in block {
                 count += u32::from(outside(x));
             }
             f64::from(count)
-        });
+        };
+        if ranks::has_several() {
+            // Each rank looks at its own, and at all where there is something to remove.
+            let position = view.read_own::<Position>()?;
+            if for_each_own_block(&position[rows.clone()], counts, &count) == 0.0 {
+                return Ok(());
+            }
+        }
+        let position = view.read::<Position>()?;
+        let position = &position[rows.clone()];
+        let any = for_each_block(position, counts, &count);
         // A rigid body leaves as a whole: what is left of it would go on alone.
         if any == 0.0 || (any as usize) < position.len() && is_rigid(step, body) {
             return Ok(());

@@ -11,6 +11,7 @@ use super::stage::Stage;
 use super::step::{Step, StepError};
 use super::step_part::Cadence;
 use super::system::System;
+use crate::ranks;
 use crate::world::{Access, Declared, Mode, PhaseId};
 
 /// Why the systems cannot be put in order.
@@ -85,6 +86,9 @@ impl Schedule {
             if wanted(system.stage) && step.part.has(self.cadences[k]) {
                 step.ledger.enter(k);
                 let start = Instant::now();
+                if system.needs_all_packed() && ranks::has_several() {
+                    step.resources.complete_packed();
+                }
                 step.world.enter(Some(k));
                 let done = system.work.run(step);
                 step.world.enter(None);

@@ -51,12 +51,28 @@ impl SharedValues {
 pub struct Resources {
     by_type: BTreeMap<(TypeId, Option<PhaseId>), RefCell<Box<dyn Any + Send>>>,
     shared: Vec<RefCell<Box<dyn Any + Send>>>,
+    /// What exchanges packed rows among ranks.
+    completed_by: Vec<fn(&Resources)>,
 }
 
 impl Resources {
     /// Resources with values that have a place.
     pub fn with_shared(values: SharedValues) -> Self {
-        Self { by_type: BTreeMap::new(), shared: values.0.into_iter().map(RefCell::new).collect() }
+        Self {
+            by_type: BTreeMap::new(),
+            shared: values.0.into_iter().map(RefCell::new).collect(),
+            completed_by: Vec::new(),
+        }
+    }
+
+    /// Has `complete` called before a system reads packed rows of all ranks.
+    pub fn complete_packed_by(&mut self, complete: fn(&Self)) {
+        self.completed_by.push(complete);
+    }
+
+    /// Exchanges packed rows of which ranks have some alone.
+    pub(super) fn complete_packed(&self) {
+        self.completed_by.iter().for_each(|complete| complete(self));
     }
 
     /// The value in its place, for reading. Panics where the place is that of another simulation.

@@ -48,6 +48,8 @@ pub struct System {
     /// Access to rows that are packed from several phases.
     pub(super) packed: Vec<Access>,
     reads_all: bool,
+    /// Whether packed rows near those of this rank are enough for it.
+    is_local: bool,
     pub(super) phases: Option<Vec<PhaseId>>,
     bodies: Option<BodySet>,
     long: bool,
@@ -67,6 +69,7 @@ impl System {
             access: Vec::new(),
             packed: Vec::new(),
             reads_all: false,
+            is_local: false,
             phases: None,
             bodies: None,
             long: false,
@@ -169,6 +172,18 @@ impl System {
     pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
         self.packed.push(Access { column: rows, mode });
         self
+    }
+
+    /// Declares that of packed rows it reads those of this rank and what is near them alone, or asks for the rest itself: no others are exchanged for it.
+    pub fn reads_own_packed(mut self) -> Self {
+        self.is_local = true;
+        self
+    }
+
+    /// Whether packed rows of all ranks must be there when it runs.
+    pub(super) fn needs_all_packed(&self) -> bool {
+        let reads = |access: &Access| matches!(access.mode, Mode::Reads | Mode::ReadsNear);
+        !self.is_local && self.packed.iter().any(reads)
     }
 
     /// Declares access to several.

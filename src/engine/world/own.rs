@@ -56,6 +56,11 @@ impl<'a> PhaseView<'a> {
         self.column_mut()
     }
 
+    /// Column `T` for writing rows of this rank by a loop that finds out whether it changes any: if so, [`PhaseView::mark_own`] comes after it.
+    pub(crate) fn write_unmarked<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
+        self.column_mut()
+    }
+
     /// Column `T` for reading rows of this rank and those of its halo, which are exchanged if every rank has its own alone. The others may be old.
     pub fn read_halo<T: Column>(&self, halo: &Halo) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         let column = ColumnInfo::of::<T>();

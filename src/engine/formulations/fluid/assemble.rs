@@ -7,7 +7,8 @@ use glam::DVec3;
 use super::formulation::FluidBody;
 use super::systems;
 use crate::formulations::fluid::cloud::{
-    BoundaryEdges, BoundarySurface, FlowCloud, FluidState, Group, Neighborhood, Role, Viscosities,
+    BoundaryEdges, BoundarySurface, FlowCloud, FluidState, Group, Neighborhood, OtherParticles, Role,
+    Viscosities,
 };
 use crate::formulations::fluid::lanes::{FlowParticle, FluidKernel, Periods};
 use crate::formulations::fluid::lists::{
@@ -73,6 +74,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let (repulsion, reach) = Repulsion::new(&bodies.groups, common.kernel.smoothing_length(), sim);
     let groups = bodies.groups.clone();
     let mut cloud = cloud(bodies, common, reach, sim)?;
+    cloud.decide_what_others_know();
     let spin = cloud.viscosities.spin;
     advice::unfelt_walls(&walls, spin, sim);
     let (walls, touching, gravity) = (advice::walls(sim), sim.scene().touching_pairs(), sim.gravity());
@@ -86,6 +88,7 @@ pub fn add_systems(sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         checks::flow_is_slow(&mut cloud, setup.world)?;
         advice::sinking(&cloud, &walls, &touching, gravity, setup);
         setup.resources.insert(cloud);
+        setup.resources.complete_packed_by(FlowCloud::complete);
         Ok(())
     });
     systems::add(&groups, spin, repulsion, sim)
@@ -205,6 +208,7 @@ fn cloud(
         before: Vec::new(),
         records: vec![FlowParticle::default(); total],
         is_still: Vec::new(),
+        others: OtherParticles::default(),
         blocks,
         pairs: FlowPairs::new(skins, periodic, ends, thin, plane).with_gaps(gaps),
         near: NearRows::default(),

@@ -24,7 +24,7 @@ pub(crate) fn fields() -> [Field; 2] {
     let vorticity = Field::with_input("vorticity", "1/s", DVec3::COMPONENTS, needs(), |input, out| {
         let (view, _) = input.world.body_view(input.body);
         let velocity = view.read::<Velocity>()?;
-        let cloud = input.resources.get::<FlowCloud>();
+        let Some(cloud) = FlowCloud::whole(input.resources) else { return Ok(()) };
         let mut rows = vec![DVec3::ZERO; input.rows.len()];
         let pass = Vorticity { cloud: &cloud, velocity: &velocity };
         cloud.for_each_row(input.rows.start, &mut rows, &mut RowSums::default(), &pass);
@@ -32,7 +32,7 @@ pub(crate) fn fields() -> [Field; 2] {
         Ok(())
     });
     let surface = Field::with_input("free_surface", "1", f64::COMPONENTS, needs(), |input, out| {
-        let cloud = input.resources.get::<FlowCloud>();
+        let Some(cloud) = FlowCloud::whole(input.resources) else { return Ok(()) };
         let cloud: &FlowCloud = &cloud;
         let mut rows = vec![0.0; input.rows.len()];
         let output = |i: usize, moment: &MomentMatrix, first: DVec3| free_surface(cloud, i, moment, first);

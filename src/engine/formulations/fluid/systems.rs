@@ -79,12 +79,14 @@ pub fn add(
         .on_phases(phases.iter().copied())
         .touches_packed(FLOW_RECORDS, Mode::Writes)
         .touches_packed(FLOW_LOADS, Mode::Writes)
+        .reads_own_packed()
         .after(REMOVAL);
     sim.add_system(columns.into_iter().fold(lists, |system, column| system.touches(column, Mode::Writes)));
     sim.add_system(
         System::new(Stage::Neighbors, COMPRESSION, Compression)
             .on_phases([fluid])
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
             .touches_packed(COMPRESSION_RATES, Mode::Writes)
             .after(NEIGHBORS),
     );
@@ -93,6 +95,7 @@ pub fn add(
             System::new(Stage::Neighbors, "fluid_repulsion", repulsion)
                 .on_phases(phases)
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(REPELLED, Mode::Writes)
                 .reads_near::<ReferencePosition>()
                 .writes::<RangeShortfall>()
@@ -106,6 +109,7 @@ pub fn add(
         let system = System::new(Stage::Boundary, "fluid_spin", Spin::default())
             .on_phases([fluid])
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
             .touches_packed(SPINS, Mode::Writes);
         sim.add_system(if boundaries.is_empty() { system } else { system.after(WALL_PRESSURE) });
     }
@@ -122,6 +126,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
             System::new(Stage::Neighbors, EDGE_MOTION, edges)
                 .on_phases(boundaries.iter().copied().chain([fluid]))
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
                 .touches_packed(EDGES, Mode::Writes)
                 .reads_near::<ReferencePosition>()
@@ -134,6 +139,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
             System::new(Stage::Neighbors, WALL_ENDS, ends)
                 .on_phases(boundaries.iter().copied().chain([fluid]))
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
                 .touches_packed(ENDS, Mode::Writes)
                 .reads_near::<ReferencePosition>()
@@ -146,6 +152,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
             System::new(Stage::Neighbors, WALL_COMPRESSION, WallCompression::default())
                 .on_phases([fluid])
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
                 .after(before),
         );
@@ -157,6 +164,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
             System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
                 .on_phases([fluid])
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(COMPRESSION_RATES, Mode::Writes)
                 .after(before),
         );
@@ -172,6 +180,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
         System::new(Stage::Gradients, "fluid_continuity", continuity)
             .on_phases([fluid])
             .touches_packed(COMPRESSION_RATES, Mode::Reads)
+            .reads_own_packed()
             .reads::<DensityRate>()
             .reads::<Mass>()
             .reads::<Removed>()
@@ -183,6 +192,7 @@ fn add_state(sim: &mut SimBuilder<'_>, fluid: PhaseId, account: Option<String>) 
         System::new(Stage::Constitutive, "fluid_pressure", pressure)
             .on_phases([fluid])
             .touches_packed(FLOW_RECORDS, Mode::Writes)
+            .reads_own_packed()
             .reads::<Density>()
             .reads::<Mass>()
             .reads::<Removed>()
@@ -199,6 +209,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(FLOW_RECORDS, Mode::Writes)
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
                 .writes::<Pressure>()
@@ -210,6 +221,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                     .on_phases(boundaries.iter().copied())
                     .in_long_steps()
                     .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                    .reads_own_packed()
                     .touches_packed(EDGES, Mode::Writes)
                     .after(WALL_PRESSURE),
             );
@@ -222,6 +234,7 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
                 .on_phases(boundaries.iter().copied())
                 .in_long_steps()
                 .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+                .reads_own_packed()
                 .touches_packed(FLOW_LOADS, Mode::ReadsNear)
                 .touches_packed(GAP_FORCES, Mode::Writes)
                 .reads_near::<Velocity>()

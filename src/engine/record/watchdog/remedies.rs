@@ -61,7 +61,7 @@ impl Remedies {
 
     /// What a fluid under tension wants, or the one of that name; none if it has it.
     pub fn of_tension(&self, step: &Step<'_>, name: Option<&str>) -> Option<String> {
-        let cloud = step.resources.try_get::<FlowCloud>()?;
+        let cloud = FlowCloud::whole(step.resources)?;
         let mut fluids = cloud.groups.iter().filter(|group| group.fluid().is_some());
         fluids.find_map(|group| {
             let body = &step.world.body(group.body).name;

@@ -53,7 +53,7 @@ impl WrongSign {
 
     /// Warns of every account that has given energy; the warning keeps up with the largest share.
     pub fn warn(&mut self, step: &mut Step<'_>, remedies: &Remedies, at_end: bool) {
-        if let Some(cloud) = step.resources.try_get::<FlowCloud>() {
+        if let Some(cloud) = FlowCloud::whole(step.resources) {
             self.weight = self.weight.max(work_of_loads(&cloud));
         }
         let largest = step.ledger.largest();

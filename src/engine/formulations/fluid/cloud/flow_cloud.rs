@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::edges::BoundaryEdges;
 use super::group::{FluidState, Group};
 use super::neighborhood::Neighborhood;
+use super::other_particles::OtherParticles;
 use super::repelled::Repelled;
 use super::viscosities::Viscosities;
 use super::wall_end::WallEnd;
@@ -53,6 +54,8 @@ pub struct FlowCloud {
     pub(in crate::formulations::fluid) records: Vec<FlowParticle>,
     /// Of every group: whether the places and volumes of its rows are those of the step before.
     pub(in crate::formulations::fluid) is_still: Vec<bool>,
+    /// What is known of the particles of other ranks.
+    pub(in crate::formulations::fluid) others: OtherParticles,
     pub(in crate::formulations::fluid) pairs: FlowPairs,
     /// The blocks of passes in single precision; none in double precision.
     pub(in crate::formulations::fluid) blocks: Option<Box<Blocks>>,
@@ -108,7 +111,7 @@ impl FlowCloud {
     }
 
     /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
-    /// `i` is its row in the phase of fluids.
+    /// `i` is its row in the phase of fluids. On several ranks ask for the [whole cloud](FlowCloud::whole) before.
     #[inline]
     pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
         let own = self.records[i].position();
@@ -126,7 +129,7 @@ impl FlowCloud {
         }
     }
 
-    /// All particles as the last passes over pairs have seen them, fluids first.
+    /// All particles as the last passes over pairs have seen them, fluids first; on several ranks ask for the [whole cloud](FlowCloud::whole) before.
     pub fn records(&self) -> &[FlowParticle] {
         &self.records
     }

@@ -16,6 +16,8 @@ mod edges;
 
 mod wall_end;
 
+mod other_particles;
+
 mod flow_cloud;
 
 mod pack;
@@ -38,6 +40,8 @@ mod sort;
 
 mod neighbors;
 
+mod others;
+
 pub use arrangement::ArrangementPass;
 pub use edges::{BoundaryEdges, EdgeParticle, Front};
 pub use flow_cloud::{FlowCloud, LEAST_SHARE, Near};
@@ -45,6 +49,7 @@ pub use group::{BoundarySurface, FluidState, Group, Role};
 pub use near::{part, take_until};
 pub use neighborhood::{Cluster, Neighborhood};
 pub use neighbors::{ListPosition, NEIGHBORS, Neighbors};
+pub use other_particles::OtherParticles;
 pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::flow_cloud::FlowCloud;
 use super::row_pass::NearPairs;
 use crate::formulations::fluid::lanes::{FILLS, FourPlaces, as_rows, filled_up};
+use crate::formulations::fluid::lists::blocks::Blocks;
 use crate::parallel::{FourLanes, Number, Vector};
 
 /// Four neighbours of a particle, of one body. Lanes without a neighbour repeat one.
@@ -17,14 +18,31 @@ pub struct FourNear<A: FourLanes> {
 }
 
 impl FlowCloud {
-    /// The neighbours of particle `i` within the support: rows of the cloud, ordered by bodies. With sums in single precision they may hold the particle itself, and others beyond the support.
+    /// The neighbours of particle `i` within the support: rows of the cloud, ordered by bodies. With sums in single precision they may hold the particle itself, and others beyond the support; of particles that other ranks compute, all that is
+    /// near their blocks.
     #[inline(always)]
     pub(in crate::formulations::fluid) fn near_row(&self, i: usize) -> &[u32] {
-        let shared = self.blocks.as_ref().and_then(|blocks| blocks.shared_row(i));
-        shared.unwrap_or_else(|| match i.checked_sub(self.fluid) {
+        let blocks = self.blocks.as_ref();
+        if let Some((blocks, block)) = blocks.and_then(|blocks| Some((blocks, blocks.shared_block(i)?))) {
+            return match blocks.lists.others.is_own(block) {
+                true => blocks.near.row(block),
+                false => self.pairs.row_of_others(&blocks.lists, block),
+            };
+        }
+        match i.checked_sub(self.fluid) {
             Some(row) => self.near_boundary.row(row),
             None => self.near.row(i),
-        })
+        }
+    }
+
+    /// The particles of a boundary near fluid particle `i`: at least those within the support, of particles that other ranks compute as well.
+    pub(in crate::formulations::fluid) fn boundary_near(&self, i: usize, boundary: &Range<usize>) -> &[u32] {
+        let of_other =
+            |blocks: &Blocks| blocks.shared_block(i).is_some_and(|block| !blocks.lists.others.is_own(block));
+        match self.blocks.as_deref().is_some_and(of_other) {
+            true => part(self.pairs.walls.row(i), boundary),
+            false => part(self.near_row(i), boundary),
+        }
     }
 
     /// Whether fluid is within the support of a boundary particle.

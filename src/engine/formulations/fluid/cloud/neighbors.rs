@@ -42,7 +42,13 @@ impl FlowCloud {
         if blocks.as_ref().is_none_or(|blocks| blocks.hides) {
             near_boundary.make_room(&[&pairs.boundary]);
         }
+        self.find_halo();
         Ok(())
+    }
+
+    /// Whether loops are no longer divided as they were when the lists were built.
+    fn is_divided_anew(&self) -> bool {
+        self.pairs.builds > 0 && self.blocks.as_ref().is_some_and(|blocks| !blocks.lists.others.is_current())
     }
 
     /// Reads the positions that the lists of an interrupted run were built from, m.
@@ -72,29 +78,35 @@ impl Run for Neighbors {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         cloud.forget_loads();
+        cloud.divide_boundaries(step.world);
         let moved = cloud.pack(step.world)?;
         let failed = |error: NeighborError| StepError::System {
             system: NEIGHBORS.to_owned(),
             message: error.to_string(),
         };
-        if std::mem::take(&mut self.is_restored) {
+        let is_restored = std::mem::take(&mut self.is_restored);
+        if is_restored || cloud.is_divided_anew() {
             cloud.read_list_positions(step.world, &mut self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
+            if !is_restored {
+                cloud.pairs.builds -= 1;
+            }
         }
         let FlowCloud { pairs, records, fluid, .. } = &mut *cloud;
         if pairs.are_stale(records, *fluid, moved) {
-            cloud.read_positions(&mut self.built);
+            cloud.read_positions(step.world, &mut self.built)?;
             if self.builds >= BUILDS && self.sorter.sort(&cloud, &self.built, step.world) {
                 self.builds = 0;
                 cloud.pack(step.world)?;
                 // What is told apart now are rows of before and after, of a body that may have moved.
                 cloud.is_still.fill(false);
-                cloud.read_positions(&mut self.built);
+                cloud.read_positions(step.world, &mut self.built)?;
             }
             cloud.write_list_positions(step.world, &self.built)?;
             cloud.build_lists(&self.built).map_err(failed)?;
             self.builds += 1;
         }
+        cloud.share_records(step.world)?;
         cloud.average_motion(step.clock.dt);
         Ok(())
     }

@@ -5,56 +5,43 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::flow_cloud::FlowCloud;
+use super::group::Group;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::{Packed, Units, pack_states};
 use crate::formulations::fluid::lists::{DisplacementBounds, Growing};
-use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::parallel::{
+    FourLanes, HotLoop, Lanes4, others_rows, run_hot, sum_over_blocks, sum_over_own_blocks,
+};
+use crate::ranks::has_several;
 use crate::world::{
-    Density, Mass, MissingColumn, Position, Pressure, ReferenceVolume, Removed, Velocity, World,
+    Density, Mass, MissingColumn, PhaseView, Position, Pressure, ReferenceVolume, Removed, Velocity, World,
 };
 
 impl FlowCloud {
     /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far the particles have moved since
-    /// they were packed before.
+    /// they were packed before. Of fluids, every rank packs its own.
     pub(in crate::formulations::fluid) fn pack(
         &mut self,
         world: &World,
     ) -> Result<DisplacementBounds, MissingColumn> {
-        let mut moved = DisplacementBounds::NONE;
-        let mut blocks = self.blocks.as_mut();
-        if let Some(blocks) = &mut blocks {
-            blocks.packed.resize(self.records.len(), Packed::default());
+        let is_local = self.is_local();
+        let Self { groups, records, is_still, blocks, .. } = self;
+        if let Some(blocks) = blocks {
+            blocks.packed.resize(records.len(), Packed::default());
         }
-        self.is_still.clear();
-        for group in &self.groups {
-            let (view, rows) = (world.phase(group.phase), group.rows.clone());
-            let (x, v, removed) =
-                (view.read::<Position>()?, view.read::<Velocity>()?, view.read::<Removed>()?);
-            let common = (
-                &mut self.records[group.cloud.clone()],
-                &x[rows.clone()],
-                &v[rows.clone()],
-                &removed[rows.clone()],
-            );
-            let (units, packed) = match &mut blocks {
+        let mut moved = DisplacementBounds::NONE;
+        is_still.clear();
+        for group in groups.iter() {
+            let (units, packed) = match blocks {
                 Some(blocks) => (Some(&blocks.units), Some(&mut blocks.packed[group.cloud.clone()])),
                 None => (None, None),
             };
-            let of_group = if group.fluid().is_some() {
-                let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
-                let pressure = view.read::<Pressure>()?;
-                let fluid = (&mass[rows.clone()], &density[rows.clone()], &pressure[rows]);
-                sum_over_blocks((common, fluid, packed), &|_, (common, fluid, packed): WithPacked<_>| {
-                    run_hot(PackFluid(common, fluid, packed, units))
-                })
-            } else {
-                let volume = view.read::<ReferenceVolume>()?;
-                let volume = &volume[rows];
-                sum_over_blocks((common, volume, packed), &|_, (common, volume, packed): WithPacked<_>| {
-                    run_hot(PackBoundary(common, volume, packed, units))
-                })
+            let of_group = GroupRows { group, records: &mut records[group.cloud.clone()], packed, units };
+            let of_group = match group.fluid() {
+                Some(_) => of_group.pack_fluid(&world.phase(group.phase))?,
+                None => of_group.pack_boundary(&world.phase(group.phase), is_local)?,
             };
-            self.is_still.push(of_group.is_zero());
+            is_still.push(of_group.is_zero());
             moved = moved.with(of_group);
         }
         Ok(moved)
@@ -68,15 +55,89 @@ impl FlowCloud {
     }
 
     /// Writes down where the particles are, m.
-    pub(in crate::formulations::fluid) fn read_positions(&self, positions: &mut Vec<DVec3>) {
+    pub(in crate::formulations::fluid) fn read_positions(
+        &self,
+        world: &World,
+        positions: &mut Vec<DVec3>,
+    ) -> Result<(), MissingColumn> {
         positions.resize(self.records.len(), DVec3::ZERO);
-        sum_over_blocks((&mut positions[..], &self.records[..]), &|_,
-                                                                   (to, from): (
-            &mut [DVec3],
-            &[FlowParticle],
-        )| {
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = from.position());
-        });
+        for group in &self.groups {
+            let column = world.phase(group.phase).read::<Position>()?;
+            let rows = (&mut positions[group.cloud.clone()], &column[group.rows.clone()]);
+            sum_over_blocks(rows, &|_, (to, from): (&mut [DVec3], &[Position])| {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.0);
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The records of a group, and what they are packed from.
+struct GroupRows<'a> {
+    group: &'a Group,
+    records: &'a mut [FlowParticle],
+    packed: Option<&'a mut [Packed]>,
+    units: Option<&'a Units>,
+}
+
+impl GroupRows<'_> {
+    /// Packs the rows of this rank.
+    fn pack_fluid(self, view: &PhaseView<'_>) -> Result<DisplacementBounds, MissingColumn> {
+        let Self { group, records, packed, units } = self;
+        let rows = group.rows.clone();
+        let (x, v) = (view.read_own::<Position>()?, view.read_own::<Velocity>()?);
+        let (density, mass) = (view.read_own::<Density>()?, view.read_own::<Mass>()?);
+        let (pressure, removed) = (view.read_own::<Pressure>()?, view.read_own::<Removed>()?);
+        let common = (records, &x[rows.clone()], &v[rows.clone()], &removed[rows.clone()]);
+        let fluid = (&mass[rows.clone()], &density[rows.clone()], &pressure[rows]);
+        let slices: WithPacked<'_, Fluids<'_>> = (common, fluid, packed);
+        Ok(sum_over_own_blocks(slices, &|_, (common, fluid, packed): WithPacked<'_, Fluids<'_>>| {
+            run_hot(PackFluid(common, fluid, packed, units))
+        }))
+    }
+
+    /// Packs the rows of this rank; those of the others too where the boundary has moved, or where all ranks look at all of them.
+    fn pack_boundary(
+        mut self,
+        view: &PhaseView<'_>,
+        is_local: bool,
+    ) -> Result<DisplacementBounds, MissingColumn> {
+        let moved = {
+            let (x, v) = (view.read_own::<Position>()?, view.read_own::<Velocity>()?);
+            let (volume, removed) = (view.read_own::<ReferenceVolume>()?, view.read_own::<Removed>()?);
+            let own = self.boundary_rows((&x, &v), (&removed, &volume), 0..self.group.cloud.len());
+            let units = own.3;
+            sum_over_own_blocks((own.0, own.1, own.2), &|_, (common, volume, packed): WithVolume<'_>| {
+                run_hot(PackBoundary(common, volume, packed, units))
+            })
+        };
+        if has_several() && !(is_local && moved.is_zero()) {
+            let (x, v) = (view.read::<Position>()?, view.read::<Velocity>()?);
+            let (volume, removed) = (view.read::<ReferenceVolume>()?, view.read::<Removed>()?);
+            for part in others_rows(&(0..self.group.cloud.len())) {
+                let (common, volume, packed, units) = self.boundary_rows((&x, &v), (&removed, &volume), part);
+                sum_over_blocks((common, volume, packed), &|_, (common, volume, packed): WithVolume<'_>| {
+                    run_hot(PackBoundary(common, volume, packed, units))
+                });
+            }
+        }
+        Ok(moved)
+    }
+
+    /// Some rows of a boundary, counted from its first.
+    #[allow(clippy::type_complexity)]
+    fn boundary_rows<'r>(
+        &'r mut self,
+        (x, v): (&'r [Position], &'r [Velocity]),
+        (removed, volume): (&'r [Removed], &'r [ReferenceVolume]),
+        part: Range<usize>,
+    ) -> (Common<'r>, &'r [ReferenceVolume], Option<&'r mut [Packed]>, Option<&'r Units>) {
+        let first = self.group.rows.start;
+        let rows = first + part.start..first + part.end;
+        let common =
+            (&mut self.records[part.clone()], &x[rows.clone()], &v[rows.clone()], &removed[rows.clone()]);
+        let packed = self.packed.as_mut().map(|packed| &mut packed[part]);
+        (common, &volume[rows], packed, self.units)
     }
 }
 
@@ -84,6 +145,7 @@ type Common<'a> = (&'a mut [FlowParticle], &'a [Position], &'a [Velocity], &'a [
 type Fluids<'a> = (&'a [Mass], &'a [Density], &'a [Pressure]);
 /// Records, what their volumes and pressures are made of, and what blocks know of the same particles.
 type WithPacked<'a, T> = (Common<'a>, T, Option<&'a mut [Packed]>);
+type WithVolume<'a> = WithPacked<'a, &'a [ReferenceVolume]>;
 
 struct PackFluid<'a>(Common<'a>, Fluids<'a>, Option<&'a mut [Packed]>, Option<&'a Units>);
 

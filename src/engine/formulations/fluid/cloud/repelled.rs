@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::ranks;
+
 /// The repulsion of one fluid particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Repelled {
@@ -25,4 +27,68 @@ pub struct Shares {
     pub slope: DVec3,
     /// The particle that bears all of it, if there is one.
     pub only: Option<u32>,
+}
+
+/// Numbers of a repelled particle as ranks exchange them.
+const WORDS: usize = 14;
+
+impl Repelled {
+    /// Gets those of all ranks, in the order of rows.
+    pub fn share(repelled: &mut Vec<Self>) {
+        if ranks::has_several() {
+            let mut words: Vec<[u64; WORDS]> = repelled.iter().map(Self::to_words).collect();
+            ranks::concatenate(&mut words);
+            repelled.clear();
+            repelled.extend(words.iter().map(Self::of_words));
+            repelled.sort_unstable_by_key(|repelled| repelled.i);
+        }
+    }
+
+    fn to_words(&self) -> [u64; WORDS] {
+        let Self { i, boundary, distance, force, shares: Shares { total, mean, slope, only } } = self;
+        let numbers =
+            [*distance, *total].into_iter().chain([force, mean, slope].into_iter().flat_map(DVec3::to_array));
+        let only = only.map_or(u64::MAX, u64::from);
+        let mut words = [*i as u64, *boundary as u64, only].into_iter().chain(numbers.map(f64::to_bits));
+        std::array::from_fn(|_| words.next().unwrap_or_default())
+    }
+
+    fn of_words(words: &[u64; WORDS]) -> Self {
+        let number = |k: usize| f64::from_bits(words[k]);
+        let vector = |k: usize| DVec3::new(number(k), number(k + 1), number(k + 2));
+        let shares = Shares {
+            total: number(4),
+            mean: vector(8),
+            slope: vector(11),
+            only: u32::try_from(words[2]).ok(),
+        };
+        Self {
+            i: words[0] as usize,
+            boundary: words[1] as usize,
+            distance: number(3),
+            force: vector(5),
+            shares,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_exchanged_is_what_was_there() {
+        for only in [None, Some(7)] {
+            let shares = Shares {
+                total: 0.3,
+                mean: DVec3::new(1.0, -2.0, 3.0),
+                slope: DVec3::new(-0.0, 5.0, 6.0),
+                only,
+            };
+            let repelled =
+                Repelled { i: 3, boundary: 90, distance: 1e-3, force: DVec3::new(7.0, 8.0, 9.0), shares };
+            let back = Repelled::of_words(&repelled.to_words());
+            assert_eq!(format!("{back:?}"), format!("{repelled:?}"));
+        }
+    }
 }

@@ -2,6 +2,8 @@
 
 use glam::DMat3;
 
+use crate::ranks;
+
 /// A fluid particle beside the end of a wall, with empty space behind that end.
 #[derive(Clone, Copy, Debug)]
 pub struct WallEnd {
@@ -9,4 +11,30 @@ pub struct WallEnd {
     pub i: usize,
     /// What of a motion is along the wall, for the share that empty space answers for.
     pub along: DMat3,
+}
+
+/// Numbers of such a particle as ranks exchange them.
+const WORDS: usize = 10;
+
+impl WallEnd {
+    /// Gets those of all ranks, in the order of rows.
+    pub fn share(ends: &mut Vec<Self>) {
+        if ranks::has_several() {
+            let mut words: Vec<[u64; WORDS]> = ends.iter().map(Self::to_words).collect();
+            ranks::concatenate(&mut words);
+            ends.clear();
+            ends.extend(words.iter().map(Self::of_words));
+            ends.sort_unstable_by_key(|end| end.i);
+        }
+    }
+
+    fn to_words(&self) -> [u64; WORDS] {
+        let columns = self.along.to_cols_array();
+        std::array::from_fn(|k| k.checked_sub(1).map_or(self.i as u64, |k| columns[k].to_bits()))
+    }
+
+    fn of_words(words: &[u64; WORDS]) -> Self {
+        let columns = std::array::from_fn(|k| f64::from_bits(words[k + 1]));
+        Self { i: words[0] as usize, along: DMat3::from_cols_array(&columns) }
+    }
 }

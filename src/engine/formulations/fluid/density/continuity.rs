@@ -1,7 +1,9 @@
 //! The density of fluids at the end of the step, by continuity.
 
+use bytemuck::{Pod, Zeroable};
+
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState};
-use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_own_block, run_hot};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
@@ -22,7 +24,8 @@ pub struct Continuity {
 }
 
 /// What a block learns.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub struct Change {
     /// Energy of compression that pair terms take out, J.
     dissipated: f64,
@@ -59,11 +62,12 @@ impl Run for Continuity {
         for group in &cloud.groups {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
-            let mut density = view.write::<Density>()?;
-            let (rate, mass) = (view.read::<DensityRate>()?, view.read::<Mass>()?);
-            let removed = view.read::<Removed>()?;
+            let mut density = view.write_own::<Density>()?;
+            let (rate, mass) = (view.read_own::<DensityRate>()?, view.read_own::<Mass>()?);
+            let removed = view.read_own::<Removed>()?;
             let rows = group.rows.clone();
-            let shift = if view.has::<DensityShift>() { Some(view.read::<DensityShift>()?) } else { None };
+            let shift =
+                if view.has::<DensityShift>() { Some(view.read_own::<DensityShift>()?) } else { None };
             let shift = shift.as_ref().map(|shift| &shift[rows.clone()]);
             let of_boundaries = cloud.boundary_compression.get(group.cloud.clone());
             let slices = (
@@ -73,7 +77,7 @@ impl Run for Continuity {
                 &mass[rows.clone()],
                 &removed[rows],
             );
-            let change = for_each_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
+            let change = for_each_own_block(slices, &mut self.sums, &|first, rows: Rows<'_>| {
                 run_hot(AdvanceDensity { state, dt, by_terms, shift, of_boundaries, first, rows })
             });
             if change.broken > 0 {

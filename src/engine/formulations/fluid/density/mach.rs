@@ -3,12 +3,13 @@
 //! A tank that moves as a whole with its fluid compresses nothing. The speed that counts is that against the frame in which the fastest of
 //! all that flows and bounds a flow is slowest: at rest, or with one of the bodies that bound the flow, or, where nothing bounds it, with the mean of what flows.
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::formulations::fluid::cloud::{FluidState, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::notation::quantity;
-use crate::parallel::{BlockSum, sum_over_blocks};
+use crate::parallel::{BlockSum, sum_over_own_blocks};
 use crate::schedule::{Step, StepError, warn_anew};
 
 /// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is chosen for. The density then changes by 4 %.
@@ -26,12 +27,29 @@ pub fn wall_frame(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
     largest.map_or(DVec3::ZERO, |group| mean_velocity(std::slice::from_ref(group), records))
 }
 
-fn rows<'a>(group: &Group, records: &'a [FlowParticle]) -> impl Iterator<Item = &'a FlowParticle> {
-    records[group.cloud.clone()].iter().filter(|record| record.volume() > 0.0)
+/// Largest square of a speed, m2/s2.
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+#[repr(transparent)]
+struct Fastest(f64);
+
+impl BlockSum for Fastest {
+    fn add(&mut self, next: &Self) {
+        self.0 = self.0.max(next.0);
+    }
+}
+
+/// Largest speed of a body in a frame, m/s.
+fn fastest(group: &Group, records: &[FlowParticle], frame: DVec3) -> f64 {
+    let square = sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
+        let here = records.iter().filter(|record| record.volume() > 0.0);
+        Fastest(here.map(|record| record.velocity().distance_squared(frame)).fold(0.0, f64::max))
+    });
+    square.0.sqrt()
 }
 
 /// Sum of the velocities of some particles, m/s, and their number.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
 struct VelocitySum {
     velocity: DVec3,
     count: f64,
@@ -47,7 +65,7 @@ impl BlockSum for VelocitySum {
 fn mean_velocity(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
     let mut all = VelocitySum::default();
     for group in groups {
-        all.add(&sum_over_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
+        all.add(&sum_over_own_blocks(&records[group.cloud.clone()], &|_, records: &[FlowParticle]| {
             let here = records.iter().filter(|record| record.volume() > 0.0);
             here.fold(VelocitySum::default(), |mut sum, record| {
                 sum.add(&VelocitySum { velocity: record.velocity(), count: 1.0 });
@@ -70,23 +88,17 @@ pub fn relative_speed(
     if group.fluid().is_none_or(|state| at_first <= FAST * state.sound_speed) {
         return at_first;
     }
-    let fastest = |group: &Group, frame: DVec3| {
-        rows(group, records)
-            .map(|record| record.velocity().distance_squared(frame))
-            .fold(0.0, f64::max)
-            .sqrt()
-    };
     let bounds = || groups.iter().filter(|group| group.fluid().is_none());
     let of_bounds = bounds().map(|group| mean_velocity(std::slice::from_ref(group), records));
     let of_all = bounds().next().is_none().then(|| mean_velocity(groups, records));
-    let in_frame = |frame| groups.iter().map(|group| fastest(group, frame)).fold(0.0, f64::max);
+    let in_frame = |frame| groups.iter().map(|group| fastest(group, records, frame)).fold(0.0, f64::max);
     let mut least = in_frame(base);
     let mut speed = at_first;
     // A frame that is slow beside the flow is as good as the first one.
     for frame in of_bounds.chain(of_all).filter(|frame| frame.distance(base) > (1.0 - SLOWER) * at_first) {
         let largest = in_frame(frame);
         if largest < SLOWER * least {
-            (least, speed) = (largest, fastest(group, frame).min(at_first));
+            (least, speed) = (largest, fastest(group, records, frame).min(at_first));
         }
     }
     speed

@@ -1,12 +1,13 @@
 //! Pressure of fluids by their equation of state, and the energy of their compression.
 
+use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::mach::{Mach, relative_speed, wall_frame};
 use crate::formulations::fluid::cloud::{FlowCloud, FluidState, Group};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::Packed;
-use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_block, run_hot};
+use crate::parallel::{BlockSum, FourLanes, HotLoop, for_each_own_block, run_hot};
 use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, Mass, Pressure, Removed};
 
@@ -28,7 +29,8 @@ pub struct ApplyState {
 }
 
 /// What a block learns.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
 pub struct StateSum {
     /// Energy of compression, J.
     energy: f64,
@@ -61,9 +63,9 @@ impl Run for ApplyState {
         for (group, mach) in groups.iter().zip(&mut self.mach) {
             let Some(state) = group.fluid() else { break };
             let view = step.world.phase(group.phase);
-            let (density, mass) = (view.read::<Density>()?, view.read::<Mass>()?);
-            let removed = view.read::<Removed>()?;
-            let mut pressure = view.write::<Pressure>()?;
+            let (density, mass) = (view.read_own::<Density>()?, view.read_own::<Mass>()?);
+            let removed = view.read_own::<Removed>()?;
+            let mut pressure = view.write_own::<Pressure>()?;
             let rows = group.rows.clone();
             let slices: Rows<'_> = (
                 &mut pressure[rows.clone()],
@@ -73,7 +75,7 @@ impl Run for ApplyState {
                 &removed[rows],
             );
             let packed = blocks.as_mut().map(|blocks| &mut blocks.packed[group.cloud.clone()]);
-            let sum = for_each_block((slices, packed), &mut self.sums, &|_, rows: RowsAndPacked<'_>| {
+            let sum = for_each_own_block((slices, packed), &mut self.sums, &|_, rows: RowsAndPacked<'_>| {
                 run_hot(Apply { state, frame, rows: rows.0, packed: rows.1 })
             });
             step.ledger.set(account, group.body, sum.energy);
@@ -89,6 +91,7 @@ impl Run for ApplyState {
                 step.limits.propose(limit, format_args!("viscosity of `{name}`"));
             }
         }
+        cloud.share_states();
         Ok(())
     }
 

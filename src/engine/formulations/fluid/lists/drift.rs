@@ -4,6 +4,8 @@
 //! other: a jet that flies carries its list along. Space is cut into cells; what the particles of a cell have moved lies in a box, and the
 //! boxes of a cell and those beside it hold all neighbours. Particles of cells that do not touch were the length of a cell apart.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -11,6 +13,7 @@ use super::spread::{DisplacementBounds, Growing};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::neighbors::{Buckets, CellBlock, Periodic, SHIFT, sort_into_cells};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, run_hot, sum_over_blocks};
+use crate::ranks;
 
 /// What has to hold for lists to be good, m.
 #[derive(Clone, Copy, Debug)]
@@ -83,8 +86,13 @@ impl Drift {
     }
 
     /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
-    /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid.
-    pub fn room(&mut self, records: &[FlowParticle], fluid: usize, skins: Skins) -> f64 {
+    /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
+    pub fn room(
+        &mut self,
+        (records, own): (&[FlowParticle], &[Range<usize>]),
+        fluid: usize,
+        skins: Skins,
+    ) -> f64 {
         if self.then.len() != records.len() {
             return f64::NEG_INFINITY;
         }
@@ -93,10 +101,19 @@ impl Drift {
         spreads.par_iter_mut().with_min_len(64).enumerate().for_each(|(cell, spread)| {
             let range = cells.range(cell);
             let (rows, then) = (&cells.rows[range.clone()], &then[range]);
-            let wet = rows.partition_point(|&row| (row as usize) < fluid);
-            let part = |rows, then| run_hot(Moved { records, rows, then, periods });
-            *spread = [part(&rows[..wet], &then[..wet]), part(&rows[wet..], &then[wet..])];
+            let before = |row: usize| rows.partition_point(|&other| (other as usize) < row);
+            let part = |own: &Range<usize>| {
+                let part = before(own.start)..before(own.end);
+                run_hot(Moved { records, rows: &rows[part.clone()], then: &then[part], periods })
+            };
+            *spread = [DisplacementBounds::NONE; 2];
+            for own in own {
+                let of_kind = &mut spread[usize::from(own.start >= fluid)];
+                *of_kind = of_kind.with(part(own));
+            }
         });
+        let join = |[a, b]: Pair, [c, d]: Pair| [a.with(c), b.with(d)];
+        ranks::join(spreads, join);
         let all = spreads
             .iter()
             .fold(DisplacementBounds::NONE, |all, [fluid, walls]| all.with(*fluid).with(*walls));
@@ -104,7 +121,6 @@ impl Drift {
         if far_apart < 0.0 {
             return far_apart;
         }
-        let join = |[a, b]: Pair, [c, d]: Pair| [a.with(c), b.with(d)];
         self.grid.join_beside(&mut self.spreads, &mut self.window, &join);
         let least = |[fluid, walls]: &Pair| {
             let flow = (skins.fluid - fluid.farthest(*fluid)).min(skins.walls - fluid.farthest(*walls));

@@ -1,6 +1,8 @@
 //! The neighbour lists of a flow: of every fluid particle among all particles, of every boundary particle among the
 //! fluid.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::drift::{Drift, Skins};
@@ -8,8 +10,10 @@ use super::gaps::GapPairs;
 use super::sides::{Sides, ThinBody};
 use super::spread::DisplacementBounds;
 use crate::formulations::fluid::lanes::FlowParticle;
-use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources};
+use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources, OtherSources};
 use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::parallel::own_rows;
+use crate::ranks;
 
 /// Length of the cells in which particles move together, over the support.
 const CELL: f64 = 2.0;
@@ -40,6 +44,8 @@ pub struct FlowPairs {
     thin: Vec<ThinBody>,
     /// Number of builds.
     pub builds: u64,
+    /// Whether the ranks have been asked, since then, to divide boundaries by the fluid beside them.
+    pub are_weighed: bool,
 }
 
 impl FlowPairs {
@@ -58,6 +64,7 @@ impl FlowPairs {
             thin,
             plane,
             builds: 0,
+            are_weighed: true,
         }
     }
 
@@ -68,6 +75,24 @@ impl FlowPairs {
         }
         self.gaps = gaps;
         self
+    }
+
+    /// The rows of the cloud that this rank computes, body by body; those of all fluids and of all boundaries in a program that runs alone.
+    fn own_rows(&self, fluid: usize) -> Vec<Range<usize>> {
+        let end = self.groups.last().map_or(0, |&end| end as usize);
+        if !ranks::has_several() {
+            return vec![0..fluid, fluid..end];
+        }
+        let starts = std::iter::once(0).chain(self.groups.iter().map(|&end| end as usize));
+        let bodies = starts.zip(&self.groups).map(|(start, &end)| start..end as usize);
+        bodies.map(|body| own_rows(&body)).filter(|own| !own.is_empty()).collect()
+    }
+
+    /// What is near a block that another rank computes.
+    pub fn row_of_others<'b>(&self, lists: &'b BlockLists, block: usize) -> &'b [u32] {
+        let Self { search, groups, skins, periodic, walls, boundary, .. } = self;
+        let sources = OtherSources { search, groups, skin: skins.fluid, periodic, walls, boundary };
+        lists.row_of_others(block, &sources)
     }
 
     #[inline]
@@ -81,7 +106,7 @@ impl FlowPairs {
         // Looking is needed when the particles may have used up the room that they had when it was last looked.
         self.room -= moved.farthest(moved);
         if self.room <= CERTAIN * self.skins.support {
-            self.room = self.drift.room(records, fluid, self.skins);
+            self.room = self.drift.room((records, &self.own_rows(fluid)), fluid, self.skins);
         }
         self.room < 0.0
     }
@@ -124,6 +149,7 @@ impl FlowPairs {
                 plane: self.plane,
                 periodic: &self.periodic,
                 sides: hides,
+                all_boundaries: !self.gaps.particles.is_empty(),
             };
             let near_boundaries = (&self.walls, &self.boundary);
             lists.build(&sources, (&mut self.search, &self.groups), near_boundaries)?;
@@ -131,6 +157,7 @@ impl FlowPairs {
         // The particles may have moved already: those of an interrupted run have.
         self.room = f64::NEG_INFINITY;
         self.builds += 1;
+        self.are_weighed = false;
         Ok(())
     }
 }

@@ -1,9 +1,12 @@
 //! How much displacements differ: the box around them.
 
+use bytemuck::{Pod, Zeroable};
+
 use crate::parallel::{BlockSum, FourLanes, Lanes4};
 
 /// Displacements of some particles, m: the box around them; inverted where there are none.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub struct DisplacementBounds {
     low: Lanes4,
     high: Lanes4,
@@ -28,15 +31,16 @@ impl DisplacementBounds {
     /// As much as can be.
     const ALL: Self = Self { low: Self::NONE.high, high: Self::NONE.low };
 
+    /// Whether nothing has moved, nor changed in the fourth lane.
+    pub fn is_zero(self) -> bool {
+        let is_zero = |Lanes4(lanes): Lanes4| lanes.iter().all(|lane| *lane == 0.0);
+        is_zero(self.low) && is_zero(self.high)
+    }
+
     /// The box around two boxes.
     #[inline(always)]
     pub fn with(self, other: Self) -> Self {
         Self { low: smaller(self.low, other.low), high: larger(self.high, other.high) }
-    }
-
-    /// Whether nothing has moved, and the fourth lane has not changed either.
-    pub fn is_zero(&self) -> bool {
-        self.low.0 == [0.0; 4] && self.high.0 == [0.0; 4]
     }
 
     /// Most that a displacement of one box and one of the other differ, m; zero where one has none.

@@ -7,7 +7,7 @@ use crate::formulations::fluid::cloud::{
 };
 use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::pair::{BodyTerms, PhaseTerms};
-use crate::parallel::{for_each_block, share_wide_rows};
+use crate::parallel::{for_each_own_block, share_wide_rows};
 use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
@@ -23,6 +23,7 @@ pub fn reads_flow(system: System) -> System {
         .touches_packed(GAP_FORCES, Mode::Reads)
         .touches_packed(EDGES, Mode::Reads)
         .touches_packed(ENDS, Mode::Reads)
+        .reads_own_packed()
 }
 
 /// Makes the forces on the particles of one phase.
@@ -63,7 +64,7 @@ impl Run for FlowForce {
             if let Some(gravity) = self.gravity {
                 let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
-                for_each_block(rows, &mut Vec::new(), &|_, (f, m, removed): Rows<'_>| {
+                for_each_own_block(rows, &mut Vec::new(), &|_, (f, m, removed): Rows<'_>| {
                     let (m, removed) = (&m[..f.len()], &removed[..f.len()]);
                     for (k, f) in f.iter_mut().enumerate() {
                         // Without a branch.

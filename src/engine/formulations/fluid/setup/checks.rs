@@ -117,7 +117,7 @@ pub fn wall_is_thick(
 
 /// An error where a fluid starts faster than its sound, relative to its boundaries.
 pub fn flow_is_slow(cloud: &mut FlowCloud, world: &crate::world::World) -> Result<(), SetupError> {
-    cloud.pack(world).map_err(|error| SetupError::internal(&error))?;
+    cloud.pack_all(world).map_err(|error| SetupError::internal(&error))?;
     let frame = wall_frame(&cloud.groups, &cloud.records);
     for group in &cloud.groups {
         let Some(state) = group.fluid() else { break };

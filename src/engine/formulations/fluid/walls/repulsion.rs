@@ -12,9 +12,10 @@
 use glam::DVec3;
 
 use super::surface_distance::BoundaryShape;
-use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, Repelled, Role, Shares, part};
-use crate::parallel::for_each_block;
+use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS, Repelled, Role, Shares};
+use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
+use crate::ranks::has_several;
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, ReferencePosition};
 
@@ -110,10 +111,12 @@ impl Repulsion {
         let is_start = step.clock.step == 0 && step.clock.dt == 0.0;
         let mut is_short = false;
         for group in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
-            let mut column = step.world.phase(group.phase).write::<RangeShortfall>()?;
+            let mut column = step.world.phase(group.phase).write_own::<RangeShortfall>()?;
             let shortfall = &mut column[group.rows.clone()];
-            if self.is_short {
-                let far = shortfall.iter_mut().zip(&cloud.is_close[group.cloud.clone()]);
+            // Rows may have been another rank's before.
+            if self.is_short || has_several() {
+                let own = own_rows(&(0..group.rows.len()));
+                let far = shortfall[own.clone()].iter_mut().zip(&cloud.is_close[group.cloud.clone()][own]);
                 far.filter(|(_, close)| **close == 0).for_each(|(short, _)| short.0 = 0.0);
             }
             for repelled in out.iter_mut().filter(|repelled| group.cloud.contains(&repelled.i)) {
@@ -134,16 +137,17 @@ impl Run for Repulsion {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let mut cloud = step.resources.get_mut::<FlowCloud>();
         let mut repelled = std::mem::take(&mut cloud.repelled);
-        let near = cloud.is_close.iter().enumerate().filter(|(_, close)| **close != 0);
+        let own = cloud.fluids().flat_map(|fluid| own_rows(&fluid));
         self.close.clear();
         self.close.reserve(cloud.fluid);
-        self.close.extend(near.map(|(i, _)| i as u32));
+        self.close.extend(own.filter(|&i| cloud.is_close[i] != 0).map(|i| i as u32));
         let none = Repelled { distance: f64::INFINITY, ..Repelled::default() };
         repelled.clear();
         repelled.reserve(cloud.fluid);
         repelled.extend(self.close.iter().map(|&i| Repelled { i: i as usize, ..none }));
         self.measure(&cloud, &mut repelled, step)?;
         self.settle(&cloud, &mut repelled, step)?;
+        Repelled::share(&mut repelled);
         cloud.repelled = repelled;
         Ok(())
     }
@@ -166,7 +170,7 @@ impl FlowCloud {
             if rows.contains(&repelled.i) {
                 add(repelled.i - rows.start, repelled.force);
             } else if rows.start == repelled.boundary {
-                for &j in part(self.near_row(repelled.i), &rows) {
+                for &j in self.boundary_near(repelled.i, &rows) {
                     let share = repelled.shares.of(self, repelled.i, j as usize);
                     add(j as usize - rows.start, -share * repelled.force);
                 }

@@ -4,9 +4,10 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::parallel::sum_over_own_blocks;
 use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Vec3;
-use crate::schedule::{Stage, System};
+use crate::schedule::{Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, ColumnSet, Force, Mass, Mobility, Pressure, Removed, World};
 
 crate::column! {
@@ -60,18 +61,43 @@ impl Formulation for Wall {
     fn assemble(bodies: Vec<(BodyId, Self)>, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let gravity = sim.gravity();
         let ids = BodySet::new(bodies.iter().map(|(id, _)| *id));
-        sim.add_system(System::each::<(&mut Force, &Mass, &Removed)>(
-            Stage::Rates,
-            WALL_WEIGHT,
-            ids,
-            move |_, (force, mass, removed)| {
-                force.0 = if *removed == Removed::NO { gravity * mass.0 } else { DVec3::ZERO };
-            },
-        ));
+        let phases = sim.phases_of(&ids);
+        sim.add_system(
+            System::new(Stage::Rates, WALL_WEIGHT, WallWeight { walls: ids, gravity })
+                .on_phases(phases)
+                .reads::<Mass>()
+                .reads::<Removed>()
+                .writes::<Force>(),
+        );
         let walls: Vec<BodyId> = bodies.iter().map(|(id, _)| *id).collect();
         sim.add_setup(move |setup| walls.iter().try_for_each(|&id| hold(id, setup.world)));
         for (id, parameters) in bodies {
             sim.extend(WallBody { id, parameters });
+        }
+        Ok(())
+    }
+}
+
+/// Gives walls their weight.
+struct WallWeight {
+    walls: BodySet,
+    /// Acceleration of gravity, m/s2.
+    gravity: DVec3,
+}
+
+impl Run for WallWeight {
+    fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
+        for id in step.part.due(step.world, &self.walls) {
+            let (view, rows) = step.world.body_view(id);
+            let (mass, removed) = (view.read_own::<Mass>()?, view.read_own::<Removed>()?);
+            let mut force = view.write_own::<Force>()?;
+            let slices = (&mut force[rows.clone()], &mass[rows.clone()], &removed[rows]);
+            type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
+            sum_over_own_blocks(slices, &|_, (force, mass, removed): Rows<'_>| {
+                for (k, force) in force.iter_mut().enumerate() {
+                    force.0 = if removed[k] == Removed::NO { self.gravity * mass[k].0 } else { DVec3::ZERO };
+                }
+            });
         }
         Ok(())
     }

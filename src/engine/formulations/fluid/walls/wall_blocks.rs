@@ -9,8 +9,7 @@ use crate::formulations::fluid::cloud::{FlowCloud, FluidState, LEAST_SHARE, take
 use crate::formulations::fluid::lists::blocks::{BlockLists, Blocks, OfBlocks, OwnBlock, Packed, dot};
 use crate::formulations::fluid::lists::{NearRow, NearWriter};
 use crate::parallel::{
-    BlockLoop, EIGHT, EightLanes, Lanes8, Split, for_each_block, for_each_own_block, others_rows,
-    run_blocks_on,
+    BlockLoop, EIGHT, EightLanes, Lanes8, Split, for_each_block, for_each_own_block, run_blocks_on,
 };
 
 /// The pass over all particles that are no fluid.
@@ -44,11 +43,7 @@ impl WallBlocks<'_> {
                 false => for_each_own_block(rows, &mut Vec::new(), &body),
             }
         }
-        if !looks_at_all {
-            let others = bodies().flat_map(|group| others_rows(&group.cloud));
-            near.fill_others(others.map(|rows| lists.table.of_rows(&rows)), |block| {
-                [(lists.boundary.row(block - first_block), &[]), Default::default()]
-            });
+        if !looks_at_all && !cloud.is_local() {
             share_wetted(cloud, out);
         }
     }

@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::wall::PreviousVelocity;
 use super::wall_blocks::WallBlocks;
 use super::wall_pressure::{FluidBeside, WallPressure};
-use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Role};
+use crate::formulations::fluid::cloud::{BoundarySurface, FlowCloud, Group, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
-use crate::parallel::{Lanes4, for_each_block};
+use crate::parallel::{Lanes4, for_each_block, for_each_own_block, own_rows};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::Pressure;
 
@@ -39,6 +39,7 @@ impl Run for WallState {
                 fluid.velocity -= gradient * fluid.offset
             });
         }
+        let is_local = cloud.is_local();
         let FlowCloud { groups, records, fluid, .. } = &mut *cloud;
         for group in groups {
             let Role::Boundary(surface) = &group.role else { continue };
@@ -49,18 +50,42 @@ impl Run for WallState {
                 continue;
             }
             let view = step.world.phase(group.phase);
-            let mut pressure = view.write::<Pressure>()?;
-            let mut previous = view.write::<PreviousVelocity>()?;
+            let write_pressure =
+                || if is_local { view.write_own::<Pressure>() } else { view.write::<Pressure>() };
+            let mut pressure = write_pressure()?;
+            let mut previous = if is_local {
+                view.write_own::<PreviousVelocity>()?
+            } else {
+                view.write::<PreviousVelocity>()?
+            };
             let rows = group.rows.clone();
             let slices: Rows<'_> =
                 (&mut records[group.cloud.clone()], &mut pressure[rows.clone()], &mut previous[rows], beside);
             let (gravity, dt) = (self.gravity, step.clock.dt);
-            for_each_block(slices, &mut Vec::new(), &|_, rows: Rows<'_>| apply(surface, gravity, dt, rows));
+            let body = |_, rows: Rows<'_>| apply(surface, gravity, dt, rows);
+            match is_local {
+                true => for_each_own_block(slices, &mut Vec::new(), &body),
+                false => for_each_block(slices, &mut Vec::new(), &body),
+            }
         }
-        let boundaries = cloud.fluid..cloud.records.len();
-        cloud.pack_states(boundaries);
+        pack(&mut cloud);
         Ok(())
     }
+}
+
+/// Packs the states of boundaries, and gets those of other ranks.
+fn pack(cloud: &mut FlowCloud) {
+    if !cloud.is_local() {
+        return cloud.pack_states(cloud.fluid..cloud.records.len());
+    }
+    for n in 0..cloud.groups.len() {
+        let Group { cloud: rows, role, .. } = &cloud.groups[n];
+        let own = own_rows(rows);
+        if matches!(role, Role::Boundary(_)) {
+            cloud.pack_states(own);
+        }
+    }
+    cloud.share_boundaries();
 }
 
 fn apply(

@@ -9,7 +9,9 @@ use crate::formulations::fluid::cloud::{FlowCloud, Group, part};
 use crate::formulations::fluid::walls::apart;
 use crate::linalg::dyad;
 use crate::notation::quantity;
+use crate::parallel::own_rows;
 use crate::plugin::SimBuilder;
+use crate::ranks;
 use crate::schedule::{Step, StepError};
 use crate::shapes::Region;
 use crate::world::{BodyId, ParticleId, ReferencePosition};
@@ -39,6 +41,7 @@ struct IntrudedShape {
 }
 
 /// The deepest particle of a fluid in a body.
+#[derive(Clone, Copy)]
 struct Deepest {
     row: usize,
     depth: f64,
@@ -104,7 +107,26 @@ impl Intrusion {
     }
 }
 
-/// The deepest particle of a fluid in a body that bounds it.
+impl Deepest {
+    /// The deepest of all ranks; the first of several.
+    fn of_ranks(found: Option<Self>) -> Option<Self> {
+        let mut words: Vec<[u64; 3]> = found
+            .iter()
+            .map(|found| [found.row as u64, found.depth.to_bits(), u64::from(found.count)])
+            .collect();
+        if !ranks::has_several() {
+            return found;
+        }
+        ranks::concatenate(&mut words);
+        words.sort_unstable_by_key(|[row, ..]| *row);
+        let count = words.iter().map(|[.., count]| *count as u32).sum();
+        let all = words.iter().map(|&[row, depth, _]| (row as usize, f64::from_bits(depth)));
+        let deepest = all.reduce(|first, next| if first.1 >= next.1 { first } else { next });
+        deepest.map(|(row, depth)| Self { row, depth, count })
+    }
+}
+
+/// The deepest particle of a fluid in a body that bounds it; every rank looks at its own.
 fn deepest(
     cloud: &FlowCloud,
     [fluid, other]: [&Group; 2],
@@ -114,7 +136,8 @@ fn deepest(
 ) -> Option<Deepest> {
     let beside = BoundingBody { cloud, group: other, spacing: body.spacing, reference };
     let mut found: Option<Deepest> = None;
-    for (row, i) in fluid.cloud.clone().enumerate().filter(|(_, i)| cloud.records[*i].volume() > 0.0) {
+    for i in own_rows(&fluid.cloud).filter(|i| cloud.records[*i].volume() > 0.0) {
+        let row = i - fluid.cloud.start;
         let near = part(cloud.near_row(i), &other.cloud);
         let Some(place) = beside.place_in_body(i, near) else { continue };
         // The shape tells nothing of a body that has lost particles.
@@ -131,7 +154,7 @@ fn deepest(
             _ => found = Some(Deepest { row, depth, count }),
         }
     }
-    found
+    Deepest::of_ranks(found)
 }
 
 /// A body that bounds the flow, and where its particles are in the scene.

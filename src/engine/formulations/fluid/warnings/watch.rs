@@ -80,6 +80,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &
         System::new(Stage::Record, "fluid_watch", watch)
             .on_phases(phases)
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
+            .reads_own_packed()
             .reads::<Position>()
             .reads_near::<ReferencePosition>()
             .reads::<ReferenceVolume>()
@@ -91,13 +92,16 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &
 
 impl Run for FlowWatch {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
-        let cloud = step.resources.get::<FlowCloud>();
-        if !std::mem::replace(&mut self.is_started, true) && step.clock.step <= 1 {
-            fit::look(&cloud, &mut self.scratch, step);
-        }
+        let begins = !std::mem::replace(&mut self.is_started, true) && step.clock.step <= 1;
         let at_end = step.clock.time >= self.end || step.stop.is_some();
         let is_frame = self.frames.is_due(step.clock.time) || at_end;
-        if is_frame || step.clock.step.is_multiple_of(INTERVAL) {
+        let is_due = is_frame || step.clock.step.is_multiple_of(INTERVAL);
+        let looks = begins || is_due;
+        let Some(cloud) = looks.then(|| FlowCloud::whole(step.resources)).flatten() else { return Ok(()) };
+        if begins {
+            fit::look(&cloud, &mut self.scratch, step);
+        }
+        if is_due {
             self.intrusion.look(&cloud, step)?;
             self.passing.look(step)?;
             half_space::look(&mut self.is_through, &cloud, self.spacing, step);

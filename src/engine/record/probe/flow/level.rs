@@ -40,7 +40,7 @@ impl Measure for LevelGauge {
     }
 
     fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
-        let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN; 2]) };
+        let Some(cloud) = FlowCloud::whole(resources) else { return Ok(vec![f64::NAN; 2]) };
         Ok(self.heights(&cloud).to_vec())
     }
 }

@@ -30,7 +30,7 @@ impl Measure for ReactionGauge {
 
     fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let (mut force, mut viscous, mut torque) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-        let cloud = resources.try_get::<FlowCloud>();
+        let cloud = FlowCloud::whole(resources);
         for (body, rows) in &self.selection.parts {
             let rows = world.rows_now(*body, rows)?;
             let Some(forces) = cloud.as_ref().and_then(|cloud| cloud.forces_on(*body)) else { continue };

@@ -119,7 +119,7 @@ impl Measure for SensorGauge {
     }
 
     fn read(&self, _: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
-        let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN]) };
+        let Some(cloud) = FlowCloud::whole(resources) else { return Ok(vec![f64::NAN]) };
         Ok(vec![self.pressure(&cloud)])
     }
 }

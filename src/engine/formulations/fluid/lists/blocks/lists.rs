@@ -4,18 +4,20 @@
 
 use glam::DVec3;
 
+use super::others::{OtherRows, own_blocks};
 use super::record::{OwnBlock, Packed, Units, dot, pack_places};
 use super::seen::write_seen;
 use super::table::{BlockTable, Rows};
 use crate::formulations::fluid::lists::sides::Sides;
 use crate::formulations::fluid::lists::{NearRows, NearWriter};
-use crate::neighbors::{NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::neighbors::{Boxes, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, for_each_block, run_blocks_on};
 
 /// Room over the radius that round-off cannot take away.
 const CERTAIN: f64 = 1.0 + 1e-5;
 
-/// Lists of the blocks: rows of the cloud that are near any particle of each, its own particles included.
+/// Lists of the blocks: rows of the cloud that are near any particle of each, its own particles included. They are there for the blocks of this rank alone; those of others
+/// are found when they are asked for.
 #[derive(Debug)]
 pub struct BlockLists {
     pub table: BlockTable,
@@ -25,6 +27,8 @@ pub struct BlockLists {
     pub walls: NeighborList,
     /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near any of each. None where thin bodies hide some of what is near.
     pub boundary: NeighborList,
+    /// Lists of other ranks' blocks.
+    pub others: OtherRows,
     /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are the bits of `fluid`, where all see what is near.
     seen_walls: Vec<u8>,
     units: Units,
@@ -50,6 +54,8 @@ pub struct ListSources<'a> {
     pub periodic: &'a Periodic,
     /// Who sees whom beside thin bodies, with what is near each particle and no fluid, seen or not.
     pub sides: Option<(Sides<'a>, NeighborList)>,
+    /// Whether every rank looks at all boundary particles.
+    pub all_boundaries: bool,
 }
 
 impl BlockLists {
@@ -60,6 +66,7 @@ impl BlockLists {
             fluid: NearRows::default(),
             walls: NeighborList::default(),
             boundary: NeighborList::default(),
+            others: OtherRows::default(),
             seen_walls: Vec::new(),
             units,
             counts: Vec::new(),
@@ -83,12 +90,14 @@ impl BlockLists {
         (search, groups): (&mut NeighborSearch, &[u32]),
         (walls, boundary): (&NeighborList, &NeighborList),
     ) -> Result<(), NeighborError> {
-        let ListSources { positions, fluids, support, skin, plane, periodic, ref sides } = *sources;
+        let ListSources { positions, fluids, support, skin, plane, periodic, ref sides, all_boundaries } =
+            *sources;
         let Self {
             table,
             fluid,
             walls: of_blocks,
             boundary: of_boundaries,
+            others,
             seen_walls,
             units,
             counts,
@@ -100,10 +109,21 @@ impl BlockLists {
         table.build(positions, if sides.is_some() { fluids } else { groups }, support, periodic);
         let blocks = table.of_first_bodies(fluids.len());
         let (of_fluids, of_others) = table.rows.split_at(blocks);
-        let boxes = (&table.centers[..blocks], &table.halves[..blocks], groups);
+        let own = own_blocks(table, |body| {
+            // Whoever hides something from others looks at all, as does who looks at gaps.
+            if body.end <= particles as usize { sides.is_some() } else { all_boundaries }
+        });
+        others.begin(own, table.rows.len());
+        let boxes = Boxes {
+            centers: &table.centers[..blocks],
+            halves: &table.halves[..blocks],
+            wanted: others.own(),
+            groups,
+        };
         search.of_boxes(boxes, skin, periodic, candidates)?;
-        of_blocks.join(of_fluids, (walls, 0), joined);
-        of_boundaries.join(of_others, (boundary, particles), joined);
+        of_blocks.join((of_fluids, |block| others.is_own(block)), (walls, 0), joined);
+        let is_own = |block| others.is_own(blocks + block);
+        of_boundaries.join((of_others, is_own), (boundary, particles), joined);
         pack_places(places, &positions[..particles as usize], units);
         fluid.make_room(&[candidates]);
         if sides.is_some() {

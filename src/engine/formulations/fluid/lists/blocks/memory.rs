@@ -39,15 +39,9 @@ impl Blocks {
         }
     }
 
-    /// Neighbours within the support of a particle or one that shares its block, itself included.
+    /// The block of a particle, where the neighbours of particles are not written down.
     #[inline(always)]
-    pub fn near_of(&self, row: usize) -> &[u32] {
-        self.near.row(self.lists.table.place(row).0)
-    }
-
-    /// The same, where the neighbours of particles are not written down.
-    #[inline(always)]
-    pub fn shared_row(&self, row: usize) -> Option<&[u32]> {
-        if self.hides { None } else { Some(self.near_of(row)) }
+    pub fn shared_block(&self, row: usize) -> Option<usize> {
+        if self.hides { None } else { Some(self.lists.table.place(row).0) }
     }
 }

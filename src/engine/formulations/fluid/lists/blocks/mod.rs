@@ -8,8 +8,13 @@ mod seen;
 
 mod lists;
 
+mod others;
+
+mod found_rows;
+
 mod memory;
 
+pub use found_rows::OtherSources;
 pub use lists::{BlockLists, ListSources};
 pub use memory::Blocks;
 pub use record::{Other, OwnBlock, Packed, Units, dot, pack_states};

@@ -106,6 +106,11 @@ impl BlockTable {
         }
     }
 
+    /// Rows of each body.
+    pub fn bodies(&self) -> impl Iterator<Item = Range<usize>> {
+        self.bodies.iter().map(|(rows, _)| rows.clone())
+    }
+
     /// Number of particles.
     pub fn particles(&self) -> usize {
         self.places.len()

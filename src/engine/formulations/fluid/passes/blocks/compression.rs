@@ -41,13 +41,17 @@ impl FlowCloud {
                 near_rows,
             });
         }
-        share_rows_of(&mut rates, self.fluids());
-        share_rows_of(&mut is_close, self.fluids());
-        let others = self.fluids().flat_map(|fluid| others_rows(&fluid));
-        near.fill_others(others.map(|rows| lists.table.of_rows(&rows)), |block| {
-            let seen = if *hides { lists.seen(block) } else { Default::default() };
-            [(lists.fluid.row(block), seen.0), (lists.walls.row(block), seen.1)]
-        });
+        if !self.is_local() {
+            share_rows_of(&mut rates, self.fluids());
+            share_rows_of(&mut is_close, self.fluids());
+        }
+        if *hides {
+            let others = self.fluids().flat_map(|fluid| others_rows(&fluid));
+            near.fill_others(others.map(|rows| lists.table.of_rows(&rows)), |block| {
+                let seen = lists.seen(block);
+                [(lists.fluid.row(block), seen.0), (lists.walls.row(block), seen.1)]
+            });
+        }
         (self.compression, self.is_close) = (rates, is_close);
         if blocks.hides {
             self.pack_rows(blocks);

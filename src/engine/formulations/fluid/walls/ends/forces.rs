@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd, part};
+use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd};
 use crate::world::Force;
 
 /// Share of the support up to which neighbours are in the rows of all ranks.
@@ -18,10 +18,10 @@ impl Group {
 impl FlowCloud {
     /// Calls `f` with the row and x_iw of every particle of such walls within the support of a fluid particle.
     pub(super) fn for_each_end_wall(&self, i: usize, mut f: impl FnMut(usize, DVec3)) {
-        let (row, own) = (self.near_row(i), self.records[i].position());
+        let own = self.records[i].position();
         let limit = (WITHIN * self.kernel.support).powi(2);
         for group in self.groups.iter().filter(|group| group.has_ends()) {
-            for &w in part(row, &group.cloud) {
+            for &w in self.boundary_near(i, &group.cloud) {
                 let x = self.offset(own, self.records[w as usize].position());
                 if x.length_squared() < limit {
                     f(w as usize, x);

@@ -8,7 +8,7 @@ use super::forces::WITHIN;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, WallEnd};
 use crate::formulations::fluid::walls::surface_distance::BoundaryShape;
 use crate::linalg::dyad;
-use crate::parallel::for_each_block;
+use crate::parallel::{for_each_block, own_rows};
 use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
 use crate::world::ReferencePosition;
@@ -70,17 +70,18 @@ impl WallEnds {
         Ok(())
     }
 
-    /// Finds the fluid particles beside edges, and takes them and those around them in. Whether there are any.
+    /// Finds the fluid particles of this rank beside edges, and takes them and those around them in. Whether there are any.
     fn find_beside(&mut self, cloud: &FlowCloud) -> bool {
         let Self { edges, beside, faces, .. } = self;
         faces.clear();
         beside.clear();
         let limit = (WITHIN * cloud.kernel.support).powi(2);
+        let is_own = |i: u32| cloud.fluids().any(|fluid| own_rows(&fluid).contains(&(i as usize)));
         for &w in edges.iter().flatten() {
             let at = cloud.records[w].position();
             for &i in cloud.pairs.boundary.row(w - cloud.fluid) {
                 let x = cloud.offset(at, cloud.records[i as usize].position());
-                if x.length_squared() < limit && faces.take_in(i) {
+                if x.length_squared() < limit && is_own(i) && faces.take_in(i) {
                     beside.push(i);
                 }
             }
@@ -103,9 +104,8 @@ impl WallEnds {
             let shape = &*shape;
             let limit = BEFORE * shape.spacing;
             faces.add(|i| {
-                let place = (cloud.is_close[i] != 0)
-                    .then(|| shape.place(cloud, i, reference, motion.as_ref()))?
-                    .filter(|place| place.distance < limit)?;
+                let place = shape.place(cloud, i, reference, motion.as_ref());
+                let place = place.filter(|place| place.distance < limit)?;
                 let nearness = 1.0 - (place.distance.max(0.0) / limit).powi(2);
                 let normal = shape.direction(cloud, &place).normalize_or_zero();
                 Some(nearness * shape.on_face(cloud, &place) * dyad(normal, normal))
@@ -171,6 +171,7 @@ impl Run for WallEnds {
         }
         let mut rates = std::mem::take(&mut cloud.compression);
         ends.iter().for_each(|end| rates[end.i] -= cloud.rate_along(end, half));
+        WallEnd::share(&mut ends);
         (cloud.compression, cloud.ends) = (rates, ends);
         Ok(())
     }

@@ -1,0 +1,46 @@
+//! Values of which every rank has its own for the same places, joined place by place.
+
+use bytemuck::Pod;
+
+use super::group;
+
+/// Joins the values that the ranks have for each place: every rank joins those of a part of the places, and gives it to all. `join` must come to the same bits in any order, as a
+/// least and a largest value do.
+pub fn join<T: Pod>(values: &mut [T], join: impl Fn(T, T) -> T) {
+    group::with(|group| {
+        let (rank, size, count) = (group.ranks.rank(), group.ranks.size(), values.len());
+        let cuts: Vec<usize> = (0..=size).map(|k| k * count / size).collect();
+        let in_bytes = |cuts: &[usize]| cuts.iter().map(|cut| cut * size_of::<T>()).collect::<Vec<_>>();
+        let own = cuts[rank]..cuts[rank + 1];
+        let of_all: Vec<usize> = (0..=size).map(|k| k * own.len()).collect();
+        let mut received = vec![T::zeroed(); own.len() * size];
+        group.exchange(
+            (bytemuck::cast_slice(values), &in_bytes(&cuts)),
+            (bytemuck::cast_slice_mut(&mut received), &in_bytes(&of_all)),
+        );
+        for (k, value) in values[own.clone()].iter_mut().enumerate() {
+            let of_rank = |rank: usize| received[rank * own.len() + k];
+            *value = (1..size).fold(of_rank(0), |joined, rank| join(joined, of_rank(rank)));
+        }
+        group.share(bytemuck::cast_slice_mut(values), &in_bytes(&cuts));
+    });
+}
+
+/// The values of all ranks, those of each after those of the one before.
+pub fn concatenate<T: Pod>(values: &mut Vec<T>) {
+    let counts = group::gather(values.len() as u64);
+    if counts.iter().all(|&count| count == 0) {
+        return;
+    }
+    group::with(|group| {
+        let mut cuts = vec![0];
+        for count in &counts {
+            cuts.push(cuts[cuts.len() - 1] + *count as usize * size_of::<T>());
+        }
+        let mut all = vec![T::zeroed(); cuts[counts.len()] / size_of::<T>()];
+        let first = cuts[group.ranks.rank()] / size_of::<T>();
+        all[first..first + values.len()].copy_from_slice(values);
+        group.share(bytemuck::cast_slice_mut(&mut all), &cuts);
+        *values = all;
+    });
+}

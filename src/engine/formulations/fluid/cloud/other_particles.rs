@@ -1,0 +1,18 @@
+//! Which particles of other ranks this one knows.
+
+use crate::ranks::Halo;
+
+/// Which rows of other ranks this one knows.
+#[derive(Debug, Default)]
+pub struct OtherParticles {
+    /// Whether loops need no more than what is near their own particles.
+    pub(super) is_local: bool,
+    /// Whether the records of all rows are those of now.
+    pub(super) is_whole: bool,
+    pub(super) fluids: Halo,
+    pub(super) boundaries: Halo,
+    /// Rows that are near own particles.
+    pub(super) wanted: Vec<bool>,
+    /// Volumes, m3, and pressures, Pa, on their way.
+    pub(super) states: Vec<[f64; 2]>,
+}

@@ -1,0 +1,41 @@
+//! Lists of the blocks that other ranks compute: what is near the box of each, found when somebody asks for it.
+
+use super::lists::BlockLists;
+use crate::neighbors::{Boxes, NeighborList, NeighborSearch, Periodic};
+
+/// What such lists are found with.
+pub struct OtherSources<'a> {
+    /// The search that has sorted the fluids.
+    pub search: &'a NeighborSearch,
+    pub groups: &'a [u32],
+    pub skin: f64,
+    pub periodic: &'a Periodic,
+    /// Neighbours of each fluid particle among the boundary particles, and those of each boundary particle among the fluids.
+    pub walls: &'a NeighborList,
+    pub boundary: &'a NeighborList,
+}
+
+impl BlockLists {
+    /// What is near the box of a block that another rank computes, in the order of its list.
+    #[cold]
+    pub fn row_of_others(&self, block: usize, sources: &OtherSources<'_>) -> &[u32] {
+        self.others.found[block].get_or_init(|| self.find(block, sources))
+    }
+
+    fn find(&self, block: usize, sources: &OtherSources<'_>) -> Box<[u32]> {
+        let &OtherSources { search, groups, skin, periodic, walls, boundary } = sources;
+        let (table, fluids) = (&self.table, self.walls.rows());
+        let rows = &table.rows[block..=block];
+        let (mut near, mut joined) = (NeighborList::default(), NeighborList::default());
+        if block < fluids {
+            let (centers, halves) = (&table.centers[block..=block], &table.halves[block..=block]);
+            let boxes = Boxes { centers, halves, wanted: &[0..1], groups };
+            // The same search has succeeded for the blocks of this rank.
+            let _ = search.of_more_boxes(boxes, skin, periodic, &mut near);
+            joined.join((rows, |_| true), (walls, 0), &mut Vec::new());
+        } else {
+            joined.join((rows, |_| true), (boundary, walls.rows() as u32), &mut Vec::new());
+        }
+        near.indices().iter().chain(joined.indices()).copied().collect()
+    }
+}
