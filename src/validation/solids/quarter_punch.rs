@@ -80,7 +80,7 @@ fn quarter_punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             0.3,
             "paper, 4.3",
         ));
-        checks.push(Check::below(name("hourglass residual"), disorder, 0.2, "smooth"));
+        checks.push(Check::below(name("hourglass residual"), disorder, 0.2, "in order"));
         checks.push(balance.check_of(stabilizer, Kind::Abrupt));
         checks.push(Check::above(name("volume"), volume, 0.9, "nearly incompressible"));
     }
