@@ -8,7 +8,7 @@ use meshless_engine::world::BodyId;
 
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
-use crate::measure::{Disorder, Kind, MaterialPoint, body, run, state};
+use crate::measure::{Balance, Disorder, Kind, MaterialPoint, body, run, state};
 use crate::template::Template;
 
 pub(crate) const CASE: Case =
@@ -33,6 +33,8 @@ const STAGES: [Stage; 5] = [
     Stage { compression: 0.4, reaction: 3.705e6, half_width: 4.193e-3, tolerance: 0.04 },
     Stage { compression: 0.5, reaction: 5.09e6, half_width: 4.478e-3, tolerance: 0.05 },
 ];
+/// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle that is free at its sides.
+const WIDE: [(f64, f64); 3] = [(0.1, 8.62e5), (0.2, 2.024e6), (0.25, 2.772e6)];
 const SOURCE: &str = "finite elements, reference.csv";
 /// Half the range of compression that lines are taken over.
 const WINDOW: f64 = 0.02;
@@ -46,17 +48,8 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     .set("bodies.block.spacing", 3.0e-3 / across as f64)?;
     let mut simulation = scene.clone().build(registry)?;
     let block = body(&simulation, "block")?;
-    let side = MaterialPoint::new(&simulation, block, DVec3::new(3.0e-3, 0.0, 0.0))?;
-    let (mut reactions, mut widths) = (Vec::new(), Vec::new());
     let disorder = Disorder::new(&simulation, block)?;
-    let balance = run(&mut simulation, |simulation| {
-        let (upper, lower) = (state(simulation, "upper")?, state(simulation, "lower")?);
-        let compression = 1.0 - (upper.center.y - lower.center.y - 0.6e-3) / 3.0e-3;
-        // The mean of both tools.
-        reactions.push((compression, 0.5 * (upper.force.y - lower.force.y)));
-        widths.push((compression, side.position(simulation)?.x));
-        Ok(())
-    })?;
+    let Pressed { reactions, widths, balance } = press(&mut simulation)?;
     let worst = disorder.measure(&simulation)?;
     let last = reactions.last().context("no step")?;
     ensure!(last.0 > 0.5, "pressed to {} only", last.0);
@@ -71,6 +64,10 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             Check::new(name("half width"), width, half_width, tolerance, "m", SOURCE).converging(),
         ]);
     }
+    // The surface of the block yields by a share of a spacing, which is too much at the resolution of the tests: see the page.
+    if across != CASE.ci_resolution {
+        checks.extend(wide(registry, scene.clone())?);
+    }
     // At half height a particle beside an edge of a tool is nearly two spacings wide.
     let smooth = if across < 44 { 0.12 } else { 0.1 };
     checks.extend([
@@ -79,6 +76,47 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         balance.check(Kind::Inelastic),
     ]);
     Ok(checks)
+}
+
+/// What a run has shown, each over the compression.
+struct Pressed {
+    /// N per metre.
+    reactions: Vec<(f64, f64)>,
+    /// Half widths, m.
+    widths: Vec<(f64, f64)>,
+    balance: Balance,
+}
+
+fn press(simulation: &mut Simulation) -> Result<Pressed> {
+    let block = body(simulation, "block")?;
+    let side = MaterialPoint::new(simulation, block, DVec3::new(3.0e-3, 0.0, 0.0))?;
+    let (mut reactions, mut widths) = (Vec::new(), Vec::new());
+    let balance = run(simulation, |simulation| {
+        let (upper, lower) = (state(simulation, "upper")?, state(simulation, "lower")?);
+        let compression = 1.0 - (upper.center.y - lower.center.y - 0.6e-3) / 3.0e-3;
+        // The mean of both tools.
+        reactions.push((compression, 0.5 * (upper.force.y - lower.force.y)));
+        widths.push((compression, side.position(simulation)?.x));
+        Ok(())
+    })?;
+    Ok(Pressed { reactions, widths, balance })
+}
+
+/// Between tools that are wider than the block, which stays a rectangle: no edge, and closed-form reactions.
+fn wide(registry: &Registry, scene: Template) -> Result<Vec<Check>> {
+    let mut simulation = scene
+        .set("bodies.upper.shape", "Box(min: (-4.0e-3, 1.5e-3), max: (4.0e-3, 2.1e-3))")?
+        .set("bodies.lower.shape", "Box(min: (-4.0e-3, -2.1e-3), max: (4.0e-3, -1.5e-3))")?
+        .set("time.end", 2.4e-4)?
+        .build(registry)?;
+    let Pressed { reactions, .. } = press(&mut simulation)?;
+    let check = |(compression, reaction): (f64, f64)| -> Result<Check> {
+        let name = format!("tools of 8 mm: reaction at {:.0} %", 100.0 * compression);
+        let tolerance = Tolerance::Relative(0.03);
+        let measured = at(&reactions, compression)?;
+        Ok(Check::new(name, measured, reaction, tolerance, "N/m", "homogeneous, plane strain"))
+    };
+    WIDE.into_iter().map(check).collect()
 }
 
 /// The value at a compression. The force falls in steps, whenever a particle slips over the edge of a tool: a line through some of them.
