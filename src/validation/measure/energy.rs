@@ -13,7 +13,7 @@ use crate::check::Check;
 pub enum Kind {
     /// Bodies deform and swing, slide along each other or lie in a flow; flows have surfaces, waves and jets.
     Smooth,
-    /// Bodies yield or break; a lattice of fluid particles breaks up.
+    /// Bodies yield or break, or slip particle by particle over the edge of a tool; a lattice of fluid particles breaks up.
     Inelastic,
     /// Bodies hit each other, their references are renewed every few steps, or particles leave the run.
     Abrupt,
