@@ -16,7 +16,7 @@ pub use meshless_engine::scene::{
     Dimension, Expression, Item, Scene, SceneError, Select, Source, Vec3, load, parse,
 };
 pub use meshless_engine::schedule::{
-    AccountKind, Adds, Clock, EnergyAccount, Run, Stage, Step, StepError, System,
+    AccountKind, Adds, Clock, EnergyAccount, Mode, Run, Stage, Step, StepError, System,
 };
 pub use meshless_engine::schemars::JsonSchema;
 pub use meshless_engine::serde::Deserialize;

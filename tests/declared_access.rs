@@ -1,6 +1,7 @@
-//! A system touches only the columns that it has declared, and rows of neighbours only where it has said so: otherwise the run ends, with what to add.
+//! A system touches only the columns and the packed rows that it has declared, and rows of neighbours only where it has said so: otherwise the run ends, with what to add.
 
 use meshless::prelude::*;
+use meshless::solids::PACKED_SOLID;
 
 /// Does to a column what its text says, having declared what its text says.
 #[derive(Deserialize, JsonSchema)]
@@ -21,6 +22,8 @@ impl Plugin for Touch {
             match does.as_str() {
                 "reads" => drop(view.read::<Velocity>()?),
                 "reads near" => drop(view.read_near::<Velocity>()?),
+                "reads packed" => drop(step.resources.solid(step.world.body(BodyId(0)).phase)),
+                "writes packed" => drop(step.resources.solid_mut(step.world.body(BodyId(0)).phase)),
                 _ => drop(view.write::<Velocity>()?),
             }
             Ok(())
@@ -30,6 +33,8 @@ impl Plugin for Touch {
             "reads" => system.reads::<Velocity>(),
             "reads near" => system.reads_near::<Velocity>(),
             "adds" => system.adds::<Velocity>(),
+            "reads packed" => system.touches(PACKED_SOLID, Mode::Reads),
+            "writes packed" => system.touches(PACKED_SOLID, Mode::Writes),
             _ => system.writes::<Velocity>(),
         });
         Ok(())
@@ -65,6 +70,9 @@ fn what_is_declared_may_be_done() {
         ("writes", "reads"),
         ("writes", "writes"),
         ("adds", "writes"),
+        ("reads packed", "reads packed"),
+        ("writes packed", "reads packed"),
+        ("writes packed", "writes packed"),
     ];
     for (declares, does) in allowed {
         assert_eq!(run(declares, does), None, "declares {declares}, does {does}");
@@ -86,6 +94,24 @@ fn what_is_not_declared_ends_the_run_and_says_what_to_add() {
         let error = run(declares, does).unwrap_or_else(|| panic!("declares {declares}, does {does}"));
         let expected = format!(
             "system `touch` touches the column `velocity` and has not declared it: add `.{missing}::<Velocity>()` to the system"
+        );
+        assert!(error.contains(&expected), "{error}");
+    }
+}
+
+#[test]
+fn packed_rows_that_are_not_declared_end_the_run_too() {
+    let refused = [
+        ("nothing", "reads packed", "Reads"),
+        ("writes", "reads packed", "Reads"),
+        ("nothing", "writes packed", "Writes"),
+        ("reads packed", "writes packed", "Writes"),
+    ];
+    for (declares, does, mode) in refused {
+        let error = run(declares, does).unwrap_or_else(|| panic!("declares {declares}, does {does}"));
+        let expected = format!(
+            "system `touch` touches `packed_solid` or `corrected_stress` of what systems share and has not declared it: \
+             add `.touches_packed(\"packed_solid\", Mode::{mode})` to the system"
         );
         assert!(error.contains(&expected), "{error}");
     }

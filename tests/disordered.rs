@@ -8,7 +8,7 @@ use std::path::Path;
 
 use common::simulation;
 use meshless::glam::{DMat3, DVec3};
-use meshless::invariants::{Net, Specimen};
+use meshless::invariants::{NetForce, Specimen};
 use meshless::scene::Source;
 use meshless::simulation::{Checkpoint, Simulation};
 use meshless::world::{BodyId, Force, Position};
@@ -116,7 +116,7 @@ fn after_an_update_the_force_is_still_the_slope_of_the_energy() {
             sim
         };
         let start = at(0, 0, 0.0);
-        let net = Net::of(&start).expect("forces");
+        let net = NetForce::of(&start).expect("forces");
         assert!(net.force < 1e-10 && net.torque < 1e-10, "{dimension} dimensions, {plugin}: {net:?}");
         let (view, _) = start.world().body_view(BodyId(0));
         let force: Vec<DVec3> = view.read::<Force>().expect("forces").iter().map(|f| f.0).collect();

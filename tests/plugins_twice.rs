@@ -3,7 +3,7 @@
 mod common;
 
 use common::simulation;
-use meshless::plugin::Kind;
+use meshless::plugin::EntryKind;
 use meshless::scene::Source;
 use meshless::standard_plugins;
 
@@ -87,7 +87,7 @@ fn every_plugin_runs_on_two_bodies_of_a_scene() {
 
 #[test]
 fn no_plugin_is_missing_here() {
-    for entry in standard_plugins().entries(Kind::Plugin) {
+    for entry in standard_plugins().entries(EntryKind::Plugin) {
         let known = RECORDERS.contains(&entry.name) || PLUGINS.iter().any(|(name, ..)| *name == entry.name);
         assert!(known, "`{}` is run on one body alone: add it to the list", entry.name);
     }

@@ -16,15 +16,15 @@ use clap::Args;
 use meshless_engine::plugin::Registry;
 
 use super::execution::take_instructions;
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::say;
 use super::values::{duration, particles, whole};
 use bench_case::{BENCH_CASES, BenchCase};
-use measure::{Measurement, SetUp};
+use measure::{BenchSetUp, Measurement};
 
 /// Measure the speed on benchmark cases: particle-steps/s, pairs/s, memory, share of each system
 #[derive(Args)]
-pub struct Arguments {
+pub struct BenchArguments {
     /// Benchmarks to run; all if none is given
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
@@ -63,7 +63,7 @@ fn pairs(ranks: &[u16], threads: &[u16]) -> impl Iterator<Item = (u16, u16)> {
 }
 
 /// Measures the benchmarks that were asked for.
-pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(arguments: &BenchArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let cases = chosen(&arguments.cases)?;
     if arguments.list {
         say(&report::list(&cases));
@@ -78,7 +78,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     for &particles in &arguments.particles {
         for case in &cases {
             for (ranks, threads) in pairs(&arguments.ranks, &arguments.threads) {
-                let set_up = SetUp { case, particles, ranks, threads, least };
+                let set_up = BenchSetUp { case, particles, ranks, threads, least };
                 let measurement = match arguments.here {
                     true => Measurement::take(&set_up, registry)?,
                     false => apart::take(&set_up, instructions)?,
@@ -94,14 +94,17 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     Ok(())
 }
 
-fn chosen(names: &[String]) -> Result<Vec<&'static BenchCase>, Failure> {
+fn chosen(names: &[String]) -> Result<Vec<&'static BenchCase>, CommandFailure> {
     if names.is_empty() {
         return Ok(BENCH_CASES.iter().collect());
     }
     let find = |name: &String| {
         BENCH_CASES.iter().find(|case| case.name == name).ok_or_else(|| {
             let known: Vec<&str> = BENCH_CASES.iter().map(|case| case.name).collect();
-            Failure::Usage(format!("unknown benchmark `{name}`; the benchmarks are {}", known.join(", ")))
+            CommandFailure::Usage(format!(
+                "unknown benchmark `{name}`; the benchmarks are {}",
+                known.join(", ")
+            ))
         })
     };
     names.iter().map(find).collect()

@@ -11,10 +11,10 @@ use meshless_engine::scene::{Dimension, Scene};
 use meshless_engine::simulation::Simulation;
 use serde::Serialize;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::memory::resident_bytes;
 use super::scene_file::SceneFile;
-use super::text::{Table, bytes, complain, say};
+use super::text::{TextTable, bytes, complain, say};
 
 mod body;
 mod review;
@@ -22,11 +22,11 @@ mod support;
 mod trial;
 
 use body::BodyReport;
-use trial::Trial;
+use trial::TrialSteps;
 
 /// Check a scene without writing anything: particles, neighbours, memory, time step, estimated run time, and notes on its set-up
 #[derive(Args)]
-pub struct Arguments {
+pub struct CheckArguments {
     #[command(flatten)]
     scene: SceneFile,
     /// Print the systems in their order, with the columns that they read and write
@@ -39,7 +39,7 @@ pub struct Arguments {
 
 /// The report for programs.
 #[derive(Serialize)]
-struct Report<'a> {
+struct CheckReport<'a> {
     title: &'a str,
     dimension: usize,
     parameters: &'a BTreeMap<String, f64>,
@@ -58,13 +58,13 @@ struct Report<'a> {
 }
 
 /// Builds the scene, does some steps in memory, and says what was found.
-pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(arguments: &CheckArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let (scene, source) = arguments.scene.load()?;
     let mut sim = assembly::build(&scene, &source, registry)?;
-    sim.start().map_err(|error| Failure::Run(error.to_string()))?;
+    sim.start().map_err(|error| CommandFailure::Run(error.to_string()))?;
     let bodies = BodyReport::all(&scene, &sim, registry)?;
     let memory = memory(&sim);
-    let trial = Trial::run(&mut sim).inspect_err(|_| warn(&sim))?;
+    let trial = TrialSteps::run(&mut sim).inspect_err(|_| warn(&sim))?;
     let notes = review::notes(&scene, &bodies, &sim, &trial);
     if arguments.json {
         say(&json(&scene, &sim, &bodies, &trial, &notes)?);
@@ -95,10 +95,10 @@ fn json(
     scene: &Scene,
     sim: &Simulation,
     bodies: &[BodyReport],
-    trial: &Trial,
+    trial: &TrialSteps,
     notes: &[String],
-) -> Result<String, Failure> {
-    let report = Report {
+) -> Result<String, CommandFailure> {
+    let report = CheckReport {
         title: &scene.title,
         dimension: scene.dimension.count(),
         parameters: sim.parameters(),
@@ -115,7 +115,7 @@ fn json(
         notes,
         warnings: sim.warnings(),
     };
-    serde_json::to_string_pretty(&report).map_err(|error| Failure::Run(error.to_string()))
+    serde_json::to_string_pretty(&report).map_err(|error| CommandFailure::Run(error.to_string()))
 }
 
 fn header(scene: &Scene, name: &str, sim: &Simulation) -> String {
@@ -148,7 +148,7 @@ fn table(scene: &Scene, bodies: &[BodyReport]) -> String {
         "min",
         "max",
     ];
-    let mut table = Table::new(&headings, 8);
+    let mut table = TextTable::new(&headings, 8);
     for body in bodies {
         let [mean, least, most] = match body.neighbours {
             Some((mean, least, most)) => [format!("{mean:.1}"), least.to_string(), most.to_string()],

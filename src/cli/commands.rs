@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use meshless_engine::plugin::Registry;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::unsaid;
 use super::{
     bench, check, completions, new, picture, plugins, ranks, resume, schema, surface, sweep, validate,
@@ -23,19 +23,19 @@ pub(super) struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    Run(super::run::Arguments),
-    Resume(resume::Arguments),
-    Sweep(sweep::Arguments),
-    Check(check::Arguments),
-    Bench(bench::Arguments),
-    New(new::Arguments),
-    Plugins(plugins::Arguments),
-    Schema(schema::Arguments),
-    Validate(validate::Arguments),
-    View(view::Arguments),
-    Picture(picture::Arguments),
-    Surface(surface::Arguments),
-    Completions(completions::Arguments),
+    Run(super::run::RunArguments),
+    Resume(resume::ResumeArguments),
+    Sweep(sweep::SweepArguments),
+    Check(check::CheckArguments),
+    Bench(bench::BenchArguments),
+    New(new::NewArguments),
+    Plugins(plugins::PluginsArguments),
+    Schema(schema::SchemaArguments),
+    Validate(validate::ValidateArguments),
+    View(view::ViewArguments),
+    Picture(picture::PictureArguments),
+    Surface(surface::SurfaceArguments),
+    Completions(completions::CompletionsArguments),
     Manual(completions::Manual),
 }
 
@@ -44,7 +44,7 @@ exit codes: 0 success, 1 the run failed or a file could not be read or written, 
 130 stopped by Ctrl-C (SIGINT), 143 by the system (SIGTERM), 129 as the terminal closed (SIGHUP), each with a checkpoint left";
 
 impl Command {
-    fn execute(self, registry: &Registry) -> Result<(), Failure> {
+    fn execute(self, registry: &Registry) -> Result<(), CommandFailure> {
         if !matches!(self, Self::Run(_) | Self::Resume(_) | Self::Bench(_)) {
             ranks::require_one()?;
         }
@@ -85,12 +85,12 @@ pub fn run(registry: Registry) -> ExitCode {
     ended(command.execute(&registry).and_then(|()| unsaid().map_or(Ok(()), |error| Err(unwritten(&error)))))
 }
 
-fn unwritten(error: &io::Error) -> Failure {
-    Failure::Run(format!("cannot write to the standard output: {error}"))
+fn unwritten(error: &io::Error) -> CommandFailure {
+    CommandFailure::Run(format!("cannot write to the standard output: {error}"))
 }
 
 /// Reports a failure; the exit code.
-fn ended(done: Result<(), Failure>) -> ExitCode {
+fn ended(done: Result<(), CommandFailure>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -4,12 +4,12 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::commands::CommandLine;
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::say;
 
 /// Print the completions of a shell: `meshless completions bash > ~/.local/share/bash-completion/completions/meshless`
 #[derive(Args)]
-pub struct Arguments {
+pub struct CompletionsArguments {
     /// Shell
     #[arg(value_name = "SHELL")]
     shell: Shell,
@@ -20,7 +20,7 @@ pub struct Arguments {
 pub struct Manual {}
 
 /// Prints the completions.
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
+pub fn execute(arguments: &CompletionsArguments) -> Result<(), CommandFailure> {
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut CommandLine::command(), "meshless", &mut text);
     say(&String::from_utf8_lossy(&text));
@@ -28,11 +28,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Prints the manual page, with a section for every command.
-pub fn manual() -> Result<(), Failure> {
+pub fn manual() -> Result<(), CommandFailure> {
     let mut command = CommandLine::command();
     command.build();
     let mut text = Vec::new();
-    let failed = |error: std::io::Error| Failure::Run(error.to_string());
+    let failed = |error: std::io::Error| CommandFailure::Run(error.to_string());
     clap_mangen::Man::new(command.clone()).render(&mut text).map_err(failed)?;
     for sub in command.get_subcommands() {
         let man = clap_mangen::Man::new(sub.clone());

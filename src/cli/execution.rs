@@ -13,12 +13,12 @@ use meshless_engine::record::OutputOptions;
 use meshless_engine::scene::{Scene, Source};
 use meshless_engine::simulation::{RunError, Simulation};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::folder::{self, FAILED};
 use super::interrupt::Interrupt;
 use super::lock::Lock;
 use super::profile;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::ranks::{all_or_none, end_if_alone_with, require_equal, together, usual_threads};
 use super::summary;
 use super::text::{complain, program, quoted, say, speaks};
@@ -49,24 +49,25 @@ pub struct How {
 
 impl How {
     /// Sets the number of threads and the instruction path of this program; once, before anything runs.
-    pub fn prepare(&self) -> Result<(), Failure> {
+    pub fn prepare(&self) -> Result<(), CommandFailure> {
         take_instructions(self.instructions.as_deref())?;
         let Some(threads) = self.threads.map(usize::from).or_else(usual_threads) else { return Ok(()) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build_global().map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))
+        pool.build_global()
+            .map_err(|error| CommandFailure::Run(format!("cannot start {threads} threads: {error}")))
     }
 }
 
 /// Takes the instruction path of that name, if there is one.
-pub fn take_instructions(name: Option<&str>) -> Result<(), Failure> {
-    name.map_or(Ok(()), take_instruction_path).map_err(|error| Failure::Usage(error.to_string()))
+pub fn take_instructions(name: Option<&str>) -> Result<(), CommandFailure> {
+    name.map_or(Ok(()), take_instruction_path).map_err(|error| CommandFailure::Usage(error.to_string()))
 }
 
 /// Prepares a run and carries it out, on all ranks that have been started together.
 pub fn carry_out_together(
     how: &How,
-    prepare: impl FnOnce() -> Result<Execution, Failure> + Send,
-) -> Result<(), Failure> {
+    prepare: impl FnOnce() -> Result<Execution, CommandFailure> + Send,
+) -> Result<(), CommandFailure> {
     how.prepare()?;
     together(|| all_or_none(prepare())?.carry_out(how))
 }
@@ -88,7 +89,7 @@ impl Execution {
         source: &Source,
         registry: &Registry,
         output: OutputOptions,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CommandFailure> {
         let begun = SystemTime::now() - CLOCK;
         let folder = output.folder.clone();
         let sim = assembly::build_with(scene, source, registry, &BuildOptions { output: Some(output) })?;
@@ -96,10 +97,10 @@ impl Execution {
     }
 
     /// Does the steps, shows how far they are, and reports at the end.
-    pub fn carry_out(&mut self, how: &How) -> Result<(), Failure> {
+    pub fn carry_out(&mut self, how: &How) -> Result<(), CommandFailure> {
         require_equal("scene", &self.source.text)?;
         let interrupt = Interrupt::listen()?;
-        let mut progress = Progress::new(&self.sim, how.quiet);
+        let mut progress = ProgressLine::new(&self.sim, how.quiet);
         // On a thread of the pool: a parallel loop that begins outside has to wake one each time.
         let steps = match ranks::has_several() {
             true => self.steps(how.steps, &interrupt, &mut progress),
@@ -135,11 +136,11 @@ impl Execution {
         }
         if let Err(error) = steps {
             let state = failed_state.map(|file| format!("\nthe state is kept in {}", file.display()));
-            return Err(Failure::Run(format!("{error}{}", state.unwrap_or_default())));
+            return Err(CommandFailure::Run(format!("{error}{}", state.unwrap_or_default())));
         }
-        finished.map_err(|error| Failure::Run(error.to_string()))?;
+        finished.map_err(|error| CommandFailure::Run(error.to_string()))?;
         if ranks::any(interrupt.asked()) && !self.sim.is_finished() {
-            Err(Failure::Interrupted(interrupt.signal()))
+            Err(CommandFailure::Interrupted(interrupt.signal()))
         } else {
             Ok(())
         }
@@ -149,7 +150,7 @@ impl Execution {
         &mut self,
         limit: Option<u64>,
         interrupt: &Interrupt,
-        progress: &mut Progress,
+        progress: &mut ProgressLine,
     ) -> Result<(), RunError> {
         self.sim.start()?;
         while !self.sim.is_finished() && !ranks::any(interrupt.asked()) {
@@ -175,7 +176,7 @@ impl Execution {
     }
 
     /// What lies in the output folder, and what to do with it.
-    fn files(&self) -> Result<String, Failure> {
+    fn files(&self) -> Result<String, CommandFailure> {
         let (mut names, mut frames, mut earlier) = (Vec::new(), 0, 0);
         for file in folder::files(&self.folder)? {
             let written = file.metadata().and_then(|data| data.modified());

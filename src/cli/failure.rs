@@ -10,7 +10,7 @@ use super::text::{complain, in_colour};
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug, Error)]
-pub enum Failure {
+pub enum CommandFailure {
     /// The scene cannot be used. Exit code 2.
     #[error("{0}")]
     Scene(SceneError),
@@ -32,7 +32,7 @@ pub enum Failure {
     Interrupted(u8),
 }
 
-impl Failure {
+impl CommandFailure {
     pub(super) fn report(&self) {
         match self {
             Self::Told(_) => {}
@@ -57,7 +57,7 @@ impl Failure {
 
 /// For commands with an option `--force`.
 #[cfg(feature = "rerun")]
-impl From<WriteError> for Failure {
+impl From<WriteError> for CommandFailure {
     fn from(error: WriteError) -> Self {
         Self::Run(match error {
             WriteError::Exists { path } => {
@@ -71,7 +71,7 @@ impl From<WriteError> for Failure {
     }
 }
 
-impl From<SceneError> for Failure {
+impl From<SceneError> for CommandFailure {
     fn from(error: SceneError) -> Self {
         Self::Scene(error)
     }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 
 /// Name of the checkpoint of a run.
 pub const CHECKPOINT: &str = "checkpoint.mlc";
@@ -21,12 +21,12 @@ pub fn default_folder(scene: &Path) -> PathBuf {
 }
 
 /// The checkpoint itself, or that of the folder.
-pub fn checkpoint(path: &Path) -> Result<PathBuf, Failure> {
+pub fn checkpoint(path: &Path) -> Result<PathBuf, CommandFailure> {
     let file = if path.is_dir() { path.join(CHECKPOINT) } else { path.to_path_buf() };
     if file.is_file() {
         return Ok(file);
     }
-    Err(Failure::Usage(format!(
+    Err(CommandFailure::Usage(format!(
         "there is no checkpoint `{}`; a run leaves one when it ends or is stopped, unless it has failed or the \
          scene says `record: (checkpoint_at_end: false)`",
         file.display()
@@ -34,11 +34,11 @@ pub fn checkpoint(path: &Path) -> Result<PathBuf, Failure> {
 }
 
 /// The recording itself, or the one of the folder that was written last.
-pub fn recording(path: &Path) -> Result<PathBuf, Failure> {
+pub fn recording(path: &Path) -> Result<PathBuf, CommandFailure> {
     if path.is_file() {
         return match is_recording(path) {
             true => Ok(path.to_path_buf()),
-            false => Err(Failure::Usage(format!("`{}` is not a recording (`*.rrd`)", path.display()))),
+            false => Err(CommandFailure::Usage(format!("`{}` is not a recording (`*.rrd`)", path.display()))),
         };
     }
     let mut found: Vec<_> = files(path)?
@@ -49,7 +49,7 @@ pub fn recording(path: &Path) -> Result<PathBuf, Failure> {
     found.sort();
     let newest = found.pop().map(|(_, file)| file);
     newest.ok_or_else(|| {
-        Failure::Usage(format!(
+        CommandFailure::Usage(format!(
             "the folder `{}` contains no recording (`*.rrd`); the plugin `rerun_recorder` writes one",
             path.display()
         ))
@@ -63,10 +63,12 @@ fn is_recording(file: &Path) -> bool {
 }
 
 /// The files of a folder, in the order of their names.
-pub fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, CommandFailure> {
     let entries = std::fs::read_dir(folder).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => Failure::Usage(format!("`{}` does not exist", folder.display())),
-        _ => Failure::Run(format!("`{}` cannot be read: {error}", folder.display())),
+        std::io::ErrorKind::NotFound => {
+            CommandFailure::Usage(format!("`{}` does not exist", folder.display()))
+        }
+        _ => CommandFailure::Run(format!("`{}` cannot be read: {error}", folder.display())),
     })?;
     let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.retain(|file| file.is_file());

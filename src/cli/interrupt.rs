@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::complain;
 
 /// The signal by which the user or the system has asked to stop, 0 for none; one for the program.
@@ -15,11 +15,11 @@ pub struct Interrupt(());
 
 impl Interrupt {
     /// Listens for Ctrl-C and for the request of the system to end; once for all runs of the program.
-    pub fn listen() -> Result<Self, Failure> {
+    pub fn listen() -> Result<Self, CommandFailure> {
         static LISTENING: OnceLock<Result<(), String>> = OnceLock::new();
         match LISTENING.get_or_init(|| listen(stop).map_err(|error| error.to_string())) {
             Ok(()) => Ok(Self(())),
-            Err(error) => Err(Failure::Run(format!("cannot listen for signals: {error}"))),
+            Err(error) => Err(CommandFailure::Run(format!("cannot listen for signals: {error}"))),
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use meshless_engine::ranks;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 
 /// Holds the folder of a run until it is dropped, or until the program ends in whatever way.
 pub struct Lock {
@@ -15,12 +15,12 @@ pub struct Lock {
 
 impl Lock {
     /// Takes the folder, which must exist; of several ranks the first one does.
-    pub fn of(folder: &Path) -> Result<Self, Failure> {
+    pub fn of(folder: &Path) -> Result<Self, CommandFailure> {
         let held = ranks::is_first().then(|| File::open(folder).ok()).flatten();
         let Some(file) = held else { return Ok(Self { _folder: None }) };
         match file.try_lock() {
             Ok(()) => Ok(Self { _folder: Some(file) }),
-            Err(TryLockError::WouldBlock) => Err(Failure::Usage(format!(
+            Err(TryLockError::WouldBlock) => Err(CommandFailure::Usage(format!(
                 "another run is writing to `{}`; wait for its end, or choose another folder with `--out`",
                 folder.display()
             ))),

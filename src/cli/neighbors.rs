@@ -6,10 +6,10 @@ use meshless_engine::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic, 
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, ReferencePosition, SupportRadius};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 
 /// Numbers of neighbours of the particles of one body.
-pub struct Neighbors {
+pub struct NeighborCounts {
     /// Mean.
     pub mean: f64,
     /// Least.
@@ -18,10 +18,10 @@ pub struct Neighbors {
     pub most: usize,
 }
 
-impl Neighbors {
+impl NeighborCounts {
     /// Counts the neighbours of the particles of a body: those of the reference configuration in solids, those that are near now
     /// in fluids. None where particles have no neighbours of their own.
-    pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, Failure> {
+    pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, CommandFailure> {
         if let Some(cloud) = FlowCloud::whole(sim.resources())
             && let Some(counts) = cloud.neighbor_counts(body)
         {
@@ -38,7 +38,7 @@ impl Neighbors {
         let mut list = NeighborList::default();
         NeighborSearch::default()
             .within(cloud, 0.0, &Periodic::NONE, &mut list)
-            .map_err(|error| Failure::Run(error.to_string()))?;
+            .map_err(|error| CommandFailure::Run(error.to_string()))?;
         let counts: Vec<usize> = (0..positions.len()).map(|row| list.row(row).len()).collect();
         Ok(Self::of(&counts))
     }

@@ -6,12 +6,12 @@ use clap::Args;
 use meshless_engine::record::{Existing, write_atomically};
 use meshless_engine::scene::unknown;
 
-use super::failure::Failure;
-use super::text::{Table, program, quoted, say};
+use super::failure::CommandFailure;
+use super::text::{TextTable, program, quoted, say};
 
 /// Write a commented scene to start from; without a name, list those that there are
 #[derive(Args)]
-pub struct Arguments {
+pub struct NewArguments {
     /// Name of the template
     #[arg(value_name = "TEMPLATE")]
     template: Option<String>,
@@ -20,19 +20,19 @@ pub struct Arguments {
     file: Option<PathBuf>,
 }
 
-struct Template {
+struct SceneTemplate {
     name: &'static str,
     text: &'static str,
 }
 
 macro_rules! templates {
     ($($name:literal),+ $(,)?) => {
-        [$(Template { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
+        [$(SceneTemplate { name: $name, text: include_str!(concat!("../../assets/scenes/", $name, ".ron")) }),+]
     };
 }
 
 /// The scenes of the project are the templates, but for those that need a file beside them.
-const TEMPLATES: &[Template] = &templates![
+const TEMPLATES: &[SceneTemplate] = &templates![
     "cantilever",
     "oscillating_plate",
     "rubber_pull",
@@ -63,7 +63,7 @@ const TEMPLATES: &[Template] = &templates![
     "taylor_green",
 ];
 
-impl Template {
+impl SceneTemplate {
     /// The first line of the comment that a scene begins with.
     fn about(&self) -> &'static str {
         self.text.lines().next().unwrap_or_default().trim_start_matches('/').trim()
@@ -71,7 +71,7 @@ impl Template {
 }
 
 /// Writes the template, or lists all.
-pub fn execute(arguments: Arguments) -> Result<(), Failure> {
+pub fn execute(arguments: NewArguments) -> Result<(), CommandFailure> {
     let Some(name) = arguments.template else {
         say(&list());
         return Ok(());
@@ -79,11 +79,11 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
     let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
         let known: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
         let (message, helps) = unknown("template", &name, &known);
-        return Err(Failure::Usage(format!("{message}\n{}", helps.join("\n"))));
+        return Err(CommandFailure::Usage(format!("{message}\n{}", helps.join("\n"))));
     };
     let file = arguments.file.unwrap_or_else(|| Path::new(&name).with_extension("ron"));
     write_atomically(&file, Existing::Refuse, |to| to.write_all(template.text.as_bytes()))
-        .map_err(|error| Failure::Run(error.to_string()))?;
+        .map_err(|error| CommandFailure::Run(error.to_string()))?;
     say(&format!(
         "wrote {}; run it with: {} run {}",
         file.display(),
@@ -94,7 +94,7 @@ pub fn execute(arguments: Arguments) -> Result<(), Failure> {
 }
 
 fn list() -> String {
-    let mut table = Table::new(&["template", "what it shows"], 0);
+    let mut table = TextTable::new(&["template", "what it shows"], 0);
     for template in TEMPLATES {
         table.row([template.name.to_owned(), template.about().to_owned()]);
     }

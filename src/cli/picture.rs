@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::values::time;
 
 /// Draw a frame of a recording as a PNG file, without a viewer and without a screen
 #[derive(Args)]
-pub struct Arguments {
+pub struct PictureArguments {
     /// Recording (.rrd), or an output folder whose newest recording is meant
     #[arg(value_name = "RECORDING")]
     path: PathBuf,
@@ -43,7 +43,7 @@ fn size(text: &str) -> Result<(usize, usize), String> {
 
 /// Draws the picture.
 #[cfg(feature = "rerun")]
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
+pub fn execute(arguments: &PictureArguments) -> Result<(), CommandFailure> {
     use super::folder;
     use super::text::{complain, quoted, say};
     use meshless_engine::notation::quantity;
@@ -51,13 +51,14 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 
     let recording = folder::recording(&arguments.path)?;
     let frame = rerun_recorder::read_frame(&recording, arguments.at)
-        .map_err(|error| Failure::Run(error.to_string()))?;
+        .map_err(|error| CommandFailure::Run(error.to_string()))?;
     if let Some(end) = &frame.cut_off {
         complain(&format!("warning: the recording has no end, as that of a run that was killed: {end}"));
     }
     let (width, height) = arguments.size;
     let look = rerun_recorder::Look { width, height, smooth: arguments.smooth };
-    let picture = rerun_recorder::draw(&frame, look).map_err(|error| Failure::Run(error.to_string()))?;
+    let picture =
+        rerun_recorder::draw(&frame, look).map_err(|error| CommandFailure::Run(error.to_string()))?;
     let file = arguments.out.clone().unwrap_or_else(|| {
         let stem = recording.file_stem().unwrap_or_default().to_string_lossy();
         let time = quantity(frame.time, "s").replace(' ', "").replace('µ', "u");
@@ -71,9 +72,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A build without rerun cannot read recordings.
 #[cfg(not(feature = "rerun"))]
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { path, .. } = arguments;
-    Err(Failure::Run(format!(
+pub fn execute(arguments: &PictureArguments) -> Result<(), CommandFailure> {
+    let PictureArguments { path, .. } = arguments;
+    Err(CommandFailure::Run(format!(
         "this program was built without rerun and cannot read `{}`; build it with its default features",
         path.display()
     )))

@@ -3,26 +3,31 @@
 use std::fmt::Write;
 
 use clap::Args;
-use meshless_engine::plugin::{Entry, Kind, Registry};
+use meshless_engine::plugin::{Entry, EntryKind, Registry};
 use meshless_engine::scene::{Scene, TypeDoc, expression_names, type_docs, unknown};
 
-use super::failure::Failure;
-use super::text::{Table, program, say};
+use super::failure::CommandFailure;
+use super::text::{TextTable, program, say};
 
 /// List everything that a scene can name, or describe one of these
 #[derive(Args)]
-pub struct Arguments {
+pub struct PluginsArguments {
     /// Name to describe
     #[arg(value_name = "NAME")]
     name: Option<String>,
 }
 
 /// Kinds in the order in which a scene uses them.
-pub const KINDS: [Kind; 5] =
-    [Kind::Material, Kind::Formulation, Kind::Condition, Kind::ContactLaw, Kind::Plugin];
+pub const KINDS: [EntryKind; 5] = [
+    EntryKind::Material,
+    EntryKind::Formulation,
+    EntryKind::Condition,
+    EntryKind::ContactLaw,
+    EntryKind::Plugin,
+];
 
 /// Prints the list or the description.
-pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(arguments: &PluginsArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let text = match &arguments.name {
         None => list(registry),
         Some(name) => describe(registry, name)?,
@@ -32,7 +37,7 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
 }
 
 fn list(registry: &Registry) -> String {
-    let mut table = Table::new(&["", ""], 0);
+    let mut table = TextTable::new(&["", ""], 0);
     let mut section = |heading: &str, entries: Vec<(String, String)>| {
         table.row([heading.to_owned(), String::new()]);
         for (name, doc) in entries {
@@ -131,7 +136,7 @@ fn aligned(body: &str) -> String {
 fn table_of(rows: &[Vec<String>]) -> String {
     let Some((head, rest)) = rows.split_first() else { return String::new() };
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut table = Table::new(&head, 0);
+    let mut table = TextTable::new(&head, 0);
     rest.iter().filter(|row| row.len() == head.len()).for_each(|row| table.row(row.clone()));
     table.render()
 }
@@ -148,8 +153,8 @@ fn first_sentence(text: &str) -> &str {
     text.find(". ").map_or(text, |end| &text[..end]).trim_end_matches('.')
 }
 
-fn describe(registry: &Registry, name: &str) -> Result<String, Failure> {
-    let all: Vec<(Kind, &Entry)> =
+fn describe(registry: &Registry, name: &str) -> Result<String, CommandFailure> {
+    let all: Vec<(EntryKind, &Entry)> =
         KINDS.into_iter().flat_map(|kind| registry.entries(kind).map(move |entry| (kind, entry))).collect();
     let found: Vec<_> = all.iter().filter(|(_, entry)| entry.name == name).collect();
     if found.is_empty() {
@@ -162,7 +167,7 @@ fn describe(registry: &Registry, name: &str) -> Result<String, Failure> {
         let (message, helps) = unknown("name", name, &known);
         // Of the help only the nearest name: all together fill a screen.
         let near = helps.iter().filter(|help| help.starts_with("did")).map(|help| format!("; {help}"));
-        return Err(Failure::Usage(format!(
+        return Err(CommandFailure::Usage(format!(
             "{message}{}\n`{} plugins` lists all that scenes can name",
             near.collect::<String>(),
             program()
@@ -171,7 +176,7 @@ fn describe(registry: &Registry, name: &str) -> Result<String, Failure> {
     Ok(found.into_iter().map(|(kind, entry)| description(*kind, entry)).collect::<Vec<_>>().join("\n"))
 }
 
-fn description(kind: Kind, entry: &Entry) -> String {
+fn description(kind: EntryKind, entry: &Entry) -> String {
     let mut text = format!("{} ({})\n\n  {}\n", entry.name, kind.word(), entry.doc());
     if !entry.reference.is_empty() {
         // Writing to a String cannot fail.
@@ -180,7 +185,7 @@ fn description(kind: Kind, entry: &Entry) -> String {
     if entry.parameters.is_empty() {
         return text + "\n  It has no parameters.\n";
     }
-    let mut table = Table::new(&["parameter", "type", "default", "meaning"], 0);
+    let mut table = TextTable::new(&["parameter", "type", "default", "meaning"], 0);
     for parameter in &entry.parameters {
         let default = match &parameter.default {
             Some(default) => default.clone(),

@@ -2,13 +2,13 @@
 
 use meshless_engine::simulation::Summary;
 
-use super::text::Table;
+use super::text::TextTable;
 
 /// Time of every system, its share of the wall time, and what it costs for a particle and a step.
 pub fn text(summary: &Summary, steps: u64) -> String {
     let wall = summary.wall_seconds;
     let work = (steps as f64 * summary.particles as f64).max(1.0);
-    let mut table = Table::new(&["stage", "system", "s", "share", "ns/particle-step"], 3);
+    let mut table = TextTable::new(&["stage", "system", "s", "share", "ns/particle-step"], 3);
     let mut row = |stage: &str, system: &str, seconds: f64| {
         table.row([
             stage.to_owned(),

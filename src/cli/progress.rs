@@ -17,7 +17,7 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 const TICKS: u64 = 1000;
 
 /// Shows how far a run is.
-pub struct Progress {
+pub struct ProgressLine {
     display: Display,
     interval: Duration,
     begun: Instant,
@@ -32,7 +32,7 @@ enum Display {
     Lines,
 }
 
-impl Progress {
+impl ProgressLine {
     /// Starts to watch a run; the time that it has behind it does not count for the rates.
     pub fn new(sim: &Simulation, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();

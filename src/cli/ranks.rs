@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use meshless_engine::ranks;
 use meshless_engine::simulation::RunError;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::{complain, speak};
 
 /// Where MPI libraries tell a process how many there are, its number, and how many are on its machine.
@@ -35,7 +35,9 @@ pub fn usual_threads() -> Option<usize> {
 }
 
 /// Carries a command out as one of the ranks, on a thread of the pool: parallel loops and exchanges begin there.
-pub fn together<T: Send>(command: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+pub fn together<T: Send>(
+    command: impl FnOnce() -> Result<T, CommandFailure> + Send,
+) -> Result<T, CommandFailure> {
     match started() {
         1 => command(),
         size => rayon::scope(|_| on_ranks(size, command)),
@@ -43,8 +45,8 @@ pub fn together<T: Send>(command: impl FnOnce() -> Result<T, Failure> + Send) ->
 }
 
 #[cfg(feature = "mpi")]
-fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-    let started = mpi_ranks::MpiRanks::start().map_err(|error| Failure::Run(error.to_string()))?;
+fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, CommandFailure>) -> Result<T, CommandFailure> {
+    let started = mpi_ranks::MpiRanks::start().map_err(|error| CommandFailure::Run(error.to_string()))?;
     ranks::enter(std::rc::Rc::new(started), || {
         speak(ranks::is_first());
         let done = require_equal("program", env!("CARGO_PKG_VERSION"))
@@ -54,36 +56,36 @@ fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, Failure>) -> Result
         done.map_err(|failure| {
             failure.report();
             ranks::any(true);
-            Failure::Told(failure.code())
+            CommandFailure::Told(failure.code())
         })
     })
 }
 
 #[cfg(not(feature = "mpi"))]
-fn on_ranks<T>(size: usize, _: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-    Err(Failure::Usage(format!(
+fn on_ranks<T>(size: usize, _: impl FnOnce() -> Result<T, CommandFailure>) -> Result<T, CommandFailure> {
+    Err(CommandFailure::Usage(format!(
         "{size} processes have been started together, and this program is built for one: build it with `--features mpi`"
     )))
 }
 
 /// Refuses ranks that differ in what must be the same for all of them.
-pub fn require_equal(what: &str, value: &str) -> Result<(), Failure> {
+pub fn require_equal(what: &str, value: &str) -> Result<(), CommandFailure> {
     let mut hasher = DefaultHasher::new();
     value.hash(&mut hasher);
     match ranks::agree(hasher.finish()) {
         true => Ok(()),
-        false => Err(Failure::Usage(format!("all ranks must have the same {what}"))),
+        false => Err(CommandFailure::Usage(format!("all ranks must have the same {what}"))),
     }
 }
 
 /// What has been prepared, if all ranks have succeeded. A failure of this rank alone is told by it.
-pub fn all_or_none<T>(prepared: Result<T, Failure>) -> Result<T, Failure> {
+pub fn all_or_none<T>(prepared: Result<T, CommandFailure>) -> Result<T, CommandFailure> {
     if !ranks::has_several() || !ranks::any(prepared.is_err()) {
         return prepared;
     }
     let is_common = ranks::agree(prepared.is_err().into());
     match prepared {
-        Ok(_) => Err(Failure::Run("another rank cannot begin".to_owned())),
+        Ok(_) => Err(CommandFailure::Run("another rank cannot begin".to_owned())),
         Err(failure) if !is_common => {
             speak(true);
             Err(failure)
@@ -101,10 +103,10 @@ pub fn end_if_alone_with(error: &RunError) {
 }
 
 /// Refuses a command that several processes cannot carry out together.
-pub fn require_one() -> Result<(), Failure> {
+pub fn require_one() -> Result<(), CommandFailure> {
     match started() {
         1 => Ok(()),
-        size => Err(Failure::Usage(format!(
+        size => Err(CommandFailure::Usage(format!(
             "this command runs in one process, found {size} started together; `run` and `resume` are carried out by several"
         ))),
     }

@@ -11,7 +11,7 @@ use meshless_engine::scene::{self, Scene, SceneError, Source};
 use meshless_engine::simulation::Checkpoint;
 
 use super::execution::{Execution, How, carry_out_together};
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::folder;
 use super::scene_file::replacement;
 use super::text::complain;
@@ -19,7 +19,7 @@ use super::values::time;
 
 /// Resume a run from a checkpoint
 #[derive(Args)]
-pub struct Arguments {
+pub struct ResumeArguments {
     /// Checkpoint, or an output folder whose newest checkpoint is meant
     #[arg(value_name = "CHECKPOINT")]
     path: PathBuf,
@@ -37,16 +37,16 @@ pub struct Arguments {
 }
 
 /// Goes on from the checkpoint, in the folder it is in.
-pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(arguments: ResumeArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let how = arguments.how.clone();
     carry_out_together(&how, || prepared(arguments, registry))
 }
 
 /// The run as it was at the checkpoint.
-fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Failure> {
-    let Arguments { path, until, scene: moved, set, .. } = arguments;
+fn prepared(arguments: ResumeArguments, registry: &Registry) -> Result<Execution, CommandFailure> {
+    let ResumeArguments { path, until, scene: moved, set, .. } = arguments;
     let file = folder::checkpoint(&path)?;
-    let checkpoint = Checkpoint::read(&file).map_err(|error| Failure::Run(error.to_string()))?;
+    let checkpoint = Checkpoint::read(&file).map_err(|error| CommandFailure::Run(error.to_string()))?;
     let mut source = checkpoint.source();
     if let Some(scene) = moved {
         source.name = at_new_place(&scene)?;
@@ -59,7 +59,7 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
     if let Some(end) = until {
         if end <= reached {
             let (reached, end) = (quantity(reached, "s"), quantity(end, "s"));
-            return Err(Failure::Usage(format!(
+            return Err(CommandFailure::Usage(format!(
                 "`--until` must be later than the {reached} of the checkpoint, found {end}"
             )));
         }
@@ -67,7 +67,7 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
     }
     if reached >= scene.time.end {
         let (reached, end) = (quantity(reached, "s"), quantity(scene.time.end, "s"));
-        return Err(Failure::Usage(format!(
+        return Err(CommandFailure::Usage(format!(
             "the run is complete: the checkpoint is at {reached}, the scene ends at {end}; extend it with `--until TIME`"
         )));
     }
@@ -78,14 +78,14 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
     let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
     let output = OutputOptions { folder, existing: Existing::Replace, resume: true };
     let mut execution = Execution::new(&scene, &source, registry, output)?;
-    execution.sim.restore(&checkpoint).map_err(|error| Failure::Run(error.to_string()))?;
+    execution.sim.restore(&checkpoint).map_err(|error| CommandFailure::Run(error.to_string()))?;
     Ok(execution)
 }
 
 /// The name of a scene file that the user gives, which must be there.
-fn at_new_place(scene: &Path) -> Result<String, Failure> {
+fn at_new_place(scene: &Path) -> Result<String, CommandFailure> {
     if !scene.is_file() {
-        return Err(Failure::Usage(format!("the scene file `{}` does not exist", scene.display())));
+        return Err(CommandFailure::Usage(format!("the scene file `{}` does not exist", scene.display())));
     }
     Ok(std::path::absolute(scene).unwrap_or_else(|_| scene.to_path_buf()).display().to_string())
 }

@@ -9,13 +9,13 @@ use meshless_engine::record::Existing;
 use meshless_engine::record::OutputOptions;
 
 use super::execution::{Execution, How, carry_out_together};
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::folder::{FAILED, default_folder};
 use super::scene_file::SceneFile;
 
 /// Run a scene
 #[derive(Args)]
-pub struct Arguments {
+pub struct RunArguments {
     #[command(flatten)]
     scene: SceneFile,
     /// Folder to write to [default: out/<scene>]
@@ -29,13 +29,13 @@ pub struct Arguments {
 }
 
 /// Runs the scene.
-pub fn execute(arguments: Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(arguments: RunArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let how = arguments.how.clone();
     carry_out_together(&how, || prepared(arguments, registry))
 }
 
-fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Failure> {
-    let Arguments { scene: file, out, force, .. } = arguments;
+fn prepared(arguments: RunArguments, registry: &Registry) -> Result<Execution, CommandFailure> {
+    let RunArguments { scene: file, out, force, .. } = arguments;
     let (scene, source) = file.load()?;
     let folder = out.unwrap_or_else(|| default_folder(file.named()));
     let failed = folder.join(FAILED);
@@ -44,7 +44,10 @@ fn prepared(arguments: Arguments, registry: &Registry) -> Result<Execution, Fail
         Execution::new(&scene, &source, registry, OutputOptions { folder, existing, resume: false })?;
     if failed.exists() && ranks::is_first() {
         std::fs::remove_file(&failed).map_err(|error| {
-            Failure::Run(format!("`{}` of an earlier run cannot be removed: {error}", failed.display()))
+            CommandFailure::Run(format!(
+                "`{}` of an earlier run cannot be removed: {error}",
+                failed.display()
+            ))
         })?;
     }
     Ok(execution)

@@ -3,16 +3,16 @@
 use std::fmt::Write;
 
 use clap::Args;
-use meshless_engine::plugin::{Kind, Registry};
+use meshless_engine::plugin::{EntryKind, Registry};
 use meshless_engine::scene::{Scene, TypeDoc, expression_names, schema_markdown, type_docs};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::plugins::KINDS;
 use super::text::say;
 
 /// Print the reference of scenes, with all that is registered, as Markdown
 #[derive(Args)]
-pub struct Arguments {}
+pub struct SchemaArguments {}
 
 const INTRODUCTION: &str = "\
 # Scene reference
@@ -39,7 +39,7 @@ parameters.dx=0.01,0.005` runs the scene once for each value.
 ";
 
 /// Prints the reference.
-pub fn execute(_: &Arguments, registry: &Registry) -> Result<(), Failure> {
+pub fn execute(_: &SchemaArguments, registry: &Registry) -> Result<(), CommandFailure> {
     say(&reference(registry));
     Ok(())
 }
@@ -87,12 +87,12 @@ fn reference(registry: &Registry) -> String {
     page
 }
 
-fn heading(kind: Kind) -> &'static str {
+fn heading(kind: EntryKind) -> &'static str {
     match kind {
-        Kind::Material => "Materials",
-        Kind::Formulation => "Formulations",
-        Kind::Condition => "Conditions",
-        Kind::ContactLaw => "Contact laws",
-        Kind::Plugin => "Plugins",
+        EntryKind::Material => "Materials",
+        EntryKind::Formulation => "Formulations",
+        EntryKind::Condition => "Conditions",
+        EntryKind::ContactLaw => "Contact laws",
+        EntryKind::Plugin => "Plugins",
     }
 }

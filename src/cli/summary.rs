@@ -8,7 +8,7 @@ use meshless_engine::scene::Precision;
 use meshless_engine::schedule::{AccountKind, Ledger};
 use meshless_engine::simulation::{Outcome, Summary};
 
-use super::text::{Table, counted, duration};
+use super::text::{TextTable, counted, duration};
 
 /// The summary; `steps` are those done since the run was started or taken up.
 pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -> String {
@@ -60,7 +60,7 @@ pub fn text(summary: &Summary, ledger: &Ledger, steps: u64, state: &StateHash) -
 
 fn energies(ledger: &Ledger) -> String {
     let joule = |energy: f64| quantity_to(energy, "J", 4);
-    let mut table = Table::new(&["energy", "", ""], 1);
+    let mut table = TextTable::new(&["energy", "", ""], 1);
     for account in ledger.accounts() {
         let kind = match account.kind {
             AccountKind::Stored => "stored",
@@ -98,7 +98,7 @@ fn extremes(text: &mut String, summary: &Summary) {
     if summary.probes.values().all(Vec::is_empty) {
         return;
     }
-    let mut table = Table::new(&["probe", "", "", "minimum", "at", "maximum", "at", "last"], 5);
+    let mut table = TextTable::new(&["probe", "", "", "minimum", "at", "maximum", "at", "last"], 5);
     for (probe, columns) in &summary.probes {
         for column in columns {
             table.row([

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::values::time;
 
 /// Write the surface of a body in a recording as a mesh, .obj or .vtp (three dimensions; needs a build with `--features surfaces`)
 #[derive(Args)]
-pub struct Arguments {
+pub struct SurfaceArguments {
     /// Recording (.rrd), or an output folder whose newest recording is meant
     #[arg(value_name = "RECORDING")]
     path: PathBuf,
@@ -29,26 +29,26 @@ pub struct Arguments {
 
 /// Writes the mesh.
 #[cfg(feature = "surfaces")]
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
+pub fn execute(arguments: &SurfaceArguments) -> Result<(), CommandFailure> {
     use super::folder;
     use super::text::{quoted, say};
     use meshless_engine::notation::quantity;
     use meshless_engine::record::{Existing, write_atomically};
     use rerun_recorder::{SurfaceMesh, read_frame, surface_of};
 
-    let failed = |error: &dyn std::error::Error| Failure::Run(error.to_string());
+    let failed = |error: &dyn std::error::Error| CommandFailure::Run(error.to_string());
     let extension = arguments.out.extension().and_then(|extension| extension.to_str());
     let write = match extension {
         Some("obj") => SurfaceMesh::write_obj,
         Some("vtp") => SurfaceMesh::write_vtp,
-        _ => return Err(Failure::Usage("the file to write must end in .obj or .vtp".to_owned())),
+        _ => return Err(CommandFailure::Usage("the file to write must end in .obj or .vtp".to_owned())),
     };
     let frame =
         read_frame(&folder::recording(&arguments.path)?, arguments.at).map_err(|error| failed(&error))?;
     let Some(body) = frame.bodies.iter().find(|body| body.name == arguments.body) else {
         let known: Vec<_> = frame.bodies.iter().map(|body| format!("`{}`", body.name)).collect();
         let message = format!("the recording has no body `{}`; it has {}", arguments.body, known.join(", "));
-        return Err(Failure::Usage(message));
+        return Err(CommandFailure::Usage(message));
     };
     let mesh = surface_of(&body.positions, body.radius, &body.colors).map_err(|error| failed(&error))?;
     let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
@@ -64,9 +64,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A build without surfaces cannot make any.
 #[cfg(not(feature = "surfaces"))]
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { path, .. } = arguments;
-    Err(Failure::Run(format!(
+pub fn execute(arguments: &SurfaceArguments) -> Result<(), CommandFailure> {
+    let SurfaceArguments { path, .. } = arguments;
+    Err(CommandFailure::Run(format!(
         "this program was built without surfaces: `cargo run --release --features surfaces -- surface {}`",
         path.display()
     )))

@@ -8,7 +8,7 @@ use meshless_engine::record::{Existing, OutputOptions};
 use meshless_engine::scene::{self, Scene, Source};
 
 use super::execution::{Execution, How};
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::folder::default_folder;
 use super::interrupt::Interrupt;
 use super::scene_file::replacement;
@@ -17,12 +17,12 @@ use super::text::{complain, say};
 mod cases;
 mod report;
 
-use cases::Case;
-use report::Row;
+use cases::SweepCase;
+use report::SweepRow;
 
 /// Run a scene once for every combination of values, and compare the probes
 #[derive(Args)]
-pub struct Arguments {
+pub struct SweepArguments {
     /// Scene file
     #[arg(value_name = "SCENE")]
     path: PathBuf,
@@ -40,8 +40,8 @@ pub struct Arguments {
 }
 
 /// Runs all cases, one after the other.
-pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
-    let cases = cases::combinations(&arguments.set).map_err(Failure::Usage)?;
+pub fn execute(arguments: &SweepArguments, registry: &Registry) -> Result<(), CommandFailure> {
+    let cases = cases::combinations(&arguments.set).map_err(CommandFailure::Usage)?;
     // All scenes are read before the first one runs.
     let scenes = cases
         .iter()
@@ -69,28 +69,28 @@ pub fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure
     say(&report::text(&rows));
     say(&format!("table of all runs: {}", file.display()));
     if interrupt.asked() {
-        return Err(Failure::Interrupted(interrupt.signal()));
+        return Err(CommandFailure::Interrupted(interrupt.signal()));
     }
     match failures {
         0 => Ok(()),
-        failures => Err(Failure::Run(format!("{failures} of {} runs failed", cases.len()))),
+        failures => Err(CommandFailure::Run(format!("{failures} of {} runs failed", cases.len()))),
     }
 }
 
 /// One run. A failure is reported in its row, so that the others still run.
 fn run(
-    case: &Case,
+    case: &SweepCase,
     scene: &Scene,
     source: &Source,
     registry: &Registry,
     options: OutputOptions,
     how: &How,
-) -> Result<Row, Failure> {
+) -> Result<SweepRow, CommandFailure> {
     let mut execution = Execution::new(scene, source, registry, options)?;
     let quiet = How { quiet: true, threads: None, instructions: None, ..*how };
     match execution.carry_out(&quiet) {
-        Ok(()) | Err(Failure::Interrupted(_)) => {}
+        Ok(()) | Err(CommandFailure::Interrupted(_)) => {}
         Err(failure) => failure.report(),
     }
-    Ok(Row::new(case, execution.sim.summary()))
+    Ok(SweepRow::new(case, execution.sim.summary()))
 }

@@ -106,12 +106,12 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// A table with aligned columns: the first ones to the left, `numbers` last ones to the right.
-pub struct Table {
+pub struct TextTable {
     rows: Vec<Vec<String>>,
     numbers: usize,
 }
 
-impl Table {
+impl TextTable {
     /// A table with these headings.
     pub fn new(headings: &[&str], numbers: usize) -> Self {
         Self { rows: vec![headings.iter().map(|&heading| heading.to_owned()).collect()], numbers }
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn columns_are_aligned() {
-        let mut table = Table::new(&["name", "J"], 1);
+        let mut table = TextTable::new(&["name", "J"], 1);
         table.row(["kinetic".into(), "1.0".into()]);
         table.row(["st\u{e4}rke".into(), "12.0".into()]);
         assert_eq!(table.render(), "  name        J\n  kinetic   1.0\n  st\u{e4}rke   12.0\n");

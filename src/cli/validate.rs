@@ -5,14 +5,14 @@ mod report;
 use meshless_engine::plugin::Registry;
 use meshless_validation::{CASES, Case, sweep};
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::text::say;
 use super::values::whole;
-use report::Report;
+use report::ValidationReport;
 
 /// Run cases with known answers and print measured value, reference, error and tolerance.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct Arguments {
+pub struct ValidateArguments {
     /// Cases to run, such as `S11`; all if none is given. `sweep` runs every plugin of fluids on every shipped flow, which takes minutes.
     #[arg(value_name = "ID")]
     pub cases: Vec<String>,
@@ -28,13 +28,13 @@ pub struct Arguments {
 }
 
 /// Runs the cases; fails where a case fails or an error is too large.
-pub(super) fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), Failure> {
+pub(super) fn execute(arguments: &ValidateArguments, registry: &Registry) -> Result<(), CommandFailure> {
     let cases = chosen(&arguments.cases)?;
     if arguments.list {
         cases.iter().for_each(|case| say(&report::description(case)));
         return Ok(());
     }
-    let mut report = Report::default();
+    let mut report = ValidationReport::default();
     for case in cases {
         if arguments.all_resolutions {
             for &resolution in case.resolutions {
@@ -48,7 +48,7 @@ pub(super) fn execute(arguments: &Arguments, registry: &Registry) -> Result<(), 
     report.finish()
 }
 
-fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>, CommandFailure> {
     if names.is_empty() {
         return Ok(CASES.iter().collect());
     }
@@ -59,7 +59,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
             Some(case) => cases.push(case),
             None => {
                 let known: Vec<&str> = all.map(|case| case.id).collect();
-                return Err(Failure::Usage(format!(
+                return Err(CommandFailure::Usage(format!(
                     "unknown case `{name}`; the cases are {}",
                     known.join(", ")
                 )));

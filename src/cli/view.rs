@@ -6,7 +6,7 @@ use std::process::Command;
 
 use clap::Args;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::folder;
 use super::values::whole;
 #[cfg(feature = "rerun")]
@@ -14,7 +14,7 @@ use super::web_viewer::serve;
 
 /// Open a recording in the rerun viewer, or in a browser where no viewer is installed
 #[derive(Args)]
-pub struct Arguments {
+pub struct ViewArguments {
     /// Recording (.rrd), or an output folder whose newest recording is meant
     #[arg(value_name = "RECORDING")]
     path: PathBuf,
@@ -30,7 +30,7 @@ pub struct Arguments {
 }
 
 /// Opens the viewer and waits until it is closed.
-pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
+pub fn execute(arguments: &ViewArguments) -> Result<(), CommandFailure> {
     let recording = folder::recording(&arguments.path)?;
     let in_browser = arguments.web || arguments.port != 0 || arguments.no_browser;
     if in_browser || !has_display() || !viewer(&recording)? {
@@ -40,7 +40,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Runs the rerun viewer until it is closed; false if none is installed, or if it cannot open its window.
-fn viewer(recording: &Path) -> Result<bool, Failure> {
+fn viewer(recording: &Path) -> Result<bool, CommandFailure> {
     match Command::new("rerun").arg(recording).status() {
         Ok(status) if status.success() => Ok(true),
         Ok(status) => {
@@ -48,7 +48,7 @@ fn viewer(recording: &Path) -> Result<bool, Failure> {
             Ok(false)
         }
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(Failure::Run(format!("the rerun viewer cannot be started: {error}"))),
+        Err(error) => Err(CommandFailure::Run(format!("the rerun viewer cannot be started: {error}"))),
     }
 }
 
@@ -60,8 +60,8 @@ pub(super) fn has_display() -> bool {
 
 /// A build without rerun has no web viewer.
 #[cfg(not(feature = "rerun"))]
-fn serve(recording: &Path, _port: u16, _browser: bool) -> Result<(), Failure> {
-    Err(Failure::Run(format!(
+fn serve(recording: &Path, _port: u16, _browser: bool) -> Result<(), CommandFailure> {
+    Err(CommandFailure::Run(format!(
         "this program was built without rerun and has no viewer of its own; `pip install rerun-sdk==0.36.3`, then `rerun {}`",
         recording.display()
     )))

@@ -6,12 +6,12 @@ use std::process::{Command, Stdio};
 
 use rerun_recorder::WebViewer;
 
-use super::failure::Failure;
+use super::failure::CommandFailure;
 use super::view::has_display;
 
 /// Serves rerun's web viewer until the program is stopped; a `port` of 0 takes any that is free.
-pub fn serve(recording: &Path, port: u16, browser: bool) -> Result<(), Failure> {
-    let viewer = WebViewer::start(recording, port).map_err(|error| Failure::Run(error.to_string()))?;
+pub fn serve(recording: &Path, port: u16, browser: bool) -> Result<(), CommandFailure> {
+    let viewer = WebViewer::start(recording, port).map_err(|error| CommandFailure::Run(error.to_string()))?;
     let url = viewer.url();
     let text = format!(
         "{} in a browser, until Ctrl-C:\n  {url}\n\
@@ -20,7 +20,9 @@ pub fn serve(recording: &Path, port: u16, browser: bool) -> Result<(), Failure> 
     );
     // Whoever reads the address from a pipe shall have it at once.
     let mut out = std::io::stdout();
-    writeln!(out, "{text}").and_then(|()| out.flush()).map_err(|error| Failure::Run(error.to_string()))?;
+    writeln!(out, "{text}")
+        .and_then(|()| out.flush())
+        .map_err(|error| CommandFailure::Run(error.to_string()))?;
     if browser && has_display() {
         open(&url);
     }

@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 use meshless_engine::assembly;
 use meshless_engine::formulations::fluid::{FlowCloud, Near};
 use meshless_engine::glam::DVec3;
-use meshless_engine::plugin::Registry;
-use meshless_engine::scene::{self, Source};
+use meshless_engine::plugin::{BodyKind, Registry};
+use meshless_engine::scene::{self, BodyDescription, Source};
 use meshless_engine::schedule::{Account, AccountKind};
 use meshless_engine::simulation::Simulation;
 
@@ -108,7 +108,7 @@ fn source_of(flow: &str, set: &[(&str, &str)]) -> Result<Source> {
 }
 
 fn run(registry: &Registry, (flow, source): (&str, Source), plugin: &str, steps: u64) -> Result<[Check; 5]> {
-    let (scene, source) = scene::parse(with_plugin(source, plugin)?)?;
+    let (scene, source) = scene::parse(with_plugin(source, plugin, registry)?)?;
     let plugin = name_of(plugin);
     let mut simulation = assembly::build(&scene, &source, registry)?;
     simulation.start()?;
@@ -133,11 +133,13 @@ fn name_of(plugin: &str) -> &str {
 }
 
 /// The scene with a plugin on all of its fluids, in the place of the one of its name.
-fn with_plugin(source: Source, plugin: &str) -> Result<Source> {
+fn with_plugin(source: Source, plugin: &str, registry: &Registry) -> Result<Source> {
     let name = name_of(plugin);
     // What all bodies have of that name would have none left to act on.
     let (scene, mut source) = scene::parse(without(source, name)?)?;
-    for body in scene.bodies.iter().filter(|body| body.formulation.name() == "Fluid") {
+    let flows =
+        |body: &&BodyDescription| registry.body_kind(body.formulation.name()) == Some(BodyKind::Fluid);
+    for body in scene.bodies.iter().filter(flows) {
         let others =
             body.plugins.iter().filter(|item| item.name() != name).map(|item| item.text().to_owned());
         let list: Vec<String> = others.chain([plugin.to_owned()]).collect();

@@ -3,13 +3,13 @@
 use meshless::correction::MomentMatrix;
 use meshless::glam::{DMat3, DVec3};
 use meshless::kernels::{Kernel, KernelName};
-use meshless::linalg::Sym3;
+use meshless::linalg::{Sym3, dyad};
 use meshless::pair::{WeightAt, add_pair_systems};
 use meshless::plugin::{BodyPlan, Setup};
 use meshless::prelude::*;
 use meshless::solids::{
-    BodyPass, Constitutive as Law, CorrectedStress, LocalMotion, SolidBlock, SolidBodies, SolidColumns,
-    SolidPairs, SolidPart, SolidPhase, SolidRows, SolidSum, StepEstimate,
+    BodyPass, CORRECTED_STRESS, Constitutive as Law, CorrectedStress, LocalMotion, SolidBlock, SolidBodies,
+    SolidColumns, SolidPairs, SolidPart, SolidPhase, SolidRows, SolidSum, StepEstimate,
 };
 use meshless::symmetry::{Ghosts, Repeat, repeats_of};
 use meshless::world::{
@@ -90,6 +90,7 @@ impl Formulation for Toy {
             System::new(Stage::Rates, "toy_force", move |step: &mut Step<'_>| force(step, phase, gravity))
                 .on_phases([phase])
                 .reads::<Mass>()
+                .touches(CORRECTED_STRESS, Mode::ReadsNear)
                 .writes::<Force>(),
         );
         add_pair_systems(sim, phase, SolidPairs { phase, weight_at: WeightAt::Reference })
@@ -192,7 +193,7 @@ impl Rows {
             for (_, share, x, u) in self.pairs(first + k) {
                 moment.add(share, x);
                 fit.first_moment += share * x;
-                spread += DMat3::from_cols(u * x.x, u * x.y, u * x.z) * share;
+                spread += dyad(u * share, x);
             }
             block.volume[k] = self.points[first + k].volume;
             fit.inverse = moment.inverse().filter(|_| block.volume[k] > 0.0).unwrap_or_default();
@@ -230,9 +231,7 @@ impl Run for Stress {
             let rows = step.world.body(solids.id(k)).rows.clone();
             let own = (&mut fits[rows.clone()], &mut stresses[rows.clone()]);
             let pass = BodyPass { body: k, view: &view, rows, part: SolidPart::of(step) };
-            solids.run(pass, &mut columns, own, &|law, rows, own: Own<'_>, block| {
-                points.block(law, rows, own, block)
-            });
+            solids.run(pass, &mut columns, own, &|law, r, own: Own<'_>, b| points.block(law, r, own, b));
         }
         drop(columns);
         (packed.fits, packed.stresses) = (fits, stresses);
@@ -278,11 +277,8 @@ impl SolidPhase for Rows {
 
     fn local_motion(&self, row: usize, velocity: &[Velocity], mobility: Mobility, _: bool) -> LocalMotion {
         let Fit { inverse, first_moment } = self.fits[row];
-        let of_pair = |(j, share, x, _): (usize, f64, DVec3, DVec3)| {
-            let v = (self.points[j].velocity - self.points[row].velocity) * share;
-            DMat3::from_cols(v * x.x, v * x.y, v * x.z)
-        };
-        let sum = self.pairs(row).map(of_pair).fold(DMat3::ZERO, |sum, pair| sum + pair);
+        let v_ij = |j: usize| self.points[j].velocity - self.points[row].velocity;
+        let sum: DMat3 = self.pairs(row).map(|(j, share, x, _)| dyad(v_ij(j) * share, x)).sum();
         let (velocity, own) = (velocity[row].0, inverse * first_moment);
         LocalMotion { velocity, rate: sum * inverse.to_matrix(), mobility: mobility.0, own }
     }

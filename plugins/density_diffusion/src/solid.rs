@@ -9,8 +9,8 @@ use meshless_engine::formulations::eulerian::DilatationRate;
 use meshless_engine::glam::DVec3;
 use meshless_engine::parallel::{Largest, for_each_block};
 use meshless_engine::plugin::{SetupError, SimBuilder};
-use meshless_engine::schedule::{Run, Stage, Step, StepError, System};
-use meshless_engine::solids::{PresentPair, PresentPairs, PresentVolumes, fill_rows};
+use meshless_engine::schedule::{Mode, Run, Stage, Step, StepError, System};
+use meshless_engine::solids::{PACKED_SOLID, PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
     BodyId, BodySet, DeformationGradient, Position, ReferenceVolume, Removed, SupportRadius,
 };
@@ -47,6 +47,7 @@ pub fn add(bodies: &BodySet, model: Model, delta: f64, sim: &mut SimBuilder<'_>)
             .on_phases(phases)
             .by_body()
             .reads_near::<Position>()
+            .touches(PACKED_SOLID, Mode::ReadsNear)
             .reads::<SupportRadius>()
             .reads_near::<ReferenceVolume>()
             .reads_near::<DeformationGradient>()

@@ -8,7 +8,7 @@ use meshless_engine::bytemuck;
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::removal::RemovalRule;
 use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
-use meshless_engine::solids::SolidPhase;
+use meshless_engine::solids::{PACKED_SOLID, SolidPhase};
 use meshless_engine::world::{BodyId, BodySet, Column, Damage, Position, Removed};
 
 use crate::Exposed;
@@ -27,6 +27,7 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: &[BodyId]) {
             .on_bodies(set)
             .by_body()
             .reads::<Position>()
+            .touches(PACKED_SOLID, Mode::ReadsNear)
             .reads::<Damage>()
             .reads::<Removed>()
             .writes::<Exposed>(),

@@ -13,8 +13,8 @@ use meshless_engine::glam::DVec3;
 use meshless_engine::linalg::Sym3;
 use meshless_engine::parallel::{BlockSum, for_each_block};
 use meshless_engine::plugin::SimBuilder;
-use meshless_engine::schedule::{AccountKind, INTO_HEAT, Run, Stage, Step, StepError, System};
-use meshless_engine::solids::{PresentPair, PresentPairs, PresentVolumes, fill_rows};
+use meshless_engine::schedule::{AccountKind, INTO_HEAT, Mode, Run, Stage, Step, StepError, System};
+use meshless_engine::solids::{PACKED_SOLID, PresentPair, PresentPairs, PresentVolumes, fill_rows};
 use meshless_engine::world::{
     BodyId, BodySet, DeformationGradient, Mass, Position, ReferenceVolume, Removed, Temperature,
 };
@@ -57,6 +57,7 @@ pub(crate) fn add_system(sim: &mut SimBuilder<'_>, conductors: Vec<Conductor>) {
             .on_bodies(bodies)
             .by_body()
             .reads_near::<Position>()
+            .touches(PACKED_SOLID, Mode::ReadsNear)
             .reads_near::<ReferenceVolume>()
             .reads_near::<DeformationGradient>()
             .reads::<Mass>()

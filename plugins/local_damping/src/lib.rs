@@ -10,7 +10,8 @@ mod stiffness;
 mod tests;
 
 use meshless_engine::plugin::{Plugin, Registry, SetupError, SimBuilder};
-use meshless_engine::schedule::{Stage, System};
+use meshless_engine::rigid::RIGID_BODIES;
+use meshless_engine::schedule::{Mode, Stage, System};
 use meshless_engine::world::{Force, Mass, Mobility, Velocity};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -92,6 +93,7 @@ impl Plugin for LocalDamping {
                     .writes::<PreviousForce>()
             }
         };
+        let system = system.touches_packed(RIGID_BODIES, Mode::Reads);
         sim.add_system(system.reads::<Mass>().reads::<Mobility>().writes::<Velocity>().on_bodies(bodies));
         Ok(())
     }

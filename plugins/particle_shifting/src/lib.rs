@@ -65,7 +65,7 @@ impl Plugin for ParticleShifting {
         // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies, however many have the plugin.
         if let Some(shifted) = sim.take_extensions::<Shared<Shifted>>().pop() {
             sim.shared_mut(shifted).extend(own);
-            sim.extend(shifted);
+            sim.leave_note(shifted);
             return Ok(());
         }
         let shifted = sim.share(own.collect::<Shifted>());
@@ -76,7 +76,7 @@ impl Plugin for ParticleShifting {
             fields: ShiftingFields::default(),
             repayment: Repayment::default(),
         };
-        sim.extend(shifted);
+        sim.leave_note(shifted);
         sim.add_system(
             System::new(Stage::PostStep, Self::NAME, work)
                 .on_phases(phases)

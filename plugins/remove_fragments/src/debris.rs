@@ -3,7 +3,7 @@
 use meshless_engine::plugin::SimBuilder;
 use meshless_engine::removal::RemovalRule;
 use meshless_engine::schedule::{Access, Mode, Run, Stage, Step, StepError, System};
-use meshless_engine::solids::SolidPhase;
+use meshless_engine::solids::{PACKED_SOLID, SolidPhase};
 use meshless_engine::world::{BodyId, BodySet, Column, DeformationGradient, Removed};
 
 use crate::IsDebris;
@@ -19,6 +19,7 @@ pub(crate) fn add(sim: &mut SimBuilder<'_>, bodies: Vec<BodyId>, least_volume: f
             .on_bodies(set)
             .by_body()
             .reads::<DeformationGradient>()
+            .touches(PACKED_SOLID, Mode::ReadsNear)
             .reads::<Removed>()
             .writes::<IsDebris>(),
     );

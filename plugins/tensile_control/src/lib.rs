@@ -41,11 +41,11 @@ impl Plugin for TensileControl {
         // What is inside is found for all fluids at once: one system serves all bodies, however many have the plugin.
         if let Some(controlled) = sim.take_extensions::<Shared<Controlled>>().pop() {
             sim.shared_mut(controlled).extend(bodies.iter());
-            sim.extend(controlled);
+            sim.leave_note(controlled);
             return Ok(());
         }
         let controlled = sim.share(bodies.iter().collect::<Controlled>());
-        sim.extend(controlled);
+        sim.leave_note(controlled);
         let phases = sim.phases_of(&bodies);
         let control = TensileForce::new(controlled);
         sim.add_system(

@@ -13,5 +13,5 @@ mod tests;
 pub use dyad::dyad;
 pub use eigen::Eigen;
 pub use polar::polar;
-pub use stretch::{extreme_eigenvalues, smallest_and_largest_stretch};
+pub use stretch::{ExtremeValues, extreme_eigenvalues, extreme_stretches};
 pub use sym3::Sym3;

@@ -4,25 +4,37 @@ use super::Sym3;
 use glam::DMat3;
 use std::f64::consts::PI;
 
+/// Smallest and largest of three numbers that belong to a matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtremeValues {
+    /// The smallest.
+    pub smallest: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
 /// Smallest and largest eigenvalue of a symmetric matrix, by the trigonometric solution of the cubic (Smith 1961, Communications of the ACM 4, 168). Without a
 /// loop, and accurate to about 1e-7 of the largest one, which is where two nearly equal ones bring it; where vectors or all digits are needed,
 /// [`super::Eigen`] has them. NaN gives NaN.
 #[inline]
-pub fn extreme_eigenvalues(a: &Sym3) -> (f64, f64) {
+pub fn extreme_eigenvalues(a: &Sym3) -> ExtremeValues {
     let mean = a.trace() / 3.0;
     let deviator = a.deviator();
     let p = (deviator.double_dot(&deviator) / 6.0).sqrt();
     let cosine = if p == 0.0 { 0.0 } else { 0.5 * (deviator * (1.0 / p)).determinant() };
     // Rounding can leave the cosine of a double eigenvalue just outside its range; the clamp keeps NaN.
     let angle = cosine.clamp(-1.0, 1.0).acos() / 3.0;
-    (mean + 2.0 * p * (angle + 2.0 * PI / 3.0).cos(), mean + 2.0 * p * angle.cos())
+    ExtremeValues {
+        smallest: mean + 2.0 * p * (angle + 2.0 * PI / 3.0).cos(),
+        largest: mean + 2.0 * p * angle.cos(),
+    }
 }
 
 /// Smallest and largest principal stretch of a deformation gradient: square roots of the extreme eigenvalues of
 /// `F^T F`, for limits of the time step; see [`extreme_eigenvalues`].
 #[inline]
-pub fn smallest_and_largest_stretch(f: DMat3) -> (f64, f64) {
-    let (smallest, largest) = extreme_eigenvalues(&Sym3::gram(f));
+pub fn extreme_stretches(f: DMat3) -> ExtremeValues {
+    let ExtremeValues { smallest, largest } = extreme_eigenvalues(&Sym3::gram(f));
     let root = |square: f64| if square < 0.0 { 0.0 } else { square.sqrt() };
-    (root(smallest), root(largest))
+    ExtremeValues { smallest: root(smallest), largest: root(largest) }
 }

@@ -1,6 +1,6 @@
 //! Identities that the decompositions must satisfy.
 
-use super::{Eigen, Sym3, polar, smallest_and_largest_stretch};
+use super::{Eigen, ExtremeValues, Sym3, extreme_stretches, polar};
 use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 
@@ -96,7 +96,7 @@ proptest! {
 
     #[test]
     fn closed_form_stretches_agree_with_jacobi((f, stretch) in deformation()) {
-        let (smallest, largest) = smallest_and_largest_stretch(f);
+        let ExtremeValues { smallest, largest } = extreme_stretches(f);
         let squares = Eigen::new(&Sym3::gram(f)).values;
         prop_assert!((smallest * smallest - squares.x).abs() < 1e-7 * squares.z);
         prop_assert!((largest * largest - squares.z).abs() < 1e-7 * squares.z);
@@ -120,14 +120,14 @@ proptest! {
 
 #[test]
 fn undeformed_and_rigid_states_are_exact() {
-    assert_eq!(smallest_and_largest_stretch(DMat3::IDENTITY), (1.0, 1.0));
+    assert_eq!(extreme_stretches(DMat3::IDENTITY), ExtremeValues { smallest: 1.0, largest: 1.0 });
     let (r, u) = polar(DMat3::IDENTITY).unwrap();
     assert_eq!((r, u), (DMat3::IDENTITY, Sym3::IDENTITY));
     let eigen = Eigen::new(&Sym3::from_diagonal(DVec3::new(3.0, -1.0, 2.0)));
     assert_eq!(eigen.values, DVec3::new(-1.0, 2.0, 3.0));
     assert_eq!(eigen.vectors, DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
     assert_eq!(Eigen::new(&Sym3::ZERO).values, DVec3::ZERO);
-    assert_eq!(smallest_and_largest_stretch(DMat3::ZERO), (0.0, 0.0));
+    assert_eq!(extreme_stretches(DMat3::ZERO), ExtremeValues { smallest: 0.0, largest: 0.0 });
 }
 
 #[test]
@@ -137,8 +137,8 @@ fn what_cannot_be_decomposed_is_said() {
     assert!(polar(DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0))).is_none());
     assert!(polar(DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0))).is_none());
     assert!(polar(DMat3::from_diagonal(DVec3::new(f64::INFINITY, 1.0, 1.0))).is_none());
-    let (smallest, largest) =
-        smallest_and_largest_stretch(DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0)));
+    let ExtremeValues { smallest, largest } =
+        extreme_stretches(DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0)));
     assert!(smallest.is_nan() && largest.is_nan());
     assert!(Eigen::new(&Sym3 { xy: f64::NAN, ..Sym3::IDENTITY }).values.is_nan());
 }

@@ -7,6 +7,20 @@ use super::periodic::SHIFT;
 /// Share by which a cell is longer than half of the radius: more than round-off where positions are below 10^8 radii, so that the length of a cell hangs on the radius alone.
 const ROOM: f64 = 1e-6;
 
+/// A range of coordinates, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisRange {
+    pub min: f64,
+    pub max: f64,
+}
+
+/// A period along an axis, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisPeriod {
+    pub start: f64,
+    pub length: f64,
+}
+
 /// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which particles share a cell, and the order of cells, do not hang on
 /// which particles there are.
 #[derive(Debug, Clone, Copy, Default)]
@@ -27,23 +41,25 @@ pub(super) struct CellAxis {
 }
 
 impl CellAxis {
-    /// Bound of the round-off in distances between coordinates from `min` to `max`, m.
-    pub fn round_off(min: f64, max: f64, radius: f64, period: Option<(f64, f64)>) -> f64 {
+    /// Bound of the round-off in distances between coordinates of a range, m.
+    pub fn round_off(range: AxisRange, radius: f64, period: Option<AxisPeriod>) -> f64 {
+        let AxisRange { min, max } = range;
         let reach = match period {
-            Some((start, length)) => (min - start).abs().max((max - start).abs()) + length,
+            Some(AxisPeriod { start, length }) => (min - start).abs().max((max - start).abs()) + length,
             None => min.abs().max(max.abs()) + radius,
         };
         8.0 * f64::EPSILON * reach
     }
 
-    /// Cells of half of `radius`, of somewhat more on a periodic axis: between two coordinates, or in a period of that start and length, m.
-    pub fn new((min, max): (f64, f64), radius: f64, period: Option<(f64, f64)>, round_off: f64) -> Self {
+    /// Cells of half of `radius`, of somewhat more on a periodic axis: in a range, or in a period.
+    pub fn new(range: AxisRange, radius: f64, period: Option<AxisPeriod>, round_off: f64) -> Self {
+        let AxisRange { min, max } = range;
         let mut cell = 0.5 * radius * (1.0 + ROOM);
         // Rounding of the cell number must not put two particles within the radius farther apart than cells are looked at.
         while cell < 0.5 * (radius + round_off) {
             cell *= 2.0;
         }
-        let Some((origin, length)) = period else {
+        let Some(AxisPeriod { start: origin, length }) = period else {
             let inverse_cell = 1.0 / cell;
             let first = whole(min * inverse_cell);
             let cells = whole(max * inverse_cell).saturating_sub(first).saturating_add(1).max(1);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Buckets, Periodic, bounds};
+use super::{Buckets, Periodic, PointBounds, bounds};
 
 /// Cells of equal length along each axis, x running fastest.
 pub struct Cells {
@@ -20,7 +20,7 @@ pub fn sort_into_cells(
     mut length: f64,
     periodic: &Periodic,
 ) -> Cells {
-    let ((low, high), wraps) = (bounds(positions), periodic.axes());
+    let (PointBounds { low, high }, wraps) = (bounds(positions), periodic.axes());
     let number = |x: f64, length: f64| (x / length + 0.5).floor() as i64;
     let counts = loop {
         let counts = [0, 1, 2].map(|a| {

@@ -62,7 +62,7 @@ impl<'a> Cloud<'a> {
     }
 
     /// Smallest box around the positions; an inverted box for an empty set.
-    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+    pub(super) fn bounds(&self) -> PointBounds {
         bounds(self.positions)
     }
 
@@ -86,12 +86,29 @@ impl<'a> Cloud<'a> {
     }
 }
 
+/// A box around positions.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointBounds {
+    /// Least coordinates, m.
+    pub low: DVec3,
+    /// Largest coordinates, m.
+    pub high: DVec3,
+}
+
+impl PointBounds {
+    /// Its middle, m.
+    pub fn middle(&self) -> DVec3 {
+        0.5 * (self.low + self.high)
+    }
+}
+
 /// Smallest box around positions, m; an inverted box where there are none.
-pub fn bounds(positions: &[DVec3]) -> (DVec3, DVec3) {
+pub fn bounds(positions: &[DVec3]) -> PointBounds {
     let empty = || (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    positions
+    let (low, high) = positions
         .par_iter()
         .with_min_len(4096)
         .fold(empty, |(lo, hi), x| (lo.min(*x), hi.max(*x)))
-        .reduce(empty, |a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .reduce(empty, |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    PointBounds { low, high }
 }

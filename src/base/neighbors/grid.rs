@@ -7,9 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::axis::{CellAxis, fold_into_buckets};
+use super::axis::{AxisPeriod, AxisRange, CellAxis, fold_into_buckets};
 use super::buckets::Buckets;
-use super::{Cloud, Periodic};
+use super::{Cloud, Periodic, PointBounds};
 
 /// Room behind the last particle, so that four can be read from each.
 const PADDING: usize = 3;
@@ -46,24 +46,36 @@ pub(super) struct Ranges {
     lists: [Vec<i64>; 3],
 }
 
+/// Where a grid is, and how far neighbours are.
+#[derive(Clone, Copy)]
+pub(super) struct GridBounds<'a> {
+    /// The box around what is searched, m.
+    pub bounds: PointBounds,
+    /// Largest distance of neighbours, m.
+    pub radius: f64,
+    pub periodic: &'a Periodic,
+}
+
 impl Grid {
     /// Sorts `sources` into cells of half of `radius`. `bounds` holds targets too on periodic axes; cells are in proportion to
     /// `particles`.
     pub fn build(
         &mut self,
-        (sources, with_supports): (Cloud<'_>, bool),
-        bounds: (DVec3, DVec3),
-        radius: f64,
-        periodic: &Periodic,
+        sources: Cloud<'_>,
+        with_supports: bool,
+        around: GridBounds<'_>,
         particles: usize,
     ) {
+        let GridBounds { bounds: PointBounds { low, high }, radius, periodic } = around;
         let count = sources.positions.len();
-        let period = |a: usize| periodic.axes()[a].then(|| (periodic.min()[a], periodic.lengths()[a]));
-        let round_off = |a: usize| CellAxis::round_off(bounds.0[a], bounds.1[a], radius, period(a));
+        let period = |a: usize| {
+            periodic.axes()[a].then(|| AxisPeriod { start: periodic.min()[a], length: periodic.lengths()[a] })
+        };
+        let range = |a: usize| AxisRange { min: low[a], max: high[a] };
+        let round_off = |a: usize| CellAxis::round_off(range(a), radius, period(a));
         // Cells are the same along all axes that are not periodic.
         let round_off = round_off(0).max(round_off(1)).max(round_off(2));
-        self.axes =
-            [0, 1, 2].map(|a| CellAxis::new((bounds.0[a], bounds.1[a]), radius, period(a), round_off));
+        self.axes = [0, 1, 2].map(|a| CellAxis::new(range(a), radius, period(a), round_off));
         fold_into_buckets(&mut self.axes, particles);
         self.plain = self.axes.iter().all(CellAxis::is_plain);
         let [x, y, z] = self.axes;

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::grid::Grid;
+use super::grid::{Grid, GridBounds};
 use super::periodic::AXIS_NAMES;
 use super::rows::{Buffers, Order, Query};
-use super::{Cloud, NeighborError, NeighborList, Periodic, SupportRadii};
+use super::{Cloud, NeighborError, NeighborList, Periodic, PointBounds, SupportRadii};
 
 /// Neighbour search with buffers that are kept: from the second build of like size on it does not allocate.
 #[derive(Debug, Default)]
@@ -22,7 +22,16 @@ pub struct NeighborSearch {
 struct GridSources {
     count: usize,
     largest_support: f64,
-    bounds: (DVec3, DVec3),
+    bounds: PointBounds,
+}
+
+/// A cloud of whose first particles neighbours are looked for.
+#[derive(Clone, Copy)]
+pub struct FirstOfCloud<'a> {
+    /// All particles.
+    pub cloud: Cloud<'a>,
+    /// How many of them are targets.
+    pub targets: usize,
 }
 
 /// What is looked for, beside the targets.
@@ -69,22 +78,22 @@ impl NeighborSearch {
         self.build(cloud, cloud, wanted, list)
     }
 
-    /// Lists the neighbours of the first `targets` particles of `cloud` in `cloud`. A row is ordered by the groups of particles
+    /// Lists the neighbours of the first particles of a cloud in all of it. A row is ordered by the groups of particles
     /// that end at `groups`, and within a group by cells: cheaper than ascending rows. Otherwise as [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
     pub fn of_first(
         &mut self,
-        (targets, groups): (usize, &[u32]),
-        cloud: Cloud<'_>,
+        first: FirstOfCloud<'_>,
+        groups: &[u32],
         skin: f64,
         periodic: &Periodic,
         list: &mut NeighborList,
     ) -> Result<(), NeighborError> {
         let wanted =
             SearchTask { same_set: true, skin, groups: Some(groups), periodic, halves: None, only: None };
-        self.build(cloud.first(targets), cloud, wanted, list)
+        self.build(first.cloud.first(first.targets), first.cloud, wanted, list)
     }
 
     /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are not
@@ -112,7 +121,8 @@ impl NeighborSearch {
     /// See [`NeighborError`]; `list` is then unchanged.
     pub fn of_others(
         &mut self,
-        (positions, groups): (&[DVec3], &[u32]),
+        positions: &[DVec3],
+        groups: &[u32],
         skin: f64,
         periodic: &Periodic,
         list: &mut NeighborList,
@@ -223,8 +233,8 @@ impl NeighborSearch {
         if !same_set && periodic.any() {
             let more = targets.bounds();
             for a in (0..3).filter(|&a| periodic.axes()[a]) {
-                bounds.0[a] = bounds.0[a].min(more.0[a]);
-                bounds.1[a] = bounds.1[a].max(more.1[a]);
+                bounds.low[a] = bounds.low[a].min(more.low[a]);
+                bounds.high[a] = bounds.high[a].max(more.high[a]);
             }
         }
         let uniform = matches!(
@@ -232,7 +242,8 @@ impl NeighborSearch {
             (SupportRadii::Uniform(_), SupportRadii::Uniform(_))
         );
         let particles = targets.positions.len().max(count);
-        self.grid.build((sources, !uniform), bounds, radius, periodic, particles);
+        let around = GridBounds { bounds, radius, periodic };
+        self.grid.build(sources, !uniform, around, particles);
         Ok(radius)
     }
 
@@ -264,9 +275,9 @@ impl NeighborSearch {
 
     fn query<'a>(&'a self, targets: Cloud<'a>, radius: f64, wanted: SearchTask<'a>) -> Query<'a> {
         let SearchTask { same_set, skin, groups, periodic, halves, only } = wanted;
-        let GridSources { count, bounds: (low, high), .. } = self.sources;
-        let more = if same_set { (low, high) } else { targets.bounds() };
-        let solid = low.z.min(more.0.z) < high.z.max(more.1.z);
+        let GridSources { count, bounds, .. } = self.sources;
+        let more = if same_set { bounds } else { targets.bounds() };
+        let solid = bounds.low.z.min(more.low.z) < bounds.high.z.max(more.high.z);
         let order = match groups {
             None => Order::Rows,
             Some(ends) if ends.iter().all(|&end| end as usize >= count) => Order::Cells,
@@ -291,7 +302,9 @@ mod tests {
         let (mut all, mut first) = (NeighborList::default(), NeighborList::default());
         let (mut search, groups) = (NeighborSearch::default(), [90, 250, 400]);
         search.within(cloud, 0.05, &Periodic::NONE, &mut all).expect("a list");
-        search.of_first((250, &groups), cloud, 0.05, &Periodic::NONE, &mut first).expect("a list");
+        search
+            .of_first(FirstOfCloud { cloud, targets: 250 }, &groups, 0.05, &Periodic::NONE, &mut first)
+            .expect("a list");
         assert_eq!(first.rows(), 250);
         for i in 0..250 {
             let mut row = first.row(i).to_vec();
@@ -307,8 +320,10 @@ mod tests {
         let others: Vec<DVec3> = (300..400).map(|k| 1.3 * place(k)).collect();
         let (mut between, mut again) = (NeighborList::default(), NeighborList::default());
         let targets = Cloud::uniform(&others, 0.5);
-        search.of_first((250, &groups), cloud, 0.05, &Periodic::NONE, &mut first).expect("a list");
-        search.of_others((&others, &groups), 0.15, &Periodic::NONE, &mut again).expect("a list");
+        search
+            .of_first(FirstOfCloud { cloud, targets: 250 }, &groups, 0.05, &Periodic::NONE, &mut first)
+            .expect("a list");
+        search.of_others(&others, &groups, 0.15, &Periodic::NONE, &mut again).expect("a list");
         search.between(targets, cloud, 0.15, &Periodic::NONE, &mut between).expect("a list");
         for i in 0..others.len() {
             let mut row = again.row(i).to_vec();

@@ -1,6 +1,8 @@
 //! Case K5: lists against brute force.
 
-use super::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii, VerletList};
+use super::{
+    Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic, SupportRadii, VerletList,
+};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -190,7 +192,13 @@ fn the_order_of_neighbours_does_not_hang_on_who_else_is_there() {
         let (mut list, mut search) = (NeighborList::default(), NeighborSearch::default());
         let cloud = Cloud::uniform(&all, 0.3);
         search
-            .of_first((near.len(), &[all.len() as u32]), cloud, 0.0, &Periodic::NONE, &mut list)
+            .of_first(
+                FirstOfCloud { cloud, targets: near.len() },
+                &[all.len() as u32],
+                0.0,
+                &Periodic::NONE,
+                &mut list,
+            )
             .expect("a list");
         (0..near.len()).map(|i| list.row(i).to_vec()).collect::<Vec<_>>()
     };

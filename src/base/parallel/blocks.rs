@@ -1,6 +1,8 @@
 //! Loops over blocks of rows: a block is always the same rows, whichever thread runs it, and sums are taken in block
 //! order, so that every result is independent of the number of threads.
 
+use glam::DVec3;
+
 /// Rows per block: its columns fit the first-level cache between the steps of a fused pass.
 pub const BLOCK: usize = 64;
 
@@ -252,6 +254,19 @@ impl BlockSum for () {
 impl BlockSum for f64 {
     fn add(&mut self, next: &Self) {
         *self += next;
+    }
+}
+
+impl BlockSum for DVec3 {
+    fn add(&mut self, next: &Self) {
+        *self += *next;
+    }
+}
+
+impl<A: BlockSum, B: BlockSum> BlockSum for (A, B) {
+    fn add(&mut self, next: &Self) {
+        self.0.add(&next.0);
+        self.1.add(&next.1);
     }
 }
 

@@ -103,16 +103,11 @@ fn check_bodies(scene: &Scene, problems: &mut Vec<Problem>) {
     if scene.bodies.is_empty() {
         problems.push(Problem::at_path("bodies", "the scene has no body").help("add a `Body(...)`"));
     }
-    let materials: Vec<_> = scene.materials.keys().collect();
     for (i, body) in scene.bodies.iter().enumerate() {
         let at = |field: &str| format!("bodies[{i}].{field}");
         usable_name("body", &body.name, at("name"), problems);
         if scene.bodies[..i].iter().any(|other| other.name == body.name) {
             problems.push(twice("body", &body.name, at("name")));
-        }
-        if !scene.materials.contains_key(&body.material) && body.formulation.name() != "Wall" {
-            let (message, help) = unknown("material", &body.material, &materials);
-            problems.push(Problem::at_path(at("material"), message).helps(help));
         }
         if body.spacing <= 0.0 {
             let message = format!("`spacing` must be positive, found {} m", number(body.spacing));

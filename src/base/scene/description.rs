@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::contact::is_meant;
 use super::{
-    BodyDescription, Contact, Dimension, Domain, Expression, Item, Precision, Probe, Record, Table, Time,
-    Vec3,
+    BodyDescription, Contact, Dimension, Domain, Expression, Item, Precision, Probe, RecordDescription,
+    Table, Time, Vec3,
 };
 
 /// An experiment: materials, bodies made of them, what acts on them, how long it runs and what is recorded.
@@ -56,7 +56,7 @@ pub struct Scene {
     pub probes: Vec<Probe>,
     /// What is recorded, and how often.
     #[serde(default)]
-    pub record: Record,
+    pub record: RecordDescription,
 }
 
 impl Scene {

@@ -49,7 +49,7 @@ pub use per_axis::PerAxis;
 pub use precision::Precision;
 pub use probe::{Line, Probe, Quantity, RelativeTo, Take};
 pub use problem::{Problem, SceneError, SourcePlace};
-pub use record::Record;
+pub use record::RecordDescription;
 pub use reference::{Described, Parameter, TypeDoc, parameters, schema_markdown, type_docs};
 pub use select::{Face, Select, SurfacePart};
 pub use source::Source;

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// What is recorded, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Record {
+#[serde(deny_unknown_fields, rename = "Record")]
+pub struct RecordDescription {
     /// Time between two frames \[s\]; without it a hundredth of the duration.
     #[serde(default)]
     pub every: Option<f64>,
@@ -29,7 +29,7 @@ fn yes() -> bool {
     true
 }
 
-impl Default for Record {
+impl Default for RecordDescription {
     fn default() -> Self {
         Self { every: None, fields: Vec::new(), checkpoint_every: None, checkpoint_at_end: true, vtk: false }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::boolean::{DifferenceRegion, Intersection, Union};
-use super::check::{Check, Checked};
+use super::check::{Checked, ShapeCheck};
 use super::error::{FillError, FillErrorKind};
 use super::region::Region;
 use super::shape::Shape;
@@ -18,7 +18,7 @@ impl Shape {
     /// # Errors
     /// A number that cannot be, a shape that does not exist in this dimension, a polygon that crosses itself, a particle file.
     pub fn region(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Region>> {
-        let check = Check { dimension, folder, path };
+        let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();
         Ok(match self {
             Self::Union(shapes) => Box::new(Union { parts: check.parts(shapes, Self::region)?, axes }),
@@ -54,7 +54,7 @@ impl Shape {
     /// # Errors
     /// As for [`region`](Self::region); a combination or stretched shape whose nearest points have no closed form.
     pub fn surface(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Surface>> {
-        let check = Check { dimension, folder, path };
+        let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();
         let none = |why| Err(FillError::new(path, FillErrorKind::NoSurface(why)));
         Ok(match self {

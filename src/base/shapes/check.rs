@@ -21,13 +21,13 @@ use crate::space::{Dimension, Vec3};
 pub(super) type Checked<T> = Result<T, FillError>;
 
 /// The checks of one shape, which know where it stands.
-pub(super) struct Check<'a> {
+pub(super) struct ShapeCheck<'a> {
     pub dimension: Dimension,
     pub folder: &'a Path,
     pub path: &'a str,
 }
 
-impl Check<'_> {
+impl ShapeCheck<'_> {
     /// The geometry of a shape that is no combination or transform.
     pub fn single(&self, shape: &Shape) -> Checked<Box<dyn Surface>> {
         let axes = self.dimension.count();

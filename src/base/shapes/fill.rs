@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::cells::{self, Packing};
-use super::check::Check;
+use super::check::ShapeCheck;
 use super::error::{FillError, FillErrorKind};
 use super::lattice::Lattice;
 use super::region::Region;
@@ -86,7 +86,7 @@ pub fn fill(shape: &Shape, filling: Filling<'_>) -> Result<Vec<Site>, FillError>
 
 impl Filling<'_> {
     fn sites(&self, shape: &Shape, path: &str) -> Result<Vec<Site>, FillError> {
-        let check = Check { dimension: self.dimension, folder: self.folder, path };
+        let check = ShapeCheck { dimension: self.dimension, folder: self.folder, path };
         match shape {
             Shape::Points { file } => {
                 let sites = points::read(self.folder, file, self.dimension, self.limit, path)?;
@@ -120,7 +120,7 @@ impl Filling<'_> {
     fn moved(
         &self,
         shape: &Shape,
-        check: &Check,
+        check: &ShapeCheck,
         growth: f64,
         to: impl Fn(DVec3) -> DVec3,
     ) -> Result<Vec<Site>, FillError> {
@@ -130,7 +130,7 @@ impl Filling<'_> {
     }
 
     /// A mesh that is too small or too large for the spacing is in another unit, more often than not.
-    fn check_size(&self, mesh: &dyn Surface, check: &Check) -> Result<(), FillError> {
+    fn check_size(&self, mesh: &dyn Surface, check: &ShapeCheck) -> Result<(), FillError> {
         let spacing = self.spacing;
         let extent = mesh.bounds().extent();
         let estimate = mesh.volume().unwrap_or(0.0) / spacing.powi(3);

@@ -2,13 +2,13 @@
 
 use std::process::{Command, Stdio};
 
-use super::super::failure::Failure;
-use super::measure::{Measurement, SetUp};
+use super::super::failure::CommandFailure;
+use super::measure::{BenchSetUp, Measurement};
 
 /// Calls this program with the one set-up and reads what it measures.
-pub fn take(set_up: &SetUp<'_>, instructions: Option<&str>) -> Result<Measurement, Failure> {
-    let SetUp { case, particles, ranks, threads, least } = *set_up;
-    let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", case.name));
+pub fn take(set_up: &BenchSetUp<'_>, instructions: Option<&str>) -> Result<Measurement, CommandFailure> {
+    let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
+    let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(&error))?;
     let mut command = match ranks {
         1 => Command::new(program),

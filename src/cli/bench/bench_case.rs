@@ -13,11 +13,11 @@ pub struct BenchCase {
     /// The spacing for a number of particles, m.
     spacing: fn(f64) -> f64,
     /// Values of the scene that make this case out of it.
-    set: &'static [(&'static str, Value)],
+    set: &'static [(&'static str, BenchValue)],
 }
 
 /// A value of a scene.
-enum Value {
+enum BenchValue {
     /// As it stands.
     Text(&'static str),
     /// The spacing.
@@ -26,7 +26,7 @@ enum Value {
     Tank(usize),
 }
 
-impl Value {
+impl BenchValue {
     fn text(&self, spacing: f64) -> String {
         let wall = 4.0 * spacing;
         let across = ((1.0 / spacing).round() + 4.0) * spacing;
@@ -60,7 +60,7 @@ impl BenchCase {
     }
 }
 
-use Value::{Spacing, Tank, Text};
+use BenchValue::{Spacing, Tank, Text};
 
 const BLOCK: (&str, &str) = ("benches/scenes/block.ron", include_str!("../../../benches/scenes/block.ron"));
 const STRIP: (&str, &str) = ("benches/scenes/strip.ron", include_str!("../../../benches/scenes/strip.ron"));

@@ -8,9 +8,9 @@ use meshless_engine::simulation::Simulation;
 use meshless_engine::world::BodyId;
 use serde::{Deserialize, Serialize};
 
-use super::super::failure::Failure;
+use super::super::failure::CommandFailure;
 use super::super::memory::{processor_seconds, resident_bytes};
-use super::super::neighbors::Neighbors;
+use super::super::neighbors::NeighborCounts;
 use super::super::ranks::together;
 use super::bench_case::BenchCase;
 use super::machine;
@@ -20,7 +20,7 @@ const WARM_UP: u64 = 3;
 
 /// What is to be measured.
 #[derive(Clone, Copy)]
-pub struct SetUp<'a> {
+pub struct BenchSetUp<'a> {
     /// The case.
     pub case: &'a BenchCase,
     /// Number of particles, approximately.
@@ -68,14 +68,14 @@ pub struct Measurement {
     /// From the scene to the end of the first step, s.
     pub first_step_after: f64,
     /// Time of every system, in the order of the step, s.
-    pub systems: Vec<System>,
+    pub systems: Vec<SystemTime>,
     /// The machine and the program.
     pub machine: machine::Machine,
 }
 
 /// Time of one system.
 #[derive(Serialize, Deserialize)]
-pub struct System {
+pub struct SystemTime {
     /// Label.
     pub label: String,
     /// Time, s.
@@ -84,16 +84,17 @@ pub struct System {
 
 impl Measurement {
     /// Builds the case and times its steps.
-    pub fn take(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
+    pub fn take(set_up: &BenchSetUp<'_>, registry: &Registry) -> Result<Self, CommandFailure> {
         let threads = set_up.threads;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-        let pool = pool.map_err(|error| Failure::Run(format!("cannot start {threads} threads: {error}")))?;
+        let pool =
+            pool.map_err(|error| CommandFailure::Run(format!("cannot start {threads} threads: {error}")))?;
         pool.install(|| together(|| Self::take_here(set_up, registry)))
     }
 
-    fn take_here(set_up: &SetUp<'_>, registry: &Registry) -> Result<Self, Failure> {
-        let SetUp { case, particles, ranks, threads, least } = *set_up;
-        let failed = |error: &dyn std::fmt::Display| Failure::Run(format!("{}: {error}", case.name));
+    fn take_here(set_up: &BenchSetUp<'_>, registry: &Registry) -> Result<Self, CommandFailure> {
+        let BenchSetUp { case, particles, ranks, threads, least } = *set_up;
+        let failed = |error: &dyn std::fmt::Display| CommandFailure::Run(format!("{}: {error}", case.name));
         let before = resident_bytes();
         let begun = Instant::now();
         let scene = case.scene(particles).map_err(|error| failed(&error))?;
@@ -149,10 +150,10 @@ fn timers(sim: &Simulation) -> Vec<Duration> {
     sim.schedule().timers().map(|(_, _, time)| time).collect()
 }
 
-fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<System> {
+fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<SystemTime> {
     let timers = sim.schedule().timers().zip(before);
     timers
-        .map(|((label, _, time), before)| System {
+        .map(|((label, _, time), before)| SystemTime {
             label: label.to_owned(),
             seconds: (time - before).as_secs_f64(),
         })
@@ -160,11 +161,11 @@ fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<System> {
 }
 
 /// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not counted, and rigid bodies where there are others.
-fn moving(sim: &Simulation) -> Result<(usize, f64), Failure> {
+fn moving(sim: &Simulation) -> Result<(usize, f64), CommandFailure> {
     let (mut sum, mut particles) = (0.0, 0);
     for k in 0..sim.world().bodies().len() {
         let count = sim.world().body(BodyId(k)).rows.len();
-        if let Some(neighbors) = Neighbors::count(sim, BodyId(k))? {
+        if let Some(neighbors) = NeighborCounts::count(sim, BodyId(k))? {
             sum += neighbors.mean * count as f64;
             particles += count;
         }

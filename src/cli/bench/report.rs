@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::super::failure::Failure;
-use super::super::text::{Table, counted};
+use super::super::failure::CommandFailure;
+use super::super::text::{TextTable, counted};
 use super::bench_case::BenchCase;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -63,7 +63,7 @@ pub fn text(measured: &Measurement, profile: bool) -> String {
     );
     if profile {
         let particle_steps = measured.steps as f64 * measured.particles as f64;
-        let mut table = Table::new(&["system", "share", "ns/particle-step"], 2);
+        let mut table = TextTable::new(&["system", "share", "ns/particle-step"], 2);
         for system in measured.systems.iter().filter(|system| system.seconds > 0.0) {
             table.row([
                 system.label.clone(),
@@ -77,6 +77,6 @@ pub fn text(measured: &Measurement, profile: bool) -> String {
 }
 
 /// One JSON object on one line.
-pub fn json(measured: &Measurement) -> Result<String, Failure> {
-    serde_json::to_string(measured).map_err(|error| Failure::Run(error.to_string()))
+pub fn json(measured: &Measurement) -> Result<String, CommandFailure> {
+    serde_json::to_string(measured).map_err(|error| CommandFailure::Run(error.to_string()))
 }

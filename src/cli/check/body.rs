@@ -6,8 +6,8 @@ use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Mass, Mobility, PlasticStrain, Position};
 use serde::Serialize;
 
-use crate::cli::failure::Failure;
-use crate::cli::neighbors::Neighbors;
+use crate::cli::failure::CommandFailure;
+use crate::cli::neighbors::NeighborCounts;
 
 /// A body, as far as it matters for cost and accuracy.
 #[derive(Clone, Debug, Serialize)]
@@ -45,13 +45,13 @@ pub struct BodyReport {
 
 impl BodyReport {
     /// Looks at all bodies.
-    pub fn all(scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Vec<Self>, Failure> {
+    pub fn all(scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Vec<Self>, CommandFailure> {
         (0..scene.bodies.len()).map(|k| Self::of(k, scene, sim, registry)).collect()
     }
 
-    fn of(k: usize, scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Self, Failure> {
+    fn of(k: usize, scene: &Scene, sim: &Simulation, registry: &Registry) -> Result<Self, CommandFailure> {
         let (body, described) = (&sim.world().bodies()[k], &scene.bodies[k]);
-        let failed = |error: meshless_engine::world::MissingColumn| Failure::Run(error.to_string());
+        let failed = |error: meshless_engine::world::MissingColumn| CommandFailure::Run(error.to_string());
         let (view, rows) = sim.world().body_view(BodyId(k));
         let mass: f64 = view.read::<Mass>().map_err(failed)?[rows.clone()].iter().map(|mass| mass.0).sum();
         let across = {
@@ -67,7 +67,7 @@ impl BodyReport {
             };
             (0..axes).map(side).fold(f64::INFINITY, f64::min)
         };
-        let count = Neighbors::count(sim, BodyId(k))?;
+        let count = NeighborCounts::count(sim, BodyId(k))?;
         let kind = registry.body_kind(described.formulation.name());
         let plugins = scene.plugins.iter().chain(&described.plugins);
         Ok(Self {

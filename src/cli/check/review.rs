@@ -7,7 +7,7 @@ use meshless_engine::simulation::Simulation;
 
 use super::body::BodyReport;
 use super::support;
-use super::trial::Trial;
+use super::trial::TrialSteps;
 
 /// Particles across a solid below which its bending is too stiff.
 const ACROSS: f64 = 4.0;
@@ -17,7 +17,7 @@ const MANY_SUB_STEPS: u32 = 50;
 const STEPS_OF_SOUND: f64 = 4.0;
 
 /// Notes on the scene; they do not keep it from running.
-pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &Trial) -> Vec<String> {
+pub fn notes(scene: &Scene, bodies: &[BodyReport], sim: &Simulation, trial: &TrialSteps) -> Vec<String> {
     let mut notes: Vec<String> = bodies.iter().flat_map(of_body).collect();
     notes.extend(support::notes(scene, sim));
     notes.extend(scene.probes.iter().filter_map(|probe| of_probe(probe, scene, sim)));

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use meshless_engine::notation::{count, quantity, quantity_to};
 use meshless_engine::simulation::Simulation;
 
-use crate::cli::failure::Failure;
+use crate::cli::failure::CommandFailure;
 use crate::cli::text::{counted, duration};
 
 /// Wall time spent on trial steps.
@@ -14,7 +14,7 @@ const TRIAL: Duration = Duration::from_millis(500);
 const TRIAL_STEPS: u64 = 50;
 
 /// What some steps have shown.
-pub struct Trial {
+pub struct TrialSteps {
     steps: u64,
     wall: f64,
     /// First step, s.
@@ -28,14 +28,14 @@ fn steps(number: f64) -> String {
     if number < 1e9 { count(number as u64, "step") } else { format!("{} steps", quantity_to(number, "1", 2)) }
 }
 
-impl Trial {
+impl TrialSteps {
     /// Does the steps; the simulation has started.
-    pub fn run(sim: &mut Simulation) -> Result<Self, Failure> {
+    pub fn run(sim: &mut Simulation) -> Result<Self, CommandFailure> {
         let limit = sim.limit().map_or_else(|| "nothing".to_owned(), |limit| limit.by.clone());
         let begun = Instant::now();
         let mut dt = 0.0;
         while !sim.is_finished() && sim.clock().step < TRIAL_STEPS && begun.elapsed() < TRIAL {
-            sim.step().map_err(|error| Failure::Run(error.to_string()))?;
+            sim.step().map_err(|error| CommandFailure::Run(error.to_string()))?;
             if sim.clock().step == 1 {
                 dt = sim.clock().dt;
             }

@@ -2,7 +2,7 @@
 
 /// One combination: path and value of every setting.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct SweepCase {
     /// Path and value of each, in the order given.
     pub settings: Vec<(String, String)>,
 }
@@ -14,8 +14,8 @@ const MOST: usize = 10_000;
 ///
 /// # Errors
 /// A setting has an empty value, a path is given twice, or there are too many combinations.
-pub fn combinations(settings: &[(String, String)]) -> Result<Vec<Case>, String> {
-    let mut cases = vec![Case { settings: Vec::new() }];
+pub fn combinations(settings: &[(String, String)]) -> Result<Vec<SweepCase>, String> {
+    let mut cases = vec![SweepCase { settings: Vec::new() }];
     for (k, (path, values)) in settings.iter().enumerate() {
         if settings[..k].iter().any(|(other, _)| other == path) {
             return Err(format!("`{path}` is given twice; give all of its values at once: {path}=1,2,3"));
@@ -33,7 +33,7 @@ pub fn combinations(settings: &[(String, String)]) -> Result<Vec<Case>, String> 
     Ok(cases)
 }
 
-impl Case {
+impl SweepCase {
     fn with(&self, path: &str, value: &str) -> Self {
         let mut case = self.clone();
         case.settings.push((path.to_owned(), value.to_owned()));
@@ -84,7 +84,7 @@ fn split(values: &str) -> Vec<&str> {
 mod tests {
     use super::*;
 
-    fn given(settings: &[(&str, &str)]) -> Result<Vec<Case>, String> {
+    fn given(settings: &[(&str, &str)]) -> Result<Vec<SweepCase>, String> {
         let owned: Vec<_> =
             settings.iter().map(|(path, value)| ((*path).to_owned(), (*value).to_owned())).collect();
         combinations(&owned)
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn every_combination_has_a_folder() {
         let cases = given(&[("parameters.dx", "0.01, 0.005"), ("gravity", "(0,-1),(0,-2)")]).unwrap();
-        let folders: Vec<String> = cases.iter().map(Case::folder).collect();
+        let folders: Vec<String> = cases.iter().map(SweepCase::folder).collect();
         assert_eq!(
             folders,
             [

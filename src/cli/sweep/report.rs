@@ -6,19 +6,19 @@ use meshless_engine::notation::{number, quantity};
 use meshless_engine::record::{Existing, write_atomically};
 use meshless_engine::simulation::{Outcome, Summary};
 
-use super::cases::{Case, short};
-use crate::cli::failure::Failure;
-use crate::cli::text::Table;
+use super::cases::{SweepCase, short};
+use crate::cli::failure::CommandFailure;
+use crate::cli::text::TextTable;
 
 /// A run: its settings and its summary.
-pub struct Row {
+pub struct SweepRow {
     settings: Vec<(String, String)>,
     summary: Summary,
 }
 
-impl Row {
+impl SweepRow {
     /// The row of a case.
-    pub fn new(case: &Case, summary: Summary) -> Self {
+    pub fn new(case: &SweepCase, summary: Summary) -> Self {
         Self { settings: case.settings.clone(), summary }
     }
 
@@ -38,12 +38,12 @@ impl Row {
 }
 
 /// The runs with their cost, then every column of every probe for all runs.
-pub fn text(rows: &[Row]) -> String {
+pub fn text(rows: &[SweepRow]) -> String {
     let Some(first) = rows.first() else { return String::new() };
     let names: Vec<&str> = first.settings.iter().map(|(path, _)| short(path)).collect();
     let mut headings = names.clone();
     headings.extend(["outcome", "time", "steps", "particles", "balance error"]);
-    let mut runs = Table::new(&headings, 4);
+    let mut runs = TextTable::new(&headings, 4);
     for row in rows {
         let Summary { time, steps, particles, relative_error, .. } = row.summary;
         let mut cells: Vec<String> = row.settings.iter().map(|(_, value)| value.clone()).collect();
@@ -63,7 +63,7 @@ pub fn text(rows: &[Row]) -> String {
     let mut headings = vec!["probe", "unit"];
     headings.extend(names);
     headings.extend(["minimum", "maximum", "last"]);
-    let mut probes = Table::new(&headings, 3);
+    let mut probes = TextTable::new(&headings, 3);
     for (probe, column) in series {
         for row in rows {
             let found =
@@ -79,7 +79,7 @@ pub fn text(rows: &[Row]) -> String {
 }
 
 /// Probe and column of all series, in the order in which they come first.
-fn columns(rows: &[Row]) -> Vec<(String, String)> {
+fn columns(rows: &[SweepRow]) -> Vec<(String, String)> {
     let mut columns = Vec::new();
     for row in rows {
         for (probe, extremes) in &row.summary.probes {
@@ -98,7 +98,7 @@ fn columns(rows: &[Row]) -> Vec<(String, String)> {
 ///
 /// # Errors
 /// The file is there and may not be replaced, or cannot be written.
-pub fn write(folder: &Path, existing: Existing, rows: &[Row]) -> Result<PathBuf, Failure> {
+pub fn write(folder: &Path, existing: Existing, rows: &[SweepRow]) -> Result<PathBuf, CommandFailure> {
     let file = folder.join("sweep.csv");
     let columns = columns(rows);
     let mut lines = Vec::new();
@@ -133,10 +133,11 @@ pub fn write(folder: &Path, existing: Existing, rows: &[Row]) -> Result<PathBuf,
         lines.push(cells.join(","));
     }
     let text = lines.join("\n") + "\n";
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::Run(format!("cannot make the folder `{}`: {error}", folder.display())))?;
+    std::fs::create_dir_all(folder).map_err(|error| {
+        CommandFailure::Run(format!("cannot make the folder `{}`: {error}", folder.display()))
+    })?;
     write_atomically(&file, existing, |to| to.write_all(text.as_bytes()))
-        .map_err(|error| Failure::Run(error.to_string()))?;
+        .map_err(|error| CommandFailure::Run(error.to_string()))?;
     Ok(file)
 }
 

@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 use meshless_engine::plugin::Registry;
 use meshless_validation::{Case, Check, Tolerance, at_no_spacing};
 
-use crate::cli::failure::Failure;
+use crate::cli::failure::CommandFailure;
 use crate::cli::text::say;
 
 /// What has been run so far.
 #[derive(Default)]
-pub struct Report {
+pub struct ValidationReport {
     done: Vec<(&'static str, usize, Vec<Check>)>,
     passed: usize,
     failed: usize,
@@ -28,7 +28,7 @@ pub fn description(case: &Case) -> String {
     )
 }
 
-impl Report {
+impl ValidationReport {
     /// Runs a case at a resolution and prints its lines.
     pub fn run(&mut self, case: &'static Case, resolution: usize, registry: &Registry) {
         say(&format!("{} {}, resolution {resolution}", case.id, case.title));
@@ -77,9 +77,13 @@ impl Report {
     }
 
     /// Prints the totals; an error unless everything has passed.
-    pub fn finish(&self) -> Result<(), Failure> {
+    pub fn finish(&self) -> Result<(), CommandFailure> {
         say(&format!("{} checks passed, {} failed", self.passed, self.failed));
-        if self.failed == 0 { Ok(()) } else { Err(Failure::Run(format!("{} checks failed", self.failed))) }
+        if self.failed == 0 {
+            Ok(())
+        } else {
+            Err(CommandFailure::Run(format!("{} checks failed", self.failed)))
+        }
     }
 
     fn count(&mut self, passes: bool) {

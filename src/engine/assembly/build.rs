@@ -11,7 +11,7 @@ use super::placing::{Parsed, Placed, place_bodies};
 use super::plausibility;
 use super::spawn;
 use super::{clamps, drawn_sides, face_on, lattice_edges, loaded_sides, supports};
-use crate::plugin::{FormulationEntry, Kind, Registry, Setup, SetupError, SimBuilder};
+use crate::plugin::{EntryKind, FormulationEntry, Registry, Setup, SetupError, SimBuilder};
 use crate::record::probe::ResolvedProbe;
 use crate::record::{Output, OutputPlan, Recorder};
 use crate::scene::{Item, Problem, Scene, SceneError, Source, SourcePlace};
@@ -76,7 +76,7 @@ fn build_in(
     crate::formulations::fluid::add_systems(&mut sim).map_err(|error| at_scene(scene, error))?;
     crate::removal::add_system(&mut sim);
     for contact in &scene.contacts {
-        sim.cite(registry.reference(Kind::ContactLaw, contact.law.name()));
+        sim.cite(registry.reference(EntryKind::ContactLaw, contact.law.name()));
     }
     crate::contact::add_systems(&mut sim, &|item, pair| registry.build_contact_law(item, pair))?;
     crate::integrate::add_systems(&mut sim);
@@ -113,6 +113,7 @@ fn start(
     let schedule = Schedule::new(std::mem::take(&mut sim.systems), &sim.sub_cycled)
         .map_err(|e| vec![Problem::new(e.to_string())])?;
     world.declare(schedule.declared());
+    resources.watch_by(world.watch());
     if let Some(output) = output {
         resources.of_mut(output).prepare(&sim.references).map_err(|problem| vec![*problem])?;
     }
@@ -171,7 +172,7 @@ fn build_plugins(
         let due = |item: &&Item| registry.changes_materials(item) == of_materials;
         for (k, body) in scene.bodies.iter().enumerate() {
             for item in body.plugins.iter().filter(due) {
-                build(Kind::Plugin, item, (BodySet::new([BodyId(k)]), Some(BodyId(k))), sim);
+                build(EntryKind::Plugin, item, (BodySet::new([BodyId(k)]), Some(BodyId(k))), sim);
             }
         }
         for item in scene.plugins.iter().filter(due) {
@@ -179,12 +180,12 @@ fn build_plugins(
                 !body.plugins.iter().any(|other| other.name() == item.name())
             };
             let ids = scene.bodies.iter().enumerate().filter(|(_, body)| own(body)).map(|(k, _)| BodyId(k));
-            build(Kind::Plugin, item, (BodySet::new(ids), None), sim);
+            build(EntryKind::Plugin, item, (BodySet::new(ids), None), sim);
         }
     }
     let all = BodySet::new((0..scene.bodies.len()).map(BodyId));
     for item in &scene.conditions {
-        build(Kind::Condition, item, (all.clone(), None), sim);
+        build(EntryKind::Condition, item, (all.clone(), None), sim);
     }
     if problems.is_empty() { Ok(recorder_items) } else { Err(problems) }
 }

@@ -81,6 +81,7 @@ fn simulation(other: &str, plugins: &str) -> Result<Simulation, String> {
     );
     let mut registry = Registry::standard();
     registry.plugin::<Friction>();
+    registry.plugin::<Telling>();
     let built = parse(Source::new("test.ron", text));
     built.and_then(|(scene, source)| build(&scene, &source, &registry)).map_err(|error| error.to_string())
 }
@@ -114,4 +115,36 @@ fn a_term_that_needs_a_reference_is_an_error_on_a_fluid() {
     let error = simulation("", "friction_between(of_solids: true)").err().expect("an error");
     let wanted = "body `water`, a fluid, has no reference for the pair term `friction_between`";
     assert!(error.contains(wanted), "{error}");
+}
+
+/// Hands in a value of a type that nothing knows.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Telling {
+    /// Whether it is a note.
+    is_note: bool,
+}
+
+struct Untaken;
+
+impl Plugin for Telling {
+    const NAME: &'static str = "telling";
+    const REFERENCE: &'static str = "";
+
+    fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
+        if self.is_note {
+            sim.leave_note(Untaken);
+        } else {
+            sim.extend(Untaken);
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_value_that_nothing_takes_is_an_error_at_the_plugin_and_a_note_is_none() {
+    let error = simulation("", "telling(is_note: false)").err().expect("an error");
+    let wanted = "a value of type `Untaken` was handed in, and nothing takes it";
+    assert!(error.contains(wanted) && error.contains("test.ron:10:23"), "{error}");
+    simulation("", "telling(is_note: true)").expect("a simulation");
 }

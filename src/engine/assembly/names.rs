@@ -1,8 +1,8 @@
 //! The first check of a scene against a registry: every name is known, and its parameters can be read. All misspellings are reported at once, before
 //! anything is placed or estimated.
 
-use crate::plugin::{Kind, Registry};
-use crate::scene::{Item, Problem, Scene};
+use crate::plugin::{BodyKind, EntryKind, Registry};
+use crate::scene::{BodyDescription, Item, Problem, Scene, unknown};
 
 /// What is wrong with the names of a scene and their parameters.
 pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
@@ -12,10 +12,24 @@ pub(super) fn problems(scene: &Scene, registry: &Registry) -> Vec<Problem> {
             found.extend(problems);
         }
     }
+    found.extend(unknown_materials(scene, registry));
     for list in scene.bodies.iter().map(|body| &body.plugins).chain([&scene.plugins]) {
         found.extend(given_twice(list));
     }
     found
+}
+
+/// Materials of bodies that the scene does not have; boundaries of fluids need none.
+fn unknown_materials(scene: &Scene, registry: &Registry) -> impl Iterator<Item = Problem> {
+    let known: Vec<&String> = scene.materials.keys().collect();
+    let needs_it = |(_, body): &(usize, &BodyDescription)| {
+        registry.body_kind(body.formulation.name()) != Some(BodyKind::Boundary)
+            && !scene.materials.contains_key(&body.material)
+    };
+    scene.bodies.iter().enumerate().filter(needs_it).map(move |(k, body)| {
+        let (message, help) = unknown("material", &body.material, &known);
+        Problem::at_path(format!("bodies[{k}].material"), message).helps(help)
+    })
 }
 
 /// A plugin that is named twice in one list would act twice.
@@ -28,14 +42,14 @@ fn given_twice(list: &[Item]) -> impl Iterator<Item = Problem> {
 }
 
 /// All that a registry has to know, in the order of scenes.
-fn items(scene: &Scene) -> impl Iterator<Item = (Kind, &Item)> {
-    let materials = scene.materials.values().map(|item| (Kind::Material, item));
+fn items(scene: &Scene) -> impl Iterator<Item = (EntryKind, &Item)> {
+    let materials = scene.materials.values().map(|item| (EntryKind::Material, item));
     let bodies = scene.bodies.iter().flat_map(|body| {
-        let plugins = body.plugins.iter().map(|item| (Kind::Plugin, item));
-        std::iter::once((Kind::Formulation, &body.formulation)).chain(plugins)
+        let plugins = body.plugins.iter().map(|item| (EntryKind::Plugin, item));
+        std::iter::once((EntryKind::Formulation, &body.formulation)).chain(plugins)
     });
-    let conditions = scene.conditions.iter().map(|item| (Kind::Condition, item));
-    let contacts = scene.contacts.iter().map(|contact| (Kind::ContactLaw, &contact.law));
-    let plugins = scene.plugins.iter().map(|item| (Kind::Plugin, item));
+    let conditions = scene.conditions.iter().map(|item| (EntryKind::Condition, item));
+    let contacts = scene.contacts.iter().map(|contact| (EntryKind::ContactLaw, &contact.law));
+    let plugins = scene.plugins.iter().map(|item| (EntryKind::Plugin, item));
     materials.chain(bodies).chain(conditions).chain(contacts).chain(plugins)
 }

@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::field::VectorField;
-use super::load::{self, LoadLaw};
+use super::load;
+use super::load_law::LoadLaw;
 use super::part::Part;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};

@@ -4,7 +4,8 @@
 
 use glam::DVec3;
 
-use super::load::{self, LoadLaw};
+use super::load;
+use super::load_law::LoadLaw;
 use super::part::Part;
 use super::skin_load::SkinLoads;
 use crate::plugin::{Selection, SetupError, SimBuilder};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::load::LoadLaw;
+use super::load_law::LoadLaw;
 use super::part::Part;
 use crate::formulations::fluid::{FLOW_LOADS, FlowCloud};
 use crate::plugin::{BodyKind, SimBuilder};

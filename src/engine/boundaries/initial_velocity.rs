@@ -117,6 +117,6 @@ fn only_once(parts: &[Part], field: &VectorField, sim: &mut SimBuilder<'_>) -> R
             }
         }
     }
-    sim.extend(given);
+    sim.leave_note(given);
     Ok(())
 }

@@ -8,26 +8,14 @@ use glam::DVec3;
 
 use super::field::VectorField;
 use super::flow_load;
+use super::load_law::LoadLaw;
 use super::on_rigid::push_beside;
 use super::part::{Part, parts_of, phases_of};
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::{BodyKind, Selection, SetupError, SimBuilder};
-use crate::schedule::{AccountKind, Run, Stage, Step, StepError, System};
+use crate::rigid::RIGID_BODIES;
+use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, ParticleId, Removed, Velocity};
-
-/// What gives the force on every particle of a part.
-pub(super) trait LoadLaw: Send + Sync + 'static {
-    /// Writes the force on every particle of part `k`, N, at the end of the step.
-    fn forces(&self, k: usize, part: &Part, step: &Step<'_>, out: &mut Vec<DVec3>) -> Result<(), StepError>;
-
-    /// Whether the forces are the same in every step.
-    fn is_constant(&self) -> bool;
-
-    /// From the particles of part `k` of a rigid body to where the forces act, in the reference configuration, m; none where they act on the particles.
-    fn arms(&self, _: usize) -> &[DVec3] {
-        &[]
-    }
-}
 
 /// A load that does not follow the motion: a field of the reference position and time, times a share per particle.
 pub(super) struct DeadLoad {
@@ -73,8 +61,12 @@ pub(super) fn apply(
     let forces = vec![Vec::new(); parts.len()];
     let law: Arc<dyn LoadLaw> = Arc::new(law);
     flow_load::add(label, &law, &parts, sim);
+    let turns = parts.iter().any(|part| sim.body(part.body).kind == BodyKind::Rigid);
     let load = Load { label, law, parts, forces, next: Vec::new() };
-    let system = System::new(Stage::External, label, load).on_phases(phases).by_body();
+    let mut system = System::new(Stage::External, label, load).on_phases(phases).by_body();
+    if turns {
+        system = system.touches_packed(RIGID_BODIES, Mode::Adds);
+    }
     let system = system.reads::<Velocity>().reads::<Removed>().reads::<ParticleId>().adds::<Force>();
     sim.add_system(declare(system));
 }

@@ -9,7 +9,8 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::load::{self, LoadLaw};
+use super::load;
+use super::load_law::LoadLaw;
 use super::part::Part;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, Plugin, Selection, SetupError, SimBuilder};
@@ -105,7 +106,7 @@ impl MeanVelocity {
                 }
             }
         }
-        sim.extend(driven);
+        sim.leave_note(driven);
         Ok(())
     }
 

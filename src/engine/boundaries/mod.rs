@@ -14,6 +14,7 @@ mod image_tests;
 mod initial_displacement;
 mod initial_velocity;
 mod load;
+mod load_law;
 mod mean_velocity;
 #[cfg(test)]
 mod mean_velocity_tests;

@@ -6,7 +6,8 @@ use serde::Deserialize;
 
 use super::broken_skin;
 use super::face_area::{check_area, check_is_side, loaded_area, normal_of};
-use super::load::{self, LoadLaw};
+use super::load;
+use super::load_law::LoadLaw;
 use super::part::Part;
 use super::skin_load::{self, LoadKind, LoadedSurface, skins_of};
 use crate::notation::{place, quantity};

@@ -19,6 +19,7 @@ use crate::scene::{Expression, Select};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
 use crate::shapes::directed_area;
 use crate::skins::{Last, Patch, Skin, SkinColumns, Wanted};
+use crate::solids::CORRECTED_STRESS;
 use crate::symmetry::{Repeat, periods_of};
 use crate::world::{
     Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mobility, Position, Removed, Velocity,
@@ -197,7 +198,7 @@ fn add_systems(label: &'static str, loads: SkinLoads, sim: &mut SimBuilder<'_>) 
             .reads_near::<Mobility>()
             .reads_near::<Removed>()
             .reads_near::<DeformationGradient>()
-            .touches("corrected_stress", Mode::Adds),
+            .touches(CORRECTED_STRESS, Mode::Adds),
     );
     let push =
         move |step: &mut Step<'_>| step.resources.of(shared).0.iter().try_for_each(|load| load.push(step));

@@ -4,13 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::field::FieldInput;
-use super::table::FieldTable;
+use super::table::{BodyField, FieldTable};
+use crate::scene::{Problem, unknown};
 use crate::schedule::Resources;
-use crate::world::{BodyId, MissingColumn, World};
-
-/// The field of the table that a body has.
-#[derive(Clone, Copy)]
-pub(super) struct BodyField(pub usize);
+use crate::world::{BodyId, BodySet, MissingColumn, World};
 
 /// A field, or one component of it, found in every body that has it.
 #[derive(Clone)]
@@ -100,4 +97,58 @@ impl ChosenField {
         let magnitude = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         Ok(values.chunks_exact(width).map(magnitude).collect())
     }
+}
+
+impl FieldTable {
+    /// The field of that name: `velocity`, or a component of one, `velocity.x`. `among` are the bodies of which at
+    /// least one, or with `all` every one, must have it. A problem has no place yet.
+    ///
+    /// # Errors
+    /// No field has the name, or the bodies do not have the field.
+    pub fn choose(
+        self: &Arc<Self>,
+        name: &str,
+        among: &BodySet,
+        all: bool,
+    ) -> Result<ChosenField, Box<Problem>> {
+        let (base, component) = match name.split_once('.') {
+            Some((base, component)) => (base, Some(component)),
+            None => (name, None),
+        };
+        let in_bodies: Vec<Option<usize>> = (0..self.bodies.len())
+            .map(|k| if among.contains(BodyId(k)) { self.find(base, k) } else { None })
+            .collect();
+        let Some(first) = in_bodies.iter().flatten().next().map(|&k| self.shape(k)) else {
+            let (mut message, helps) = unknown("field", base, &self.names(among));
+            if self.fields.iter().any(|field| field.name() == base) {
+                message = format!("the bodies chosen here do not have the field `{base}`");
+            }
+            return Err(Box::new(Problem::new(message).helps(helps)));
+        };
+        // Alternatives of one name that differ in unit or components are different things.
+        let same = |k: &usize| self.shape(*k) == first;
+        let bodies: Vec<Option<BodyField>> =
+            in_bodies.into_iter().map(|k| k.filter(same).map(BodyField)).collect();
+        if all && let Some(lacking) = among.iter().find(|id| bodies[id.0].is_none()) {
+            let message =
+                format!("the particles of body `{}` have no field `{base}`", self.bodies[lacking.0].name);
+            let problem = Problem::new(message).help("select bodies that have it, or measure something else");
+            return Err(Box::new(problem));
+        }
+        let (_, unit, components) = first;
+        let pick = component.map(|component| component_index(base, component, components)).transpose()?;
+        Ok(ChosenField { table: Arc::clone(self), name: name.to_owned(), unit, components, pick, bodies })
+    }
+}
+
+fn component_index(base: &str, component: &str, all: &[&str]) -> Result<usize, Box<Problem>> {
+    let found = all.iter().position(|known| *known == component && !known.is_empty());
+    found.ok_or_else(|| {
+        let problem = Problem::new(format!("the field `{base}` has no component `{component}`"));
+        Box::new(if all.len() == 1 {
+            problem.help(format!("it is a number: write `{base}`"))
+        } else {
+            problem.help(format!("its components are {}", all.join(", ")))
+        })
+    })
 }

@@ -1,5 +1,6 @@
 //! Formulations: how a body's equation of motion is discretised.
 
+pub mod bonded;
 pub mod eulerian;
 pub mod fluid;
 pub mod total_lagrangian;

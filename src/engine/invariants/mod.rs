@@ -11,4 +11,4 @@ mod specimen;
 mod tests;
 
 pub use momenta::{Momenta, Thrown};
-pub use specimen::{Affine, Net, Slope, Specimen};
+pub use specimen::{Affine, ForceSlope, NetForce, Specimen};

@@ -12,7 +12,7 @@ pub struct Specimen<'a, E> {
 
 /// Net force and net torque about the origin, over the sum of the sizes of the forces.
 #[derive(Clone, Copy, Debug)]
-pub struct Net {
+pub struct NetForce {
     /// Net force over all forces.
     pub force: f64,
     /// Net torque over all forces, m.
@@ -27,18 +27,18 @@ pub struct Affine {
     /// Largest error of a component of the deformation gradient.
     pub gradient: f64,
     /// Forces.
-    pub net: Net,
+    pub net: NetForce,
     /// Stored energy other than strain energy, over the strain energy: what stabilizers hold.
     pub held: f64,
 }
 
 /// What a rough displacement shows.
 #[derive(Clone, Copy, Debug)]
-pub struct Slope {
+pub struct ForceSlope {
     /// Largest difference of a force from the slope of the stored energy, over the largest force.
     pub error: f64,
     /// Forces.
-    pub net: Net,
+    pub net: NetForce,
 }
 
 /// Step of the differences of the energy, m.
@@ -83,18 +83,18 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
         let gradient = view.read::<DeformationGradient>()?[rows].iter().flat_map(off).fold(0.0, f64::max);
         let strain = simulation.ledger().total_named("strain");
         let held = (stored(&simulation) - strain).abs() / strain;
-        Ok(Affine { gradient, net: Net::of(&simulation)?, held })
+        Ok(Affine { gradient, net: NetForce::of(&simulation)?, held })
     }
 
     /// Forces after a rough displacement, for stabilizers without an energy.
     ///
     /// # Errors
     /// The simulation cannot be built or fails.
-    pub fn rough(&self) -> Result<Net, E> {
+    pub fn rough(&self) -> Result<NetForce, E> {
         let axes = (self.make)()?.world().dimension().count();
         let mut simulation = self.moved(|_, x| x + rough(axes, x), |_| DVec3::ZERO)?;
         simulation.start()?;
-        Ok(Net::of(&simulation)?)
+        Ok(NetForce::of(&simulation)?)
     }
 
     /// Compares the forces after a rough displacement, of the size of 0.4 % of a body of 1 m, with differences of fourth order of the stored energy, at
@@ -102,7 +102,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
     ///
     /// # Errors
     /// The simulation cannot be built or fails.
-    pub fn slope(&self) -> Result<Slope, E> {
+    pub fn slope(&self) -> Result<ForceSlope, E> {
         let moved = |moved: usize, axis: usize, by: f64| -> Result<Simulation, E> {
             let mut simulation = (self.make)()?;
             let axes = simulation.world().dimension().count();
@@ -131,7 +131,7 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
                 error = error.max((force[k][axis] + slope).abs() / scale);
             }
         }
-        Ok(Slope { error, net: Net::of(&simulation)? })
+        Ok(ForceSlope { error, net: NetForce::of(&simulation)? })
     }
 }
 
@@ -147,7 +147,7 @@ fn rough(axes: usize, x: DVec3) -> DVec3 {
     0.004 * DVec3::new(phase.sin(), (1.7 * phase + 0.3).cos(), z)
 }
 
-impl Net {
+impl NetForce {
     /// That of the forces on the first body.
     ///
     /// # Errors

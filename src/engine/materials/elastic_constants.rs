@@ -1,6 +1,6 @@
 //! The constants of isotropic elasticity, from any two of them.
 
-use super::law::ParameterError;
+use super::error::ParameterError;
 
 /// Isotropic elastic constants; the bulk modulus is the three-dimensional one, in plane strain too.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::elastic_constants::ElasticConstants;
-use super::law::ParameterError;
+use super::error::ParameterError;
 use super::stretches::Stretches;
 
 /// Pressure as a function of volume, and of internal energy where `gamma` is above zero.

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::specimen::Specimen;
+use super::specimen::MaterialSpecimen;
 use super::{Hardening, J2, MaterialModel, PressureLaw, SolidEos};
 use crate::world::{InternalEnergy, PlasticWork};
 
@@ -88,7 +88,7 @@ fn slow_compression_follows_the_isentrope_and_the_books_close() {
         heating: None,
         eos,
     };
-    let mut specimen = Specimen::new(model.build().expect("valid parameters"));
+    let mut specimen = MaterialSpecimen::new(model.build().expect("valid parameters"));
     // Without change of shape there is no plastic work: dE = -p dJ, integrated here with 100 times finer steps.
     let end: f64 = 0.8;
     let side = |t: f64| (1.0 + (end - 1.0) * t).cbrt();

@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::johnson_cook::JohnsonCookFlow;
-use super::law::ParameterError;
+use super::error::ParameterError;
+use super::johnson_cook_flow::{JohnsonCookFlow, LEAST_STRAIN};
+use super::value_and_slope::ValueAndSlope;
 
 /// How the flow stress grows with plastic strain.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -43,9 +44,6 @@ pub enum Hardening {
     /// sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m) (Johnson and Cook).
     JohnsonCook(JohnsonCookFlow),
 }
-
-/// Plastic strain below which the slope of a power law is taken at this strain: it is infinite at zero.
-pub(super) const LEAST_STRAIN: f64 = 1e-12;
 
 impl Hardening {
     /// Checks the parameters; their fields are named as those of `hardening`.
@@ -92,15 +90,15 @@ impl Hardening {
             Self::Voce { yield_stress, saturation, rate } => {
                 yield_stress - saturation * (-rate * strain).exp_m1()
             }
-            Self::JohnsonCook(flow) => flow.hardened(strain).0 * flow.thermal(temperature),
+            Self::JohnsonCook(flow) => flow.hardened(strain).value * flow.thermal(temperature),
         }
     }
 
     /// Flow stress, Pa, after a plastic strain of `increment` more in `dt` seconds, and its derivative by `increment`.
     #[inline]
-    pub fn flow_stress(&self, strain: f64, increment: f64, dt: f64, temperature: f64) -> (f64, f64) {
+    pub fn flow_stress(&self, strain: f64, increment: f64, dt: f64, temperature: f64) -> ValueAndSlope {
         let strain = strain + increment;
-        match *self {
+        let (value, slope) = match *self {
             Self::Perfect { yield_stress } => (yield_stress, 0.0),
             Self::Linear { yield_stress, modulus } => (yield_stress + modulus * strain, modulus),
             Self::Power { yield_stress, coefficient, exponent } => {
@@ -112,11 +110,13 @@ impl Hardening {
                 (yield_stress + saturation - rest, rate * rest)
             }
             Self::JohnsonCook(flow) => {
-                let (hardened, slope) = flow.hardened(strain);
-                let (factor, factor_slope) = flow.rate_factor(increment / dt);
+                let hardened = flow.hardened(strain);
+                let factor = flow.rate_factor(increment / dt);
                 let thermal = flow.thermal(temperature);
-                (hardened * factor * thermal, (slope * factor + hardened * factor_slope / dt) * thermal)
+                let slope = hardened.slope * factor.value + hardened.value * factor.slope / dt;
+                (hardened.value * factor.value * thermal, slope * thermal)
             }
-        }
+        };
+        ValueAndSlope { value, slope }
     }
 }

@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::johnson_cook::room;
-use super::law::ParameterError;
+use super::error::ParameterError;
 
 /// Adiabatic heating: the temperature rises by taylor_quinney times the plastic work over density and specific heat.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
@@ -17,8 +16,13 @@ pub struct Heating {
     #[serde(default = "usual_share")]
     pub taylor_quinney: f64,
     /// Temperature at the start, K.
-    #[serde(default = "room")]
+    #[serde(default = "room_temperature")]
     pub temperature: f64,
+}
+
+/// Room temperature, K.
+pub(super) fn room_temperature() -> f64 {
+    293.15
 }
 
 /// The usual share of plastic work that becomes heat.

@@ -1,65 +1,13 @@
 //! Flow stress of Johnson and Cook, and the material that is named after it.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::elastic_parameters::elastic_parameters;
 use super::eos::SolidEos;
-use super::hardening::{Hardening, LEAST_STRAIN};
-use super::heating::Heating;
+use super::error::ParameterError;
+use super::hardening::Hardening;
+use super::heating::{Heating, room_temperature};
 use super::j2::plastic;
-use super::law::{Material, MaterialModel, ParameterError};
-
-/// Hands the parameters of the flow stress, declared once, to another macro.
-///
-/// A scene gives them side by side with those of a material, or as its `hardening`; structs in structs would change what it has to write.
-macro_rules! flow_parameters {
-    ($declare:ident { $($own:tt)* }) => {
-        $declare! {
-            [
-                /// Yield stress A at the reference rate and temperature, Pa.
-                a,
-                /// Hardening coefficient B, Pa.
-                b,
-                /// Hardening exponent n.
-                n,
-                /// Rate coefficient C.
-                #[serde(default)]
-                c,
-                /// Thermal exponent m.
-                #[serde(default = "one")]
-                m,
-                /// Plastic strain rate at and below which the rate has no influence, 1/s.
-                #[serde(default = "one")]
-                reference_rate,
-                /// Temperature at and below which temperature has no influence, K.
-                #[serde(default = "room")]
-                reference_temperature,
-                /// Temperature at which the strength is gone, K.
-                melt_temperature,
-            ]
-            $($own)*
-        }
-    };
-}
-
-macro_rules! flow_stress {
-    ([$($(#[$meta:meta])* $field:ident,)*]) => {
-        /// Flow stress sigma_y = (a + b eps_p^n)(1 + c ln max(rate / reference_rate, 1))(1 - T*^m),
-        /// T* = (T - reference_temperature) / (melt_temperature - reference_temperature) between 0 and 1.
-        #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct JohnsonCookFlow {
-            $($(#[$meta])* pub $field: f64,)*
-        }
-
-        impl JohnsonCookFlow {
-            const FIELDS: [&'static str; 8] = [$(stringify!($field)),*];
-            /// The fields as errors name them where the flow stress is the `hardening` of another material.
-            pub(super) const FIELDS_OF_HARDENING: [&'static str; 8] = [$(concat!("hardening.", stringify!($field))),*];
-        }
-    };
-}
+use super::johnson_cook_flow::{JohnsonCookFlow, flow_parameters, one};
+use super::law::{Material, MaterialModel};
 
 macro_rules! metal {
     ([$($(#[$meta:meta])* $field:ident,)*] $($own:tt)*) => {
@@ -77,71 +25,6 @@ macro_rules! metal {
             }
         }
     };
-}
-
-flow_parameters! { flow_stress {} }
-
-pub(super) fn one() -> f64 {
-    1.0
-}
-
-/// Room temperature, K.
-pub(super) fn room() -> f64 {
-    293.15
-}
-
-impl JohnsonCookFlow {
-    /// Checks the parameters; `fields` are their names for errors.
-    pub(super) fn check(&self, fields: &[&'static str; 8]) -> Result<(), ParameterError> {
-        let [a, b, n, c, m, rate, reference, melt] = *fields;
-        ParameterError::require_positive(a, self.a)?;
-        ParameterError::require_not_negative(b, self.b)?;
-        ParameterError::require_positive(n, self.n)?;
-        ParameterError::require_not_negative(c, self.c)?;
-        ParameterError::require_positive(m, self.m)?;
-        ParameterError::require_positive(rate, self.reference_rate)?;
-        ParameterError::require_positive(reference, self.reference_temperature)?;
-        if self.melt_temperature.is_finite() && self.melt_temperature > self.reference_temperature {
-            return Ok(());
-        }
-        Err(ParameterError::new(
-            melt,
-            format!(
-                "the melt temperature must be above the reference temperature, found {} K and {} K",
-                self.melt_temperature, self.reference_temperature
-            ),
-            "temperatures are in kelvin: add 273.15 to degrees Celsius",
-        ))
-    }
-
-    /// a + b strain^n, Pa, and its derivative by the strain.
-    #[inline]
-    pub fn hardened(&self, strain: f64) -> (f64, f64) {
-        let power = self.b * strain.powf(self.n);
-        (self.a + power, self.n * power / strain.max(LEAST_STRAIN))
-    }
-
-    /// Factor of the plastic strain rate, 1/s, and its derivative by the rate.
-    #[inline]
-    pub fn rate_factor(&self, rate: f64) -> (f64, f64) {
-        if rate > self.reference_rate {
-            (1.0 + self.c * (rate / self.reference_rate).ln(), self.c / rate)
-        } else {
-            (1.0, 0.0)
-        }
-    }
-
-    /// Factor of the temperature, K.
-    #[inline]
-    pub fn thermal(&self, temperature: f64) -> f64 {
-        let above = temperature - self.reference_temperature;
-        let homologous = above / (self.melt_temperature - self.reference_temperature);
-        match homologous {
-            below if below <= 0.0 => 1.0,
-            above if above >= 1.0 => 0.0,
-            between => 1.0 - between.powf(self.m),
-        }
-    }
 }
 
 flow_parameters! {

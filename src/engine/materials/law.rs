@@ -5,50 +5,14 @@ use std::sync::Arc;
 use glam::DMat3;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
-use thiserror::Error;
 
 use super::elastic_constants::ElasticConstants;
-use super::fluid::FluidLaw;
+use super::error::ParameterError;
+use super::fluid_law::FluidLaw;
 use super::state::StateRows;
 use super::stretches::Stretches;
-use crate::notation::number;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::ColumnSet;
-
-/// A parameter that is out of its range.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{message}")]
-pub struct ParameterError {
-    /// Name of the parameter; empty if the fault lies in no single one.
-    pub field: &'static str,
-    /// What was found.
-    pub message: String,
-    /// What would be right.
-    pub help: String,
-}
-
-impl ParameterError {
-    /// An error at a parameter.
-    pub fn new(field: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { field, message: message.into(), help: help.into() }
-    }
-
-    /// An error unless the value is finite and above zero.
-    pub fn require_positive(field: &'static str, value: f64) -> Result<(), Self> {
-        if value.is_finite() && value > 0.0 {
-            return Ok(());
-        }
-        Err(Self::new(field, format!("`{field}` must be positive, found {}", number(value)), ""))
-    }
-
-    /// An error unless the value is finite and not below zero.
-    pub fn require_not_negative(field: &'static str, value: f64) -> Result<(), Self> {
-        if value.is_finite() && value >= 0.0 {
-            return Ok(());
-        }
-        Err(Self::new(field, format!("`{field}` must not be negative, found {}", number(value)), ""))
-    }
-}
 
 /// A material of a scene, ready for use.
 #[derive(Clone)]

@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::error::ParameterError;
 use super::heating::usual_share;
-use super::law::{Material, MaterialModel, ParameterError};
+use super::law::{Material, MaterialModel};
 use super::{Hardening, J2, JohnsonCook, NeoHookean, SolidEos};
 
 /// A metal of Johnson and Cook by its name.

@@ -1,6 +1,7 @@
 //! The plastic increment of a step: where the equivalent stress of the radial return meets the flow stress.
 
 use super::hardening::Hardening;
+use super::value_and_slope::ValueAndSlope;
 
 /// What a return starts from.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +45,8 @@ impl Trial {
         let mut d = ((self.stress - start) / stiffness).clamp(low, high);
         // Newton's iteration usually ends after four, halving alone after 60.
         for k in 0..120 {
-            let (flow, slope) = hardening.flow_stress(self.strain, d, self.dt, self.temperature);
+            let ValueAndSlope { value: flow, slope } =
+                hardening.flow_stress(self.strain, d, self.dt, self.temperature);
             let rest = self.stress - stiffness * d - flow;
             if rest.is_nan() {
                 return f64::NAN;

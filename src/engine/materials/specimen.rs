@@ -8,7 +8,7 @@ use super::{Law, MAX_STATE, Material, SolidLaw, StateColumns, StateRows, StressR
 use crate::world::{Column, ColumnSet};
 
 /// A particle with its state.
-pub(super) struct Specimen {
+pub(super) struct MaterialSpecimen {
     law: Arc<dyn SolidLaw>,
     columns: StateColumns,
     /// A word for each eight bytes of each column, so that they are aligned.
@@ -23,7 +23,7 @@ pub(super) struct Specimen {
     pub work: f64,
 }
 
-impl Specimen {
+impl MaterialSpecimen {
     pub fn new(material: Material) -> Self {
         let Law::Solid(law) = material.law else { panic!("not a solid") };
         let mut set = ColumnSet::default();

@@ -4,7 +4,8 @@ use glam::DMat3;
 
 use super::elastic_constants::ElasticConstants;
 use super::elastic_parameters::elastic_parameters;
-use super::law::{Hyperelastic, Material, MaterialModel, ParameterError};
+use super::error::ParameterError;
+use super::law::{Hyperelastic, Material, MaterialModel};
 use super::stretches::Stretches;
 
 elastic_parameters! {

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::term::Pair;
+use super::weight_at::WeightAt;
 use crate::parallel::{FourLanes, Lanes4, Number, Vector};
 
 /// Fours from which on a batch is full: it then still fits the first-level cache.
@@ -38,16 +39,6 @@ pub struct FourPairs {
     pub volume_j: Lanes4,
     /// A number that the formulation keeps from one of its loops over the row to the next; terms do not see it.
     pub kept: Lanes4,
-}
-
-/// The configuration whose length a pair weight, and a kernel value, was taken at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum WeightAt {
-    /// |X_ij|: total-Lagrangian solids.
-    #[default]
-    Reference,
-    /// |x_ij|: fluids, and solids whose neighbours are those of the current configuration.
-    Current,
 }
 
 /// What the pairs of a body have beside x_ij and what all pairs have.

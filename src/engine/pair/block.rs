@@ -1,7 +1,7 @@
 //! The pairs of a block of particles with some neighbours: what a formulation whose lanes are particles fills, and pair terms read.
 
-use super::batch::WeightAt;
 use super::term::{Pair, Rates};
+use super::weight_at::WeightAt;
 use crate::parallel::{EIGHT, EightLanes, Lanes8, Number, Vector};
 
 /// Most neighbours: their pairs fit the first-level cache.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::batch::{Extras, MAX_ROWS, PairBatch};
 use super::block::{BlockPairs, TermSums};
-use super::of_phase::RateBounds;
+use super::rate_bounds::RateBounds;
 use super::read::ReadSet;
 use super::term::{PairReads, PairTerm, Rates};
 use crate::parallel::{BlockLoop, EightLanes, FourLanes, HotLoop, run_blocks_on, run_hot_on};

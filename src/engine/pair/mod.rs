@@ -7,18 +7,25 @@
 
 mod batch;
 mod block;
+mod body_terms;
 mod bound;
+mod handed_in;
 mod of_phase;
 mod pass;
+mod rate_bounds;
 mod read;
 mod term;
+mod weight_at;
 mod work;
 
-pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, RowSlots, WeightAt};
+pub use batch::{Extras, FourPairs, FourVectors, Neighbor, PairBatch, RowSlots};
 pub(crate) use block::{BlockPairs, CHUNK, EightPairs, TermSums};
-pub(crate) use of_phase::{AllSums, BodyTerms, BoundTerms, PhaseTerms, RateBounds, TermRows};
+pub(crate) use body_terms::BodyTerms;
+pub(crate) use of_phase::{AllSums, BoundTerms, PhaseTerms, TermRows};
 pub(crate) use pass::with_batch;
 pub use pass::{PairRows, PairSource, add_pair_systems};
+pub(crate) use rate_bounds::RateBounds;
 pub use read::{FourOf, ReadSet, Relative};
 pub use term::{Pair, PairReads, PairTerm, Rates};
+pub use weight_at::WeightAt;
 pub(crate) use work::add_work_systems;

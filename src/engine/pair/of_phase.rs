@@ -2,34 +2,21 @@
 
 use std::sync::Arc;
 
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::batch::{MAX_ROWS, PairBatch};
 use super::block::{BlockPairs, TermSums};
+use super::body_terms::{BodyTerms, MAX_TERMS};
 use super::bound::{Chain, RowsOut, bind_all};
-use super::term::{PairReads, PairTermOfBodies};
+use super::handed_in::PairTermOfBodies;
+use super::rate_bounds::RateBounds;
+use super::term::PairReads;
 use super::work;
-use crate::parallel::{BlockSum, EIGHT, Split};
+use crate::parallel::{BlockSum, Split};
 use crate::plugin::{BodyKind, ForBodies, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Access, Mode, Shared, Step, StepError};
 use crate::world::{BodyId, BodySet, Column, DensityRate, Force, PhaseId};
-
-/// Largest number of pair terms on one body.
-pub(super) const MAX_TERMS: usize = 8;
-/// Share of the critical step that is used where a stiff pair term limits it.
-const STIFFNESS_SAFETY: f64 = 0.65;
-/// Share of the step at which a damping pair term would turn a velocity around.
-const DAMPING_SAFETY: f64 = 0.5;
-
-/// The terms of one body, and the force of each on every particle of it: row by row, one entry a term. The forces are
-/// computed in every step, so no checkpoint holds them.
-pub(crate) struct BodyTerms {
-    pub id: BodyId,
-    pub terms: Vec<usize>,
-    pub forces: Vec<DVec3>,
-}
 
 /// The terms of all bodies of a phase.
 pub(crate) struct PhaseTerms {
@@ -206,52 +193,6 @@ impl BoundTerms<'_> {
     #[inline]
     pub fn run_block(&self, pairs: &BlockPairs, sums: &mut [TermSums]) {
         self.chain.block(pairs, self.plane, sums);
-    }
-}
-
-/// The largest rates of a block.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct RateBounds {
-    pub(super) damping: f64,
-    pub(super) stiffness: f64,
-}
-
-impl RateBounds {
-    /// Limits the step.
-    pub fn limit(&self, step: &mut Step<'_>, id: BodyId) {
-        let name = &step.world.body(id).name;
-        if self.damping > 0.0 {
-            let limit = DAMPING_SAFETY / self.damping;
-            step.limits.propose(limit, format_args!("viscosity of `{name}`"));
-        }
-        if self.stiffness > 0.0 {
-            let limit = STIFFNESS_SAFETY * 2.0 / self.stiffness.sqrt();
-            step.limits.propose(limit, format_args!("pair stiffness of `{name}`"));
-        }
-    }
-}
-
-impl RateBounds {
-    /// The largest of a block of particles.
-    #[inline]
-    pub fn add_block(&mut self, sums: &[TermSums]) {
-        let mut of_lane = [Self::default(); EIGHT];
-        for sums in sums {
-            for (lane, fastest) in of_lane.iter_mut().enumerate() {
-                fastest.damping += f64::from(sums.damping.0[lane]);
-                fastest.stiffness += f64::from(sums.stiffness.0[lane]);
-            }
-        }
-        of_lane.iter().for_each(|fastest| self.add(fastest));
-    }
-}
-
-impl BlockSum for RateBounds {
-    #[inline]
-    fn add(&mut self, next: &Self) {
-        self.damping = self.damping.max(next.damping);
-        self.stiffness = self.stiffness.max(next.stiffness);
     }
 }
 

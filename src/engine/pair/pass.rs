@@ -4,11 +4,12 @@ use std::cell::RefCell;
 use std::ops::Range;
 
 use super::batch::PairBatch;
-use super::of_phase::{BoundTerms, PhaseTerms, RateBounds, TermRows};
+use super::of_phase::{BoundTerms, PhaseTerms, TermRows};
+use super::rate_bounds::RateBounds;
 use super::term::PairReads;
 use crate::parallel::{BlockSum, for_each_own_block};
 use crate::plugin::{SetupError, SimBuilder};
-use crate::schedule::{Run, Stage, Step, StepError, System};
+use crate::schedule::{Access, Run, Stage, Step, StepError, System};
 use crate::world::{
     BodyId, Force, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
@@ -40,6 +41,11 @@ pub trait PairSource: Send + 'static {
         reads: PairReads,
         run: &mut dyn FnMut(&dyn PairRows) -> Result<(), StepError>,
     ) -> Result<(), StepError>;
+
+    /// What it reads, besides columns that every pass over pairs reads.
+    fn access(&self) -> Vec<Access> {
+        Vec::new()
+    }
 }
 
 /// Takes the pair terms of the bodies of a phase out of the builder, and adds the pass that runs them after the
@@ -51,7 +57,7 @@ pub fn add_pair_systems(
 ) -> Result<(), SetupError> {
     let Some(terms) = PhaseTerms::take(sim, phase)? else { return Ok(()) };
     let bodies = terms.bodies();
-    let (access, reads) = (terms.access(sim, phase), terms.reads);
+    let (access, of_source, reads) = (terms.access(sim, phase), source.access(), terms.reads);
     let pass = PairPass { phase, source, terms, bodies };
     let system = System::new(Stage::Rates, "pair_terms", pass)
         .on_phases([phase])
@@ -61,6 +67,7 @@ pub fn add_pair_systems(
         .reads_near::<Removed>()
         .reads_near::<SupportRadius>()
         .adds::<Force>()
+        .touches_all(of_source)
         .touches_all(access);
     sim.add_system(if reads.velocity { system.reads_near::<Velocity>() } else { system });
     Ok(())

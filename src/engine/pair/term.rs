@@ -2,12 +2,9 @@
 
 use glam::DVec3;
 
-use super::batch::WeightAt;
-use super::bound::ErasedTerm;
 use super::read::{FourOf, ReadSet};
+use super::weight_at::WeightAt;
 use crate::parallel::{Arithmetic, FourLanes, Number, Vector};
-use crate::plugin::SimBuilder;
-use crate::world::BodySet;
 
 /// Geometry of pairs, one a lane: of particle i with four neighbours j, or of eight particles i with one neighbour j (flows in single precision). In formulations without a reference configuration the
 /// reference vector is the current one. Lanes that hold no neighbour have `volume_j` zero: what a term
@@ -171,20 +168,4 @@ pub struct PairReads {
     pub kernel: bool,
     /// Relative velocities.
     pub velocity: bool,
-}
-
-/// A pair term as a plugin hands it in for bodies, with the account of its work.
-pub(crate) struct PairTermOfBodies {
-    pub(super) account: String,
-    pub(super) term: Box<dyn ErasedTerm>,
-}
-
-impl SimBuilder<'_> {
-    /// Adds a pair term to bodies. The energy that its forces take out of the motion is booked as dissipated, in the
-    /// account of that name; it is negative where they put energy in. A body whose formulation takes no pair terms is an error of the
-    /// scene.
-    pub fn add_pair_term(&mut self, bodies: BodySet, account: &str, term: impl PairTerm) {
-        let term = PairTermOfBodies { account: account.to_owned(), term: Box::new(term) };
-        self.extend_bodies(bodies, "a pair term", term);
-    }
 }

@@ -7,7 +7,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::of_phase::{BodyTerms, MAX_TERMS};
+use super::body_terms::{BodyTerms, MAX_TERMS};
 use crate::integrate::DRIFT;
 use crate::parallel::{BlockSum, FourLanes, HotLoop, Lanes4, Split, for_each_own_block, run_hot};
 use crate::plugin::SimBuilder;

@@ -1,7 +1,8 @@
 //! Contributions of plugins while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
-//! Terms are assigned by body, and a term that nobody has taken in the end is an error.
+//! Terms are assigned by body. A term or value that nobody has taken in the end is an error.
 
-use std::any::{Any, TypeId};
+use std::any::{Any, TypeId, type_name};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -28,19 +29,38 @@ struct Term {
     value: Arc<dyn Any + Send + Sync>,
 }
 
+/// A value that concerns the whole simulation.
+struct ForAll {
+    by: Option<Item>,
+    /// The Rust type of the value, for errors.
+    type_name: &'static str,
+    /// Whether nobody needs to take it or to look at it.
+    is_note: bool,
+    /// Whether somebody has looked at it.
+    is_seen: Cell<bool>,
+    value: Box<dyn Any>,
+}
+
 /// All that was handed in and not yet taken. Values of one type keep the order in which they came.
 #[derive(Default)]
 pub(crate) struct HandedIn {
     /// The plugin, condition or formulation that is being built.
     pub by: Option<Item>,
     /// Values that concern the whole simulation.
-    whole: BTreeMap<TypeId, Vec<Box<dyn Any>>>,
+    whole: BTreeMap<TypeId, Vec<ForAll>>,
     terms: BTreeMap<TypeId, Vec<Term>>,
 }
 
 impl HandedIn {
-    pub fn put<T: 'static>(&mut self, value: T) {
-        self.whole.entry(TypeId::of::<T>()).or_default().push(Box::new(value));
+    pub fn put<T: 'static>(&mut self, value: T, is_note: bool) {
+        let value = ForAll {
+            by: self.by.clone(),
+            type_name: type_name::<T>(),
+            is_note,
+            is_seen: Cell::new(false),
+            value: Box::new(value),
+        };
+        self.whole.entry(TypeId::of::<T>()).or_default().push(value);
     }
 
     pub fn count<T: 'static>(&self) -> usize {
@@ -49,11 +69,15 @@ impl HandedIn {
 
     pub fn take<T: 'static>(&mut self) -> Vec<T> {
         let all = self.whole.remove(&TypeId::of::<T>()).unwrap_or_default();
-        all.into_iter().filter_map(|any| any.downcast().ok()).map(|boxed| *boxed).collect()
+        all.into_iter().filter_map(|of| of.value.downcast().ok()).map(|boxed| *boxed).collect()
     }
 
     pub fn all<T: 'static>(&self) -> impl Iterator<Item = &T> {
-        self.whole.get(&TypeId::of::<T>()).into_iter().flatten().filter_map(|any| any.downcast_ref())
+        let all = self.whole.get(&TypeId::of::<T>()).into_iter().flatten();
+        all.filter_map(|of| {
+            of.is_seen.set(true);
+            of.value.downcast_ref()
+        })
     }
 
     pub fn put_for<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
@@ -96,14 +120,26 @@ impl HandedIn {
                 place(&term.by, message, "leave it out for this body, or give the body another formulation".to_owned())
             })
         });
-        terms.collect()
+        let is_left = |of: &&ForAll| !of.is_note && !of.is_seen.get();
+        let whole = self.whole.values().flatten().filter(is_left).map(|of| {
+            let name = of.type_name.rsplit("::").next().unwrap_or(of.type_name).trim_end_matches('>');
+            let message = format!("a value of type `{name}` was handed in, and nothing takes it");
+            let help = "hand in a type that the engine or a plugin takes, or leave a note (`SimBuilder::leave_note`)";
+            place(&of.by, message, help.to_owned())
+        });
+        terms.chain(whole).collect()
     }
 }
 
 impl super::SimBuilder<'_> {
-    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type.
+    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type. One that nothing takes and nothing looks at is an error.
     pub fn extend<T: 'static>(&mut self, value: T) {
-        self.handed.put(value);
+        self.handed.put(value, false);
+    }
+
+    /// Leaves a value for whoever looks for one of its type, a later item of the same plugin for instance: it is no error if nobody does.
+    pub fn leave_note<T: 'static>(&mut self, value: T) {
+        self.handed.put(value, true);
     }
 
     /// Takes all values of type `T`, in the order in which they were added.

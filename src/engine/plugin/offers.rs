@@ -1,10 +1,5 @@
 //! The kind of bodies that a formulation moves, and the terms it accepts from plugins, conditions and contacts.
 
-use super::builder::SimBuilder;
-use super::error::SetupError;
-use super::plan::BodyPlan;
-use crate::world::BodySet;
-
 /// What the bodies of a formulation are to the rest of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyKind {
@@ -49,8 +44,7 @@ pub enum Offer {
     SelfContact,
     /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they stay spheres.
     DeformedContact,
-    /// A deformation gradient that is a state of the particle, whose volume plugins may change
-    /// ([`DilatationRate`](crate::formulations::eulerian::DilatationRate)).
+    /// A deformation gradient that is a state of the particle, whose volume plugins may change by a column of the formulation.
     Dilatation,
     /// Held particles that end where a condition says, and carry but a share of their stress.
     Supports,
@@ -99,42 +93,5 @@ impl Offer {
             Self::Supports => "supports that end between particles",
             Self::Sides => "supports on a side of the body",
         }
-    }
-}
-
-impl SimBuilder<'_> {
-    /// The bodies of the scope of that kind.
-    ///
-    /// # Errors
-    /// The plugin stands in a body of another kind, or there is no body of this kind.
-    pub fn scope_of(&self, kind: BodyKind) -> Result<BodySet, SetupError> {
-        self.scope_where(&|body| body.kind == kind, &|| format!("acts on {}", kind.words()))
-    }
-
-    /// The bodies of the scope whose formulations take what is offered.
-    ///
-    /// # Errors
-    /// The plugin stands in a body that does not, or there is no body that does.
-    pub fn scope_offering(&self, offer: Offer) -> Result<BodySet, SetupError> {
-        self.scope_where(&|body| body.offers(offer), &|| format!("needs bodies that take {}", offer.words()))
-    }
-
-    fn scope_where(
-        &self,
-        fits: &dyn Fn(&BodyPlan) -> bool,
-        what: &dyn Fn() -> String,
-    ) -> Result<BodySet, SetupError> {
-        let fitting = BodySet::new(self.scope().iter().filter(|&id| fits(self.body(id))));
-        if !fitting.is_empty() || self.scope().is_empty() {
-            return Ok(fitting);
-        }
-        let message = match self.own_body {
-            Some(id) => {
-                let BodyPlan { name, formulation, .. } = self.body(id);
-                format!("this {}, and body `{name}` has the formulation `{formulation}`", what())
-            }
-            None => format!("this {}, and the scene has none", what()),
-        };
-        Err(SetupError::parameter("", message, "leave it out"))
     }
 }

@@ -17,7 +17,7 @@ use crate::world::{BodyId, ColumnSet};
 
 /// What kind of thing a name of a scene stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum EntryKind {
     /// A material.
     Material,
     /// A formulation.
@@ -30,7 +30,7 @@ pub enum Kind {
     Plugin,
 }
 
-impl Kind {
+impl EntryKind {
     /// The kind in words.
     pub fn word(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl Entry {
 }
 
 /// Names of the scene grammar that this version cannot resolve yet: told apart from misspelt ones.
-const LATER: &[(Kind, &str)] = &[(Kind::Plugin, "artificial_stress")];
+const LATER: &[(EntryKind, &str)] = &[(EntryKind::Plugin, "artificial_stress")];
 
 type ParsedBodies = Vec<(BodyId, Box<dyn Any>)>;
 
@@ -93,13 +93,13 @@ pub struct Registry {
     formulations: BTreeMap<&'static str, FormulationEntry>,
     /// Formulations that stand in for others.
     stand_ins: BTreeMap<&'static str, &'static str>,
-    builders: BTreeMap<(Kind, &'static str), Arc<dyn Any + Send + Sync>>,
-    plugins: BTreeMap<(Kind, &'static str), BuildPlugin>,
+    builders: BTreeMap<(EntryKind, &'static str), Arc<dyn Any + Send + Sync>>,
+    plugins: BTreeMap<(EntryKind, &'static str), BuildPlugin>,
     supports: BTreeMap<&'static str, ReadSupport>,
     /// Names of the plugins that change the laws of materials.
     of_materials: BTreeSet<&'static str>,
-    parsers: BTreeMap<(Kind, &'static str), ParseItem>,
-    entries: BTreeMap<(Kind, &'static str), Entry>,
+    parsers: BTreeMap<(EntryKind, &'static str), ParseItem>,
+    entries: BTreeMap<(EntryKind, &'static str), Entry>,
 }
 
 impl Registry {
@@ -109,7 +109,7 @@ impl Registry {
             let model: M = item.parse()?;
             model.build().map_err(|error| SetupError::from(error).into_problems(item))
         });
-        self.describe::<M>(Kind::Material, M::NAME, M::REFERENCE)
+        self.describe::<M>(EntryKind::Material, M::NAME, M::REFERENCE)
     }
 
     /// Registers a formulation.
@@ -130,7 +130,7 @@ impl Registry {
             },
         };
         self.formulations.insert(F::NAME, entry);
-        self.describe::<F>(Kind::Formulation, F::NAME, F::REFERENCE)
+        self.describe::<F>(EntryKind::Formulation, F::NAME, F::REFERENCE)
     }
 
     /// What a body of the formulation of that name is.
@@ -140,18 +140,18 @@ impl Registry {
 
     /// Registers a boundary or initial condition.
     pub fn condition<P: Plugin>(&mut self) -> &mut Self {
-        self.plugins.insert((Kind::Condition, P::NAME), build_plugin::<P>);
+        self.plugins.insert((EntryKind::Condition, P::NAME), build_plugin::<P>);
         self.supports.insert(P::NAME, |item, look| {
             let condition = item.parse::<P>();
             condition.iter().filter_map(Plugin::support).for_each(look);
         });
-        self.describe::<P>(Kind::Condition, P::NAME, P::REFERENCE)
+        self.describe::<P>(EntryKind::Condition, P::NAME, P::REFERENCE)
     }
 
     /// Registers what only another module of the engine knows how to build: it finds the builder again by [`Registry::builder`].
     pub(crate) fn add_builder<T: schemars::JsonSchema + DeserializeOwned, B: Any + Send + Sync>(
         &mut self,
-        kind: Kind,
+        kind: EntryKind,
         name: &'static str,
         reference: &'static str,
         build: B,
@@ -165,8 +165,8 @@ impl Registry {
         if P::CHANGES_MATERIALS {
             self.of_materials.insert(P::NAME);
         }
-        self.plugins.insert((Kind::Plugin, P::NAME), build_plugin::<P>);
-        self.describe::<P>(Kind::Plugin, P::NAME, P::REFERENCE)
+        self.plugins.insert((EntryKind::Plugin, P::NAME), build_plugin::<P>);
+        self.describe::<P>(EntryKind::Plugin, P::NAME, P::REFERENCE)
     }
 
     /// Lets a crate register what it has: `registry.with(my_plugin::register)`.
@@ -189,7 +189,7 @@ impl Registry {
     }
 
     /// All names of a kind, in order, with their parameters.
-    pub fn entries(&self, kind: Kind) -> impl Iterator<Item = &Entry> {
+    pub fn entries(&self, kind: EntryKind) -> impl Iterator<Item = &Entry> {
         self.entries.iter().filter(move |((k, _), _)| *k == kind).map(|(_, entry)| entry)
     }
 
@@ -200,7 +200,7 @@ impl Registry {
 
     fn describe<T: schemars::JsonSchema + DeserializeOwned>(
         &mut self,
-        kind: Kind,
+        kind: EntryKind,
         name: &'static str,
         reference: &'static str,
     ) -> &mut Self {
@@ -209,7 +209,7 @@ impl Registry {
 
     fn enter(
         &mut self,
-        kind: Kind,
+        kind: EntryKind,
         (name, reference): (&'static str, &'static str),
         described: &Described,
         parser: ParseItem,
@@ -220,7 +220,7 @@ impl Registry {
         self
     }
 
-    fn unknown(&self, kind: Kind, item: &Item) -> Vec<Problem> {
+    fn unknown(&self, kind: EntryKind, item: &Item) -> Vec<Problem> {
         if LATER.contains(&(kind, item.name())) {
             let message = format!("{} `{}` is not implemented yet", kind.word(), item.name());
             let known: Vec<&str> = self.entries(kind).map(|entry| entry.name).collect();
@@ -237,30 +237,30 @@ impl Registry {
     }
 
     /// Looks whether a name is known and its parameters can be read.
-    pub(crate) fn check(&self, kind: Kind, item: &Item) -> Result<(), Vec<Problem>> {
+    pub(crate) fn check(&self, kind: EntryKind, item: &Item) -> Result<(), Vec<Problem>> {
         let parse = self.parsers.get(&(kind, item.name())).ok_or_else(|| self.unknown(kind, item))?;
         parse(item)
     }
 
     pub(crate) fn build_material(&self, item: &Item) -> Result<Material, Vec<Problem>> {
-        let build = self.materials.get(item.name()).ok_or_else(|| self.unknown(Kind::Material, item))?;
+        let build = self.materials.get(item.name()).ok_or_else(|| self.unknown(EntryKind::Material, item))?;
         build(item)
     }
 
     pub(crate) fn find_formulation(&self, item: &Item) -> Result<&FormulationEntry, Vec<Problem>> {
         let name = self.stand_ins.get(item.name()).copied().unwrap_or(item.name());
-        self.formulations.get(name).ok_or_else(|| self.unknown(Kind::Formulation, item))
+        self.formulations.get(name).ok_or_else(|| self.unknown(EntryKind::Formulation, item))
     }
 
     /// What [`Registry::add_builder`] was given for a name.
-    pub(crate) fn builder<B: Any>(&self, kind: Kind, item: &Item) -> Result<&B, Vec<Problem>> {
+    pub(crate) fn builder<B: Any>(&self, kind: EntryKind, item: &Item) -> Result<&B, Vec<Problem>> {
         let named = self.builders.iter().find(|((of, name), _)| *of == kind && *name == item.name());
         let build = named.and_then(|(_, build)| build.downcast_ref());
         build.ok_or_else(|| self.unknown(kind, item))
     }
 
     /// The source of what is behind a name; empty if it has none.
-    pub(crate) fn reference(&self, kind: Kind, name: &str) -> &'static str {
+    pub(crate) fn reference(&self, kind: EntryKind, name: &str) -> &'static str {
         self.entries
             .iter()
             .find(|((k, n), _)| *k == kind && *n == name)
@@ -276,7 +276,7 @@ impl Registry {
 
     pub(crate) fn build_plugin(
         &self,
-        kind: Kind,
+        kind: EntryKind,
         item: &Item,
         sim: &mut SimBuilder<'_>,
     ) -> Result<&'static str, Vec<Problem>> {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::system::RemovalRule;
+use super::rule::RemovalRule;
 use crate::parallel::{BLOCK, for_each_block, for_each_own_block};
 use crate::plugin::SimBuilder;
 use crate::ranks;

@@ -2,10 +2,12 @@
 
 mod domain;
 mod leaving;
+mod rule;
 mod system;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use domain::DomainBox;
-pub(crate) use leaving::Leaving;
-pub use system::{REMOVAL, REMOVED_ENERGY, RemovalRule, add_system};
+pub(crate) use leaving::{LEAVING, Leaving};
+pub use rule::RemovalRule;
+pub use system::{REMOVAL, REMOVED_ENERGY, add_system};

@@ -8,13 +8,14 @@
 use glam::DVec3;
 
 use super::domain::{DomainBox, RemoveOutside};
-use super::leaving::Leaving;
+use super::leaving::{LEAVING, Leaving};
+use super::rule::RemovalRule;
 use crate::notation::quantity;
 use crate::parallel::{Picked, sum_over_blocks};
 use crate::plugin::SimBuilder;
-use crate::rigid::take_out;
+use crate::rigid::{RIGID_BODIES, take_out};
 use crate::scene::Outside;
-use crate::schedule::{Access, AccountKind, Run, Stage, Step, StepError, System};
+use crate::schedule::{Access, AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
 
 /// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of neighbours are
@@ -23,20 +24,6 @@ pub const REMOVAL: &str = "removal";
 
 /// Account of the energy that leaves with removed particles.
 pub const REMOVED_ENERGY: &str = "removed";
-
-/// Says which particles are to be taken out of the run. Plugins add one with [`SimBuilder::add_removal_rule`].
-pub trait RemovalRule: Send + 'static {
-    /// Appends the rows of the body that are to go, ascending; rows that are out already may be named again.
-    ///
-    /// # Errors
-    /// A column is missing.
-    fn rows(&mut self, step: &Step<'_>, body: BodyId, out: &mut Vec<u32>) -> Result<(), StepError>;
-
-    /// The columns that it reads, besides position and mass.
-    fn access(&self) -> Vec<Access> {
-        Vec::new()
-    }
-}
 
 impl SimBuilder<'_> {
     /// Adds a rule that removes particles, looked at in every step after the drift and before lists and forces.
@@ -60,7 +47,9 @@ pub fn add_system(sim: &mut SimBuilder<'_>) {
             .writes::<Removed>()
             .writes::<Velocity>()
             .writes::<Force>()
-            .writes::<Mobility>(),
+            .writes::<Mobility>()
+            .touches(LEAVING, Mode::Writes)
+            .touches_packed(RIGID_BODIES, Mode::Writes),
     );
 }
 

@@ -11,6 +11,7 @@ use super::rotation::Inertia;
 use super::wrench::Wrench;
 use crate::linalg::Sym3;
 use crate::parallel::BlockSum;
+use crate::schedule::Shareable;
 use crate::shapes::Surface;
 use crate::world::BodyId;
 
@@ -170,6 +171,13 @@ pub(super) struct RigidParts {
     pub surface: Box<dyn Surface>,
     pub nodes: Nodes,
     pub constraint: Constraint,
+}
+
+/// Name of the motion of rigid bodies and of what acts on them, in the access of systems.
+pub const RIGID_BODIES: &str = "rigid_bodies";
+
+impl Shareable for RigidBodies {
+    const ROWS: &'static [&'static str] = &[RIGID_BODIES];
 }
 
 /// The rigid bodies of a simulation, in scene order: a resource of the systems that move them and those that push them.

@@ -13,7 +13,7 @@ mod systems;
 mod tests;
 mod wrench;
 
-pub use body::{RigidBodies, RigidBody, RigidState};
+pub use body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
 pub use constraint::{Drive, DrivenBody, DrivenRotation, HalvedBody};
 pub(crate) use formulation::checked_axis;
 pub use formulation::{Rigid, Rotation};

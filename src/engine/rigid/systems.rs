@@ -2,12 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::body::{RigidBodies, RigidBody, RigidState};
+use super::body::{RIGID_BODIES, RigidBodies, RigidBody, RigidState};
 use super::constraint::Turning;
 use super::wrench::Wrench;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::SimBuilder;
-use crate::schedule::{AccountKind, Clock, Resources, Run, Stage, Step, StepError, System};
+use crate::schedule::{AccountKind, Clock, Mode, Resources, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, PhaseId, Position, ReferencePosition, Removed, Velocity};
 
 /// Label of the system that moves rigid bodies by the first kick and the drift.
@@ -24,6 +24,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
     sim.add_system(
         System::new(Stage::InitialIntegrate, RIGID_DRIFT, RigidDrift { gravity })
             .on_phases(phases.clone())
+            .touches_packed(RIGID_BODIES, Mode::Writes)
             .reads::<ReferencePosition>()
             .writes::<Position>()
             .writes::<Velocity>(),
@@ -42,6 +43,7 @@ pub(super) fn add(sim: &mut SimBuilder<'_>, ids: BodySet) {
     sim.add_system(
         System::new(Stage::FinalIntegrate, RIGID_KICK, RigidKick { end })
             .on_phases(phases)
+            .touches_packed(RIGID_BODIES, Mode::Writes)
             .reads::<Position>()
             .reads::<Mass>()
             .writes::<Velocity>()

@@ -15,7 +15,7 @@ pub use each::{Adds, EachRow};
 pub use ledger::{Account, AccountId, AccountKind, EnergyAccount, INTO_HEAT, Ledger};
 pub use limits::{Limit, TimeStepLimits};
 pub use order::{Schedule, ScheduleError};
-pub use resources::{Resources, Shared, SharedValues};
+pub use resources::{Resources, Shareable, Shared, SharedValues};
 pub use stage::Stage;
 pub use step::{Clock, Step, StepError, warn_anew};
 pub use system::{Run, System};

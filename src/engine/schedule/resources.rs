@@ -5,8 +5,16 @@ use std::cell::{Ref, RefCell, RefMut};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
-use crate::world::PhaseId;
+use crate::world::{Mode, PhaseId, Watch};
+
+/// A type of values that systems find by their type. What its rows hold has names, and a system that borrows such a value has declared access to one of these:
+/// reading for reading, writing or adding for writing. Otherwise the run ends with an error that says what to declare.
+pub trait Shareable: Send + 'static {
+    /// Names of what it holds, as they stand in the access of systems.
+    const ROWS: &'static [&'static str];
+}
 
 /// The place of a value that the systems of one owner share: a plugin that a scene has twice has two of them.
 pub struct Shared<T> {
@@ -45,7 +53,7 @@ impl SharedValues {
     }
 }
 
-/// Values by their type, or by their type and a phase. What is not derived from the scene and the columns is kept
+/// Values by their type, or by their type and a phase, and values by their place, which only those can borrow that have been given the place. What is not derived from the scene and the columns is kept
 /// by the system that owns it ([`Run::save_with`](super::Run::save_with)).
 #[derive(Default)]
 pub struct Resources {
@@ -53,6 +61,8 @@ pub struct Resources {
     shared: Vec<RefCell<Box<dyn Any + Send>>>,
     /// What exchanges packed rows among ranks.
     completed_by: Vec<fn(&Resources)>,
+    /// What holds the accesses of systems against what they have declared.
+    watch: Option<Arc<Watch>>,
 }
 
 impl Resources {
@@ -62,6 +72,7 @@ impl Resources {
             by_type: BTreeMap::new(),
             shared: values.0.into_iter().map(RefCell::new).collect(),
             completed_by: Vec::new(),
+            watch: None,
         }
     }
 
@@ -73,6 +84,17 @@ impl Resources {
     /// Exchanges packed rows of which ranks have some alone.
     pub(super) fn complete_packed(&self) {
         self.completed_by.iter().for_each(|complete| complete(self));
+    }
+
+    /// From now on the accesses of systems are held against what they have declared.
+    pub(crate) fn watch_by(&mut self, watch: Arc<Watch>) {
+        self.watch = Some(watch);
+    }
+
+    fn touches<T: Shareable>(&self, mode: Mode) {
+        if let Some(watch) = &self.watch {
+            watch.touches_shared(T::ROWS, mode);
+        }
     }
 
     /// The value in its place, for reading. Panics where the place is that of another simulation.
@@ -88,52 +110,54 @@ impl Resources {
     }
 
     /// Puts a value in place of the one of its type.
-    pub fn insert<T: Send + 'static>(&mut self, value: T) {
+    pub fn insert<T: Shareable>(&mut self, value: T) {
         self.by_type.insert((TypeId::of::<T>(), None), RefCell::new(Box::new(value)));
     }
 
     /// Puts a value in place of the one that a phase has of its type.
-    pub fn insert_of<T: Send + 'static>(&mut self, phase: PhaseId, value: T) {
+    pub fn insert_of<T: Shareable>(&mut self, phase: PhaseId, value: T) {
         self.by_type.insert((TypeId::of::<T>(), Some(phase)), RefCell::new(Box::new(value)));
     }
 
     /// The value of type `T` for reading. Panics where the plugin that owns it was not built.
-    pub fn get<T: Send + 'static>(&self) -> Ref<'_, T> {
+    pub fn get<T: Shareable>(&self) -> Ref<'_, T> {
         self.try_get().unwrap_or_else(|| panic!("no resource of type {}", type_name::<T>()))
     }
 
     /// The value of type `T` for reading, if there is one.
-    pub fn try_get<T: Send + 'static>(&self) -> Option<Ref<'_, T>> {
+    pub fn try_get<T: Shareable>(&self) -> Option<Ref<'_, T>> {
         self.read(None)
     }
 
     /// The value of type `T` for writing. Panics where the plugin that owns it was not built.
-    pub fn get_mut<T: Send + 'static>(&self) -> RefMut<'_, T> {
+    pub fn get_mut<T: Shareable>(&self) -> RefMut<'_, T> {
         self.write(None).unwrap_or_else(|| panic!("no resource of type {}", type_name::<T>()))
     }
 
     /// The value of type `T` for writing, if there is one.
-    pub fn try_get_mut<T: Send + 'static>(&self) -> Option<RefMut<'_, T>> {
+    pub fn try_get_mut<T: Shareable>(&self) -> Option<RefMut<'_, T>> {
         self.write(None)
     }
 
     /// The value of type `T` that a phase has, for reading, if there is one.
-    pub fn try_get_of<T: Send + 'static>(&self, phase: PhaseId) -> Option<Ref<'_, T>> {
+    pub fn try_get_of<T: Shareable>(&self, phase: PhaseId) -> Option<Ref<'_, T>> {
         self.read(Some(phase))
     }
 
     /// The value of type `T` that a phase has, for writing, if there is one.
-    pub fn try_get_mut_of<T: Send + 'static>(&self, phase: PhaseId) -> Option<RefMut<'_, T>> {
+    pub fn try_get_mut_of<T: Shareable>(&self, phase: PhaseId) -> Option<RefMut<'_, T>> {
         self.write(Some(phase))
     }
 
-    fn read<T: Send + 'static>(&self, phase: Option<PhaseId>) -> Option<Ref<'_, T>> {
+    fn read<T: Shareable>(&self, phase: Option<PhaseId>) -> Option<Ref<'_, T>> {
         let cell = self.by_type.get(&(TypeId::of::<T>(), phase))?;
+        self.touches::<T>(Mode::Reads);
         Ref::filter_map(cell.borrow(), |value| value.downcast_ref()).ok()
     }
 
-    fn write<T: Send + 'static>(&self, phase: Option<PhaseId>) -> Option<RefMut<'_, T>> {
+    fn write<T: Shareable>(&self, phase: Option<PhaseId>) -> Option<RefMut<'_, T>> {
         let cell = self.by_type.get(&(TypeId::of::<T>(), phase))?;
+        self.touches::<T>(Mode::Writes);
         RefMut::filter_map(cell.borrow_mut(), |value| value.downcast_mut()).ok()
     }
 }

@@ -167,8 +167,8 @@ impl System {
         self
     }
 
-    /// Declares access to rows that a formulation packs from columns of several phases, by the name that it gives them: systems that touch them share
-    /// rows whatever their phases are.
+    /// Declares access to what systems share beside columns of one phase ([`Shareable::ROWS`](super::Shareable::ROWS)), by the name of its rows: systems that
+    /// touch them share rows whatever their phases are.
     pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
         self.packed.push(Access { column: rows, mode });
         self
@@ -251,9 +251,9 @@ impl System {
         &self.access
     }
 
-    /// What it has declared of the columns.
+    /// What it has declared of the columns, and of what systems share.
     pub(super) fn declared(&self) -> Declared {
-        let access = (!self.reads_all).then(|| self.access.clone());
+        let access = (!self.reads_all).then(|| self.access.iter().chain(&self.packed).copied().collect());
         Declared { system: self.label.clone(), access }
     }
 

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use hecs::ArchetypeColumn;
 
 use super::carriers::Carrier;
-use super::following::Scale;
+use super::scale::Scale;
 use super::skin::Skin;
 use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{DeformationGradient, MissingColumn, Mobility, Position, Removed, Velocity, World};

@@ -21,11 +21,14 @@ mod following;
 mod heat;
 mod patch;
 mod rule;
+mod scale;
 mod skin;
 #[cfg(test)]
 pub(crate) mod tests;
+mod vertex;
 
 pub(crate) use columns::{SkinColumns, SkinView};
-pub(crate) use patch::{Last, Patch, Vertex, Wanted};
+pub(crate) use patch::{Last, Patch, Wanted};
 pub(crate) use rule::QuadratureRule;
 pub(crate) use skin::Skin;
+pub(crate) use vertex::Vertex;

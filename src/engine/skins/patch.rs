@@ -6,8 +6,9 @@ use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::columns::SkinView;
-use super::following::{self, FollowingShare, Scale, follow};
+use super::following::{self, FollowingShare, follow};
 use super::skin::Skin;
+use super::vertex::{End, Vertex};
 use crate::parallel::{FourLanes, HotLoop, Picked, for_each_block, run_hot, sum_over_blocks};
 use crate::solids::SolidPhase;
 use crate::world::{Force, sum_by_row};
@@ -26,42 +27,12 @@ impl Last {
     const UNKNOWN: Self = Self { place: DVec3::NAN, gradient: DMat3::NAN };
 }
 
-/// A vertex of the patch in this step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Vertex {
-    /// Where it is, m.
-    pub place: DVec3,
-    /// Its velocity at mid-step, m/s.
-    pub velocity: DVec3,
-    /// Deformation gradient, and its rate at mid-step, 1/s; if asked for.
-    pub gradient: DMat3,
-    pub rate: DMat3,
-    /// How much a traction moves the layer of particles there along each axis, m2/kg; if asked for.
-    pub mobility: DVec3,
-    /// Whether all that carries it is there.
-    pub is_there: bool,
-    /// What its shares are made of, if they follow the deformation.
-    pub(super) scale: Scale,
-}
-
 /// What is to be computed beside places and velocities.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub mobility: bool,
     /// Deformation gradients and their rates.
     pub gradients: bool,
-}
-
-/// A vertex by which a force reaches a particle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct End {
-    pub arm: DVec3,
-    pub weight: f64,
-    pub particle: u32,
-    /// Number of the vertex in the patch.
-    pub vertex: u32,
-    /// Number of the map by which the particle is an image.
-    pub map: u32,
 }
 
 /// What is handed on to particles.

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::carriers::{Carrier, CarrierCells, REACH, carriers};
-use super::following::CANDIDATES;
+use super::scale::CANDIDATES;
 use crate::plugin::{BodyPlan, Offer};
 use crate::scene::Dimension;
 use crate::shapes::{Facets, Shape};

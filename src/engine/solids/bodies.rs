@@ -10,7 +10,6 @@ use super::constitutive::{CRUSHED, Constitutive, MAX_TERMS, SolidBlock, SolidCol
 use super::damping::{self, DampedInShortSteps, DampedStrain, DampingStress};
 use super::folded::{FoldedEnergy, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 use super::hessian::{self, HessianDifference, HessianForm, HessianResidual, HessianStiffness};
-use super::losses::TakenUp;
 use super::pair_control::{self, PairControl};
 use super::refit::Refits;
 use super::stable_step::StepEstimate;
@@ -18,10 +17,10 @@ use super::stretches;
 use crate::materials::{MAX_STATE, SolidLaw, StateColumns, StateRows, Stretches};
 use crate::parallel::{Split, for_each_block, for_each_own_block};
 use crate::plugin::{BodyPlan, ForBodies, Offer, SetupError, SimBuilder};
-use crate::schedule::{Access, AccountKind, Ledger, Mode, Step, StepError};
+use crate::schedule::{AccountKind, Ledger, Step, StepError};
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, Damage, DeformationGradient, HourglassGradient, HourglassModulus,
-    HourglassResidual, PhaseId, PhaseView, PiolaStress,
+    HourglassResidual, PhaseId, PhaseView,
 };
 
 /// A body of a solid formulation.
@@ -55,8 +54,8 @@ pub struct SolidBodies {
     bodies: Vec<SolidBody>,
     terms: Vec<Arc<FoldedTermOfBodies>>,
     /// Columns of state beside deformation gradient and stress.
-    columns: ColumnSet,
-    can_fail: bool,
+    pub(super) columns: ColumnSet,
+    pub(super) can_fail: bool,
     /// What the last pass has found in each body.
     found: Vec<SolidSum>,
     sums: Vec<SolidSum>,
@@ -222,15 +221,6 @@ impl SolidBodies {
     /// Whether there are folded terms.
     pub fn has_terms(&self) -> bool {
         !self.terms.is_empty()
-    }
-
-    /// The columns of the pass: it writes deformation gradient, stress and state, and reads the damage.
-    pub fn access(&self) -> Vec<Access> {
-        let writes = |name| Access { column: name, mode: Mode::Writes };
-        let always = [DeformationGradient::NAME, PiolaStress::NAME, TakenUp::NAME].map(writes);
-        let state = self.columns.iter().map(|column| writes(column.name));
-        let damage = self.can_fail.then_some(Access { column: Damage::NAME, mode: Mode::Reads });
-        always.into_iter().chain(state).chain(damage).collect()
     }
 
     /// Begins a pass over all bodies.

@@ -15,11 +15,13 @@
 //! Rates         the formulation's own pass over pairs writes the force; pair terms add to it         (crate::pair)
 //! ```
 
+mod access;
 mod bodies;
 mod constitutive;
 mod corrected_stress;
 mod damping;
 mod fields;
+mod fit;
 mod folded;
 mod hessian;
 mod local_motion;
@@ -40,13 +42,14 @@ pub use constitutive::{Constitutive, SolidBlock, SolidColumns, SolidRows, SolidS
 pub use corrected_stress::{CorrectedStress, CorrectedStressRows};
 pub(crate) use damping::DampedInShortSteps;
 pub(crate) use fields::fields;
+pub(crate) use fit::fit;
 pub use folded::{FoldedEnergy, FoldedMemory, FoldedRows, FoldedTerm, FoldedTermOfBodies};
 pub use hessian::{HessianDifference, HessianForm, HessianResidual, HessianStiffness};
 pub use local_motion::LocalMotion;
 pub use losses::{Loss, TakenUp};
 pub use pair_control::PairControl;
 pub use pairs::SolidPairs;
-pub use phase::SolidPhase;
+pub use phase::{CORRECTED_STRESS, PACKED_SOLID, SolidPhase};
 pub use present::{PresentPair, PresentPairs, PresentVolumes};
 pub use refit::Refits;
 pub use row_loops::{count_rows, fill_rows};

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::phase::SolidPhase;
+use super::phase::{PACKED_SOLID, SolidPhase};
 use crate::pair::{Extras, Neighbor, PairBatch, PairReads, PairRows, PairSource, WeightAt};
-use crate::schedule::{Step, StepError};
+use crate::schedule::{Access, Mode, Step, StepError};
 use crate::world::{
     BodyId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
@@ -40,6 +40,10 @@ impl PairSource for SolidPairs {
             removed: &view.read_near::<Removed>()?,
             support: &view.read_near::<SupportRadius>()?,
         })
+    }
+
+    fn access(&self) -> Vec<Access> {
+        vec![Access { column: PACKED_SOLID, mode: Mode::ReadsNear }]
     }
 }
 

@@ -6,9 +6,18 @@ use std::cell::{Ref, RefMut};
 use glam::DMat3;
 
 use super::local_motion::LocalMotion;
-use crate::schedule::Resources;
+use crate::schedule::{Resources, Shareable};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, PhaseId, Velocity};
+
+/// What a formulation packs of the particles of a solid: pair vectors, weights, lists, fits. In the access of systems.
+pub const PACKED_SOLID: &str = "packed_solid";
+/// What neighbours read of the stress of a particle, A = P M^-1 ([`CorrectedStress`](super::CorrectedStress)). In the access of systems.
+pub const CORRECTED_STRESS: &str = "corrected_stress";
+
+impl Shareable for Box<dyn SolidPhase> {
+    const ROWS: &'static [&'static str] = &[PACKED_SOLID, CORRECTED_STRESS];
+}
 
 /// The packed rows of a solid formulation, one object per phase. The formulation puts it into the resources at set-up
 /// ([`Resources::insert_solid`]) and borrows it there for its passes ([`Resources::solid_rows_mut`]).

@@ -2,7 +2,7 @@
 
 use glam::DMat3;
 
-use crate::linalg::smallest_and_largest_stretch;
+use crate::linalg::{ExtremeValues, extreme_stretches};
 use crate::materials::Stretches;
 use crate::parallel::{BlockSum, Largest, sum_over_own_blocks};
 use crate::world::{Damage, DeformationGradient};
@@ -13,7 +13,7 @@ pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]
     sum_over_own_blocks(gradient, &|first, rows: &[DeformationGradient]| {
         let rows = rows.iter().zip(first..).filter(|(_, row)| intact(*row));
         rows.fold(Stretches::default(), |mut all, (row, _)| {
-            let (smallest, largest) = smallest_and_largest_stretch(row.0);
+            let ExtremeValues { smallest, largest } = extreme_stretches(row.0);
             let volume = row.0.determinant();
             all.add(&Stretches { smallest, largest, least_volume: volume, largest_volume: volume });
             all
@@ -34,7 +34,7 @@ pub(super) fn smallest_since(
         sum_over_own_blocks(rows, &|first, (now, then): (&[DeformationGradient], &[DMat3])| {
             let rows = now.iter().zip(then).zip(first..).filter(|(_, row)| intact(*row));
             Largest::of(rows.map(|((now, then), _)| {
-                let (smallest, _) = smallest_and_largest_stretch(now.0 * then.inverse());
+                let smallest = extreme_stretches(now.0 * then.inverse()).smallest;
                 1.0 / smallest
             }))
         });

@@ -1,4 +1,4 @@
-//! What the running system has declared of the columns, and the first access that it has not.
+//! What the running system has declared of the columns and of what systems share, and the first access that it has not.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -57,7 +57,7 @@ impl Access {
     }
 }
 
-/// What a system has declared of the columns.
+/// What a system has declared of the columns, and of what systems share.
 #[derive(Clone, Debug)]
 pub struct Declared {
     /// Label of the system.
@@ -66,25 +66,21 @@ pub struct Declared {
     pub access: Option<Vec<Access>>,
 }
 
-/// A system has touched a column in a way that it has not declared.
+/// A system has touched a column, or rows that systems share, in a way that it has not declared.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error(
-    "system `{system}` touches the column `{column}` and has not declared it: add `.{declaration}::<{type_name}>()` to the system"
-)]
+#[error("system `{system}` touches {what} and has not declared it: add `{declaration}` to the system")]
 pub struct Undeclared {
     /// Label of the system.
     pub system: String,
-    /// Name of the column.
-    pub column: &'static str,
+    /// What it touches, in words.
+    pub what: String,
     /// What declares it.
-    pub declaration: &'static str,
-    /// The Rust type of the column.
-    pub type_name: &'static str,
+    pub declaration: String,
 }
 
 /// Which system runs, what the systems have declared, and the first access that one has not.
 #[derive(Debug)]
-pub(super) struct Watch {
+pub(crate) struct Watch {
     declared: Vec<Declared>,
     /// Number of the system that runs; beyond the last one where none does.
     running: AtomicUsize,
@@ -109,25 +105,37 @@ impl Watch {
 
     /// Notes the access if the system that runs has not declared it.
     pub fn touches<T: Column>(&self, done: Mode) {
-        let Some(system) = self.declared.get(self.running.load(Ordering::Relaxed)) else { return };
-        let allowed = match &system.access {
-            Some(access) => access.iter().any(|a| a.column == T::NAME && a.mode.allows(done)),
-            None => matches!(done, Mode::Reads | Mode::ReadsNear),
-        };
-        if !allowed {
-            self.note(system, T::NAME, done, std::any::type_name::<T>());
-        }
-    }
-
-    #[cold]
-    fn note(&self, system: &Declared, column: &'static str, done: Mode, path: &'static str) {
+        let Some(system) = self.undeclared_in(&[T::NAME], done) else { return };
         let declaration = match done {
             Mode::Reads => "reads",
             Mode::ReadsNear => "reads_near",
             Mode::Writes | Mode::Adds => "writes",
         };
+        let path = std::any::type_name::<T>();
         let type_name = path.rsplit("::").next().unwrap_or(path);
-        let system = system.system.clone();
-        let _ = self.first.set(Undeclared { system, column, declaration, type_name });
+        self.note(system, format!("the column `{}`", T::NAME), format!(".{declaration}::<{type_name}>()"));
+    }
+
+    /// Notes the access to a value that systems share if the one that runs has declared none of the names of its rows.
+    pub fn touches_shared(&self, rows: &'static [&'static str], done: Mode) {
+        let Some(system) = self.undeclared_in(rows, done) else { return };
+        let names: Vec<String> = rows.iter().map(|name| format!("`{name}`")).collect();
+        let what = format!("{} of what systems share", names.join(" or "));
+        self.note(system, what, format!(".touches_packed({:?}, Mode::{done:?})", rows[0]));
+    }
+
+    /// The system that runs, if it has declared that access to none of these names.
+    fn undeclared_in(&self, names: &[&str], done: Mode) -> Option<&Declared> {
+        let system = self.declared.get(self.running.load(Ordering::Relaxed))?;
+        let allowed = match &system.access {
+            Some(access) => access.iter().any(|a| names.contains(&a.column) && a.mode.allows(done)),
+            None => matches!(done, Mode::Reads | Mode::ReadsNear),
+        };
+        (!allowed).then_some(system)
+    }
+
+    #[cold]
+    fn note(&self, system: &Declared, what: String, declaration: String) {
+        let _ = self.first.set(Undeclared { system: system.system.clone(), what, declaration });
     }
 }

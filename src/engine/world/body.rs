@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::state::PhaseId;
+/// Index of a phase: the particles of one formulation, which share their columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PhaseId(pub usize);
 
 /// Index of a body in the order of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -4,45 +4,16 @@
 //! as a whole; that exchanges it. The calls of a step follow from equal values, so that all ranks come to the same exchange.
 
 use std::any::TypeId;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use hecs::{ArchetypeColumn, ArchetypeColumnMut};
 
 use super::access::Mode;
 use super::column::Column;
-use super::registry::{ColumnInfo, ColumnSet};
+use super::registry::ColumnInfo;
 use super::state::{MissingColumn, PhaseView};
 use crate::parallel::BLOCK;
 use crate::ranks::{self, Halo};
-
-/// Which columns of a phase are there for the rows of this rank alone, in the order of the columns.
-#[derive(Debug, Default)]
-pub(super) struct OwnOnly {
-    flags: Vec<AtomicBool>,
-    /// Whether any has ever been: on one rank none is, and every access asks.
-    any: AtomicBool,
-}
-
-impl OwnOnly {
-    pub fn of(columns: &ColumnSet) -> Self {
-        Self { flags: columns.iter().map(|_| AtomicBool::new(false)).collect(), any: AtomicBool::new(false) }
-    }
-
-    /// The column and its flag.
-    fn of_column<'s>(
-        &'s self,
-        columns: &'s ColumnSet,
-        column: TypeId,
-    ) -> Option<(&'s ColumnInfo, &'s AtomicBool)> {
-        columns.iter().zip(&self.flags).find(|(own, _)| own.type_id == column)
-    }
-
-    /// The flag of a column, if there is one and any is set.
-    fn flag<'s>(&'s self, columns: &'s ColumnSet, column: TypeId) -> Option<&'s AtomicBool> {
-        let any = self.any.load(Ordering::Relaxed);
-        any.then(|| self.of_column(columns, column))?.map(|(_, flag)| flag)
-    }
-}
 
 impl<'a> PhaseView<'a> {
     /// Column `T` for reading rows of this rank ([`own_rows`](crate::parallel::own_rows)), in a loop that is divided among ranks. The others may be old.

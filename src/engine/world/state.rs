@@ -1,20 +1,17 @@
 //! The particles: one hecs archetype per phase, in a hecs world of its own, bodies as row ranges in it.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use hecs::{Archetype, ArchetypeColumn, ArchetypeColumnMut, ColumnBatchType};
 use thiserror::Error;
 
 use super::access::{Declared, Mode, Undeclared, Watch};
-use super::body::{Body, BodyId};
+use super::body::{Body, BodyId, PhaseId};
 use super::column::Column;
-use super::own::OwnOnly;
+use super::own_only::OwnOnly;
 use super::registry::{ColumnInfo, ColumnSet};
 use crate::scene::Dimension;
-
-/// Index of a phase: the particles of one formulation, which share their columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PhaseId(pub usize);
 
 /// The particles of one formulation.
 pub struct Phase {
@@ -46,13 +43,13 @@ pub struct World {
     phases: Vec<Phase>,
     bodies: Vec<Body>,
     dimension: Dimension,
-    watch: Watch,
+    watch: Arc<Watch>,
 }
 
 impl World {
     /// A world without particles.
     pub fn new(dimension: Dimension) -> Self {
-        Self { phases: Vec::new(), bodies: Vec::new(), dimension, watch: Watch::new(Vec::new()) }
+        Self { phases: Vec::new(), bodies: Vec::new(), dimension, watch: Arc::new(Watch::new(Vec::new())) }
     }
 
     /// Two: plane strain in x-y; three.
@@ -123,7 +120,12 @@ impl World {
 
     /// From now on the accesses of systems are held against what they have declared, in the order of the schedule.
     pub(crate) fn declare(&mut self, systems: Vec<Declared>) {
-        self.watch = Watch::new(systems);
+        self.watch = Arc::new(Watch::new(systems));
+    }
+
+    /// What notes the accesses of systems; what they share asks it too.
+    pub(crate) fn watch(&self) -> Arc<Watch> {
+        Arc::clone(&self.watch)
     }
 
     /// The system that runs from now on, if one does.

@@ -36,13 +36,13 @@ const RUNS: [(usize, f64); 2] = [(3, 5.0e-7), (5, 1.0e-6)];
 /// `across` is the number of particles over the height of the rectangle.
 fn abrasive_flow(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let (starts, end) = RUNS[usize::from(across != CASE.ci_resolution)];
-    let worn: Result<Vec<Worn>> =
+    let worn: Result<Vec<WornRun>> =
         STARTS[..starts].iter().map(|&speed| wear(registry, across, speed, end)).collect();
     Ok(checks(&worn?))
 }
 
 /// What a run has come to.
-struct Worn {
+struct WornRun {
     /// Area worn off the rectangle, over its area.
     area: f64,
     /// Ra over that at the start.
@@ -61,7 +61,7 @@ struct Worn {
 }
 
 /// Runs the channel from a speed of the fluid, m/s, to `end`, s.
-fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<Worn> {
+fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<WornRun> {
     let spacing = RECTANGLE / across as f64;
     let mut simulation = Template::new(
         "assets/scenes/abrasive_flow.ron",
@@ -82,7 +82,7 @@ fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<Worn
         Ok(())
     })?;
     let at_start = 2.0 * RECTANGLE * (WIDTHS[0] / WIDTHS[1]) * (1.0 - WIDTHS[0] / WIDTHS[1]);
-    Ok(Worn {
+    Ok(WornRun {
         area: worn(&simulation, floor)? / (WIDTHS[0] * RECTANGLE),
         roughness: roughness(&simulation, floor, spacing)? / at_start,
         depth: deepest_damage(&simulation, floor, spacing)? / spacing,
@@ -95,9 +95,9 @@ fn wear(registry: &Registry, across: usize, speed: f64, end: f64) -> Result<Worn
 }
 
 /// The figures of all runs: what hangs on chance as its mean, what must hold in every run as its worst.
-fn checks(runs: &[Worn]) -> Vec<Check> {
-    let mean = |of: fn(&Worn) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
-    let largest = |of: fn(&Worn) -> f64| runs.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+fn checks(runs: &[WornRun]) -> Vec<Check> {
+    let mean = |of: fn(&WornRun) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+    let largest = |of: fn(&WornRun) -> f64| runs.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let inside = largest(|run| run.inside as f64);
     let case = "X4";
     let mut checks = vec![

@@ -18,7 +18,7 @@ pub(crate) const CASE: Case = Case {
 };
 
 /// What a run shows.
-struct Run {
+struct BoxRun {
     /// Largest change of momentum since the start, over that at the start.
     lost: f64,
     /// Largest change of momentum in a step, over that by rounding.
@@ -47,7 +47,7 @@ fn closed_box(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-fn run_in(precision: &str, registry: &Registry, across: usize) -> Result<Run> {
+fn run_in(precision: &str, registry: &Registry, across: usize) -> Result<BoxRun> {
     let spacing = 0.14 / across as f64;
     let text = include_str!("../../../tests/validation/closed_box/scene.ron");
     let mut simulation = Template::new("tests/validation/closed_box/scene.ron", text)
@@ -77,5 +77,5 @@ fn run_in(precision: &str, registry: &Registry, across: usize) -> Result<Run> {
     })?;
     let (_, short) = simulation.sub_steps().unwrap_or_default();
     let per_step = short as f64 / simulation.clock().step as f64;
-    Ok(Run { lost, in_a_step, passed, per_step, balance })
+    Ok(BoxRun { lost, in_a_step, passed, per_step, balance })
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use anyhow::Result;
 use meshless_engine::glam::{DMat3, DVec3};
-use meshless_engine::invariants::{Momenta, Net, Specimen};
+use meshless_engine::invariants::{Momenta, NetForce, Specimen};
 use meshless_engine::plugin::Registry;
 use meshless_engine::simulation::Simulation;
 use meshless_engine::world::{BodyId, Force, Position, Velocity};
@@ -53,7 +53,7 @@ fn block(registry: &Registry, across: usize, plugins: &str) -> Result<Simulation
 }
 
 /// Net force and net torque, over the sum of the sizes of the forces.
-fn net(net: Net) -> [Check; 2] {
+fn net(net: NetForce) -> [Check; 2] {
     [
         Check::below("net force over all forces", net.force, 1e-10, "exact"),
         Check::below("net torque over all forces", net.torque, 1e-10, "exact"),

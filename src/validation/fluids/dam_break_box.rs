@@ -35,14 +35,14 @@ const IMPULSE: f64 = 0.2;
 const PEAKS: [f64; 3] = [0.4, 0.2, 0.2];
 
 /// What the sensors P1 to P4 show, Pa, and the gauges H2 and H4, m.
-struct Histories {
+struct BoxHistories {
     pressure: [Record; 4],
     level: [Record; 2],
 }
 
 fn dam_break_box(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut simulation = scene(registry, HEIGHT / across as f64)?;
-    let mut measured = Histories { pressure: Default::default(), level: Default::default() };
+    let mut measured = BoxHistories { pressure: Default::default(), level: Default::default() };
     let mut next = 0.0;
     let balance = run(&mut simulation, |simulation| {
         let time = simulation.clock().time;
@@ -53,7 +53,7 @@ fn dam_break_box(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         Ok(())
     })?;
     let column = |name| Record::read(REFERENCE, "t[s]", name);
-    let reference = Histories {
+    let reference = BoxHistories {
         pressure: [column("P1[Pa]")?, column("P2[Pa]")?, column("P3[Pa]")?, column("P4[Pa]")?],
         level: [column("H2[m]")?, column("H4[m]")?],
     };
@@ -77,10 +77,10 @@ fn scene(registry: &Registry, spacing: f64) -> Result<Simulation> {
 }
 
 /// The checks; `coarse` is the spacing over that of 27 particles over the height, of which the tolerances are.
-fn compare(measured: &Histories, reference: &Histories, coarse: f64) -> Result<Vec<Check>> {
+fn compare(measured: &BoxHistories, reference: &BoxHistories, coarse: f64) -> Result<Vec<Check>> {
     let scale = 1000.0 * 9.81 * HEIGHT;
     let time = (HEIGHT / 9.81).sqrt();
-    let arrivals = |of: &Histories| -> Result<Vec<f64>> {
+    let arrivals = |of: &BoxHistories| -> Result<Vec<f64>> {
         let first = |record: &Record| record.upward_crossings(0.5 * scale).first().copied();
         of.pressure[..3].iter().map(|record| Ok(first(record).context("no impact")? / time)).collect()
     };
@@ -100,7 +100,7 @@ fn compare(measured: &Histories, reference: &Histories, coarse: f64) -> Result<V
         let tolerance = Tolerance::Absolute(tolerance * coarse);
         checks.push(check(&name, found[k] - found[0], expected[k] - expected[0], tolerance));
     }
-    let largest = |of: &Histories, k: usize| largest_mean(&of.pressure[k]) / scale;
+    let largest = |of: &BoxHistories, k: usize| largest_mean(&of.pressure[k]) / scale;
     let over = |k: usize| largest(measured, k) / largest(reference, k);
     let mean = (0..3).map(over).sum::<f64>() / 3.0;
     let of_all = PEAKS.iter().sum::<f64>() / 3.0;
@@ -112,7 +112,7 @@ fn compare(measured: &Histories, reference: &Histories, coarse: f64) -> Result<V
             checks.push(check(&name, largest(measured, k), largest(reference, k), relative(tolerance)));
         }
     }
-    let impulse = |of: &Histories, start: f64| {
+    let impulse = |of: &BoxHistories, start: f64| {
         let of_one = |record: &Record| integral(record, start * time, start * time + IMPULSE);
         of.pressure.iter().map(of_one).sum::<f64>() / 4.0
     };
@@ -136,7 +136,7 @@ fn compare(measured: &Histories, reference: &Histories, coarse: f64) -> Result<V
     Ok(checks)
 }
 
-impl Histories {
+impl BoxHistories {
     fn sample(&mut self, time: f64, simulation: &Simulation) {
         let cloud = simulation.resources().get::<FlowCloud>();
         let gravity = DVec3::new(0.0, 0.0, -9.81);

@@ -75,7 +75,7 @@ fn flow(registry: &Registry, across: usize, flow: &Flow) -> Result<Vec<Check>> {
             return Ok(());
         }
         samples += 1.0;
-        let field = Field::new(simulation, 3.0 * spacing)?;
+        let field = CavityField::new(simulation, 3.0 * spacing)?;
         let along = u.iter().map(|&(y, _)| Ok(field.at(DVec3::new(0.5, y, 0.0))?.x));
         let across = v.iter().map(|&(x, _)| Ok(field.at(DVec3::new(x, 0.5, 0.0))?.y));
         for (sum, value) in sums.iter_mut().zip(along.chain(across)) {
@@ -121,12 +121,12 @@ fn mean_density(simulation: &Simulation) -> Result<f64> {
 }
 
 /// Velocities of the fluid, fitted linearly around a place with the weights of a Wendland kernel.
-struct Field {
+struct CavityField {
     particles: Vec<(DVec3, DVec3)>,
     radius: f64,
 }
 
-impl Field {
+impl CavityField {
     fn new(simulation: &Simulation, radius: f64) -> Result<Self> {
         let (view, rows) = simulation.world().body_view(body(simulation, "fluid")?);
         let (position, velocity) = (view.read::<Position>()?, view.read::<Velocity>()?);

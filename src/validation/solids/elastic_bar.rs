@@ -27,7 +27,7 @@ const WAVE: f64 = 166.66667;
 const SOURCE: &str = "d'Alembert";
 
 /// What is seen of a run.
-struct Motion {
+struct BarMotion {
     /// Displacement of the free end, over v0 L / c.
     end: Record,
     /// High-frequency part of the last displacements along the bar, over the largest displacement.
@@ -36,7 +36,7 @@ struct Motion {
     balance: Balance,
 }
 
-impl Motion {
+impl BarMotion {
     /// The largest and the smallest displacement of the end.
     fn extremes(&self) -> (f64, f64) {
         let values = || self.end.0.iter().map(|sample| sample.1);
@@ -52,7 +52,7 @@ impl Motion {
 }
 
 /// Runs the bar; a run that breaks off has broken.
-fn bar(registry: &Registry, along: usize, formulation: &str, plugins: &str) -> Result<Motion> {
+fn bar(registry: &Registry, along: usize, formulation: &str, plugins: &str) -> Result<BarMotion> {
     let spacing = 1.0 / along as f64;
     let mut simulation = Template::new(
         "tests/validation/elastic_bar/scene.ron",
@@ -73,7 +73,7 @@ fn bar(registry: &Registry, along: usize, formulation: &str, plugins: &str) -> R
         Ok(())
     });
     let saw_tooth = if balance.is_err() { 1.0 } else { saw_tooth(&simulation, spacing)? };
-    Ok(Motion { end: record, saw_tooth, balance: balance.unwrap_or(Balance::UNKNOWN) })
+    Ok(BarMotion { end: record, saw_tooth, balance: balance.unwrap_or(Balance::UNKNOWN) })
 }
 
 /// Root mean square of the second difference of the displacements of the middle row over four, over the largest displacement.

@@ -39,7 +39,7 @@ const DEFAULT: f64 = 5.0;
 const STIFF: f64 = 25.0;
 
 /// What is seen on the way.
-struct History {
+struct PatchHistory {
     /// Mean of det F over the volume.
     dilatation: Record,
     /// Largest disorder.
@@ -55,7 +55,7 @@ struct History {
 fn patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
     for alpha in [DEFAULT, STIFF] {
-        let history = breathe(registry, across, Control::Alpha(alpha), PERIODS)?;
+        let history = breathe(registry, across, PatchControl::Alpha(alpha), PERIODS)?;
         let name = |what: &str| format!("alpha {alpha}: {what}");
         let (disorder, closest) = (history.disorder, history.closest);
         checks.extend(history.period_and_energy(name)?);
@@ -68,7 +68,7 @@ fn patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             checks.push(Check::below(order, disorder, 0.3, "bounded"));
         }
     }
-    let without = breathe(registry, across, Control::Alpha(0.0), 8.0)?;
+    let without = breathe(registry, across, PatchControl::Alpha(0.0), 8.0)?;
     checks.push(Check::above(
         "hourglass residual within 8 periods without control",
         without.disorder,
@@ -80,7 +80,7 @@ fn patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 
 /// The patch as an Eulerian body. Over 200 periods F parts from the places, so that its disorder is no check.
 fn eulerian_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    let history = breathe(registry, across, Control::Eulerian, PERIODS)?;
+    let history = breathe(registry, across, PatchControl::Eulerian, PERIODS)?;
     let closest = history.closest;
     let mut checks = history.period_and_energy(str::to_owned)?;
     checks.push(Check::above("least of |x| / |F X| in 200 periods", closest, 0.5, "coherent"));
@@ -89,14 +89,14 @@ fn eulerian_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 
 /// The patch as an updated-Lagrangian body, whose energy may drift by six times as much.
 fn updated_patch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    let history = breathe(registry, across, Control::Updated, PERIODS)?;
+    let history = breathe(registry, across, PatchControl::Updated, PERIODS)?;
     let (disorder, energy) = (history.disorder, 6.0 * ENERGY);
     let mut checks = history.period_and_energy_within(str::to_owned, energy)?;
     checks.push(Check::below("hourglass residual over 200 periods", disorder, 0.3, "bounded"));
     Ok(checks)
 }
 
-impl History {
+impl PatchHistory {
     fn period_and_energy(self, name: impl Fn(&str) -> String) -> Result<Vec<Check>> {
         self.period_and_energy_within(name, ENERGY)
     }
@@ -119,7 +119,7 @@ impl History {
 
 /// How the patch is held together.
 #[derive(Clone, Copy)]
-enum Control {
+enum PatchControl {
     /// With this coefficient, and the formulation of the registry.
     Alpha(f64),
     /// By the default of updated-Lagrangian bodies.
@@ -128,7 +128,7 @@ enum Control {
     Eulerian,
 }
 
-fn breathe(registry: &Registry, across: usize, control: Control, periods: f64) -> Result<History> {
+fn breathe(registry: &Registry, across: usize, control: PatchControl, periods: f64) -> Result<PatchHistory> {
     // 444 particles at 21 across; the support is 12 neighbours at any number.
     let spacing = 21.0 / across as f64 / 444f64.sqrt();
     let scene = Template::new(
@@ -138,23 +138,23 @@ fn breathe(registry: &Registry, across: usize, control: Control, periods: f64) -
     .set("bodies.patch.spacing", spacing)?
     .set("time.end", periods * PERIOD)?;
     let scene = match control {
-        Control::Alpha(alpha) => scene.set("bodies.patch.plugins.hourglass_control.alpha", alpha)?,
-        Control::Updated => {
+        PatchControl::Alpha(alpha) => scene.set("bodies.patch.plugins.hourglass_control.alpha", alpha)?,
+        PatchControl::Updated => {
             scene.set("bodies.patch.formulation", "UpdatedLagrangian(update: Adaptive(change: 1.0))")?
         }
-        Control::Eulerian => scene
+        PatchControl::Eulerian => scene
             .set("bodies.patch.plugins", "[hourglass_control()]")?
             .set("bodies.patch.formulation", "Eulerian()")?,
     };
     let mut simulation = scene.build(registry)?;
     let patch = body(&simulation, "patch")?;
     let disorder = Disorder::new(&simulation, patch)?;
-    if let Control::Alpha(_) = control {
+    if let PatchControl::Alpha(_) = control {
         let neighbors = disorder.mean_neighbors(&simulation);
         ensure!((11.0..13.0).contains(&neighbors), "the particles have {neighbors} neighbours");
     }
     let mut history =
-        History { dilatation: Record::default(), disorder: 0.0, closest: 1.0, energy: 0.0, end: Ok(()) };
+        PatchHistory { dilatation: Record::default(), disorder: 0.0, closest: 1.0, energy: 0.0, end: Ok(()) };
     simulation.start()?;
     let start = simulation.ledger().stored();
     let end = run(&mut simulation, |simulation| {

@@ -62,7 +62,7 @@ fn of_sphere(radius: f64) -> f64 {
 }
 
 /// A body whose inner surface is under pressure.
-struct Shell {
+struct PressurisedShell {
     scene: Template,
     /// Name of the body.
     body: &'static str,
@@ -80,7 +80,7 @@ fn ring(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     );
     let tolerance = if across < 16 { 0.03 } else { 0.01 };
     let radius = |x: DVec3| x.truncate().length();
-    let ring = Shell { scene, body: "ring", tolerance, exact: of_ring, radius };
+    let ring = PressurisedShell { scene, body: "ring", tolerance, exact: of_ring, radius };
     displacements(&ring, &at_rest(&ring, registry, across)?, across)
 }
 
@@ -91,7 +91,7 @@ fn tube(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     );
     let tolerance = if across < 16 { 0.06 } else { 0.01 };
     let radius = |x: DVec3| x.truncate().length();
-    let tube = Shell { scene, body: "shell", tolerance, exact: of_tube, radius };
+    let tube = PressurisedShell { scene, body: "shell", tolerance, exact: of_tube, radius };
     displacements(&tube, &at_rest(&tube, registry, across)?, across)
 }
 
@@ -102,7 +102,7 @@ fn sphere(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     );
     let tolerance = if across < 16 { 0.1 } else { 0.01 };
     let radius = |x: DVec3| x.length();
-    let shell = Shell { scene, body: "shell", tolerance, exact: of_sphere, radius };
+    let shell = PressurisedShell { scene, body: "shell", tolerance, exact: of_sphere, radius };
     let simulation = at_rest(&shell, registry, across)?;
     let mut checks = displacements(&shell, &simulation, across)?;
     checks.extend(at_the_surface(&simulation, across)?);
@@ -135,7 +135,7 @@ fn at_the_surface(simulation: &Simulation, across: usize) -> Result<Vec<Check>> 
 }
 
 /// The body in balance with the pressure; `across` is the number of layers across the wall.
-fn at_rest(shell: &Shell, registry: &Registry, across: usize) -> Result<Simulation> {
+fn at_rest(shell: &PressurisedShell, registry: &Registry, across: usize) -> Result<Simulation> {
     let spacing = (OUTER - INNER) / across as f64;
     let scene = shell.scene.clone().set(&format!("bodies.{}.spacing", shell.body), spacing)?;
     let mut simulation = scene.build(registry)?;
@@ -144,8 +144,8 @@ fn at_rest(shell: &Shell, registry: &Registry, across: usize) -> Result<Simulati
 }
 
 /// The radial displacement of the innermost and the outermost layer of particles over that of the closed form at their radii.
-fn displacements(shell: &Shell, simulation: &Simulation, across: usize) -> Result<Vec<Check>> {
-    let Shell { body: name, tolerance, exact, radius, .. } = *shell;
+fn displacements(shell: &PressurisedShell, simulation: &Simulation, across: usize) -> Result<Vec<Check>> {
+    let PressurisedShell { body: name, tolerance, exact, radius, .. } = *shell;
     let spacing = (OUTER - INNER) / across as f64;
     let (view, rows) = simulation.world().body_view(body(simulation, name)?);
     let (x, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);

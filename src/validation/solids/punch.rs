@@ -15,7 +15,7 @@ pub(crate) const CASE: Case =
     Case { id: "S4", title: "punch", resolutions: &[16, 22, 44], ci_resolution: 22, run: punch };
 
 /// What the block shows at a compression.
-struct Stage {
+struct PunchStage {
     compression: f64,
     /// Reaction, N per metre of thickness: corner radius and mesh to zero.
     reaction: f64,
@@ -25,13 +25,13 @@ struct Stage {
     tolerance: f64,
 }
 
-const STAGES: [Stage; 5] = [
-    Stage { compression: 0.1, reaction: 8.20e5, half_width: 3.266e-3, tolerance: 0.03 },
-    Stage { compression: 0.2, reaction: 1.691e6, half_width: 3.571e-3, tolerance: 0.03 },
-    Stage { compression: 0.3, reaction: 2.620e6, half_width: 3.889e-3, tolerance: 0.03 },
+const STAGES: [PunchStage; 5] = [
+    PunchStage { compression: 0.1, reaction: 8.20e5, half_width: 3.266e-3, tolerance: 0.03 },
+    PunchStage { compression: 0.2, reaction: 1.691e6, half_width: 3.571e-3, tolerance: 0.03 },
+    PunchStage { compression: 0.3, reaction: 2.620e6, half_width: 3.889e-3, tolerance: 0.03 },
     // Asked for are 3 % to 30 % and 5 % at 50 %.
-    Stage { compression: 0.4, reaction: 3.705e6, half_width: 4.193e-3, tolerance: 0.04 },
-    Stage { compression: 0.5, reaction: 5.09e6, half_width: 4.478e-3, tolerance: 0.05 },
+    PunchStage { compression: 0.4, reaction: 3.705e6, half_width: 4.193e-3, tolerance: 0.04 },
+    PunchStage { compression: 0.5, reaction: 5.09e6, half_width: 4.478e-3, tolerance: 0.05 },
 ];
 /// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle that is free at its sides.
 const WIDE: [(f64, f64); 3] = [(0.1, 8.62e5), (0.2, 2.024e6), (0.25, 2.772e6)];
@@ -54,7 +54,7 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let last = reactions.last().context("no step")?;
     ensure!(last.0 > 0.5, "pressed to {} only", last.0);
     let mut checks = Vec::new();
-    for Stage { compression, reaction, half_width, tolerance } in STAGES {
+    for PunchStage { compression, reaction, half_width, tolerance } in STAGES {
         let name = |what: &str| format!("{what} at {:.0} %", 100.0 * compression);
         let tolerance = Tolerance::Relative(tolerance);
         let force = at(&reactions, compression)?;

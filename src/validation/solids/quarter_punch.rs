@@ -23,7 +23,7 @@ const STABILIZERS: [(&str, &str); 2] =
     [("Hessian", "hessian_stabilization(eta: 1.4)"), ("hourglass", "hourglass_control(alpha: 10.0)")];
 
 /// What is left at the end.
-struct Pressed {
+struct PressedBlock {
     /// Whether the run has reached its end.
     completed: bool,
     /// Root mean square of |F X - x| / |X| of neighbours of the start.
@@ -34,7 +34,7 @@ struct Pressed {
     volume: f64,
 }
 
-fn press(registry: &Registry, across: usize, formulation: &str, plugin: &str) -> Result<Pressed> {
+fn press(registry: &Registry, across: usize, formulation: &str, plugin: &str) -> Result<PressedBlock> {
     let mut simulation = Template::new(
         "tests/validation/quarter_punch/scene.ron",
         include_str!("../../../tests/validation/quarter_punch/scene.ron"),
@@ -45,7 +45,7 @@ fn press(registry: &Registry, across: usize, formulation: &str, plugin: &str) ->
     .build(registry)?;
     let disorder = Disorder::new(&simulation, body(&simulation, "block")?)?;
     let balance = run(&mut simulation, |_| Ok(()));
-    Ok(Pressed {
+    Ok(PressedBlock {
         completed: balance.is_ok(),
         disorder: disorder.measure(&simulation)?,
         balance: balance.unwrap_or(Balance::UNKNOWN),
@@ -70,7 +70,7 @@ fn quarter_punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         checks.push(Check::above(name, spoiled, 0.3, "spoiled"));
     }
     for (stabilizer, plugin) in STABILIZERS {
-        let Pressed { completed, disorder, balance, volume } = press(registry, across, updated, plugin)?;
+        let PressedBlock { completed, disorder, balance, volume } = press(registry, across, updated, plugin)?;
         let name = |what: &str| format!("{stabilizer}: {what}");
         checks.push(Check::above(name("completed"), f64::from(completed), 0.5, "paper, 4.3"));
         let share = disorder / spoiled;

@@ -8,7 +8,7 @@ use meshless_engine::world::{BodyId, DeformationGradient, PlasticStrain, Positio
 use crate::measure::{Balance, run};
 
 /// The shape of a bar at the end of a run.
-pub struct Shape {
+pub struct BarShape {
     /// Extent along the axis, m.
     pub length: f64,
     /// Largest distance of its surface from the axis, m.
@@ -20,13 +20,13 @@ pub struct Shape {
 }
 
 /// Runs a bar to the end; its axis is `axis` through the origin.
-pub fn impact(simulation: &mut Simulation, axis: DVec3) -> Result<Shape> {
+pub fn impact(simulation: &mut Simulation, axis: DVec3) -> Result<BarShape> {
     let balance = run(simulation, |_| Ok(()))?;
     measure(simulation, axis, balance)
 }
 
 /// The surface is half a spacing from the outermost particles, carried by their deformation gradients.
-fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<Shape> {
+fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<BarShape> {
     let (view, rows) = simulation.world().body_view(BodyId(0));
     let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
     let gradient = view.read::<DeformationGradient>()?;
@@ -46,7 +46,7 @@ fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<Sha
         plastic_strain = plastic_strain.max(strain[row].0);
     }
     (low < high).then_some(()).context("the bar has no extent")?;
-    Ok(Shape { length: high - low, radius, plastic_strain, balance })
+    Ok(BarShape { length: high - low, radius, plastic_strain, balance })
 }
 
 /// Where the points are of two lines of the surface along the bar, which the scene has probes for: one in a plane of the lattice and the axis, one between two such planes.

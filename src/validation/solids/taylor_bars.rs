@@ -4,7 +4,7 @@ use anyhow::Result;
 use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
 
-use super::taylor::{Shape, impact, largest_radius, sides};
+use super::taylor::{BarShape, impact, largest_radius, sides};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
 use crate::measure::Kind;
@@ -34,7 +34,7 @@ pub(crate) const ALUMINIUM: Case = Case {
     run: aluminium,
 };
 
-fn shape(registry: &Registry, path: &str, text: &str, diameter: f64, across: usize) -> Result<Shape> {
+fn shape(registry: &Registry, path: &str, text: &str, diameter: f64, across: usize) -> Result<BarShape> {
     let spacing = diameter / across as f64;
     let template = Template::new(path, text).set("bodies.bar.spacing", spacing)?;
     impact(&mut template.build(registry)?, DVec3::Z)
@@ -64,7 +64,7 @@ fn aluminium(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut simulation = template.build(registry)?;
     let shape = impact(&mut simulation, DVec3::Z)?;
     // Cells of particles reach beyond the surface at the sharp rim of the foot; the surface encloses the volume of the body.
-    let shape = Shape { radius: largest_radius(&sides(&simulation)?), ..shape };
+    let shape = BarShape { radius: largest_radius(&sides(&simulation)?), ..shape };
     let of_radius = if across < 16 { 0.1 } else { 0.06 };
     Ok(checks(&shape, (0.026304, 0.03), (0.00725, of_radius), 1.5))
 }
@@ -72,7 +72,7 @@ fn aluminium(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 const SOURCE: &str = "published spread and finite elements, reference.csv";
 
 fn checks(
-    shape: &Shape,
+    shape: &BarShape,
     (length, of_length): (f64, f64),
     (radius, of_radius): (f64, f64),
     strain: f64,

@@ -5,7 +5,7 @@ use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
 use meshless_engine::world::BodyId;
 
-use super::taylor::{Shape, impact};
+use super::taylor::{BarShape, impact};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
 use crate::measure::{Disorder, Kind};
@@ -53,7 +53,7 @@ fn taylor_plane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-fn bar(registry: &Registry, across: usize, plugins: &str) -> Result<(Shape, f64)> {
+fn bar(registry: &Registry, across: usize, plugins: &str) -> Result<(BarShape, f64)> {
     let text = include_str!("../../../tests/validation/taylor_plane/scene.ron");
     let mut simulation = Template::new("tests/validation/taylor_plane/scene.ron", text)
         .set("bodies.bar.spacing", 3.91e-3 / across as f64)?

@@ -5,7 +5,7 @@ use meshless_engine::glam::DVec3;
 use meshless_engine::plugin::Registry;
 use meshless_engine::world::{BodyId, DeformationGradient, Mass};
 
-use super::taylor::{Shape, impact};
+use super::taylor::{BarShape, impact};
 use crate::case::Case;
 use crate::check::{Check, Tolerance};
 use crate::measure::Kind;
@@ -28,7 +28,7 @@ fn taylor_soft(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let (shape, volume) = bar(registry, across, "UpdatedLagrangian()")?;
     let (fixed, _) = bar(registry, across, "TotalLagrangian")?;
     let source = "finite elements, reference.csv";
-    let error = |shape: &Shape| (shape.length / LENGTH - 1.0).abs();
+    let error = |shape: &BarShape| (shape.length / LENGTH - 1.0).abs();
     Ok(vec![
         Check::new("length", shape.length, LENGTH, Tolerance::Relative(0.02), "m", source).converging(),
         Check::new("largest radius", shape.radius, RADIUS, Tolerance::Relative(0.06), "m", source)
@@ -45,7 +45,7 @@ fn taylor_soft(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 }
 
 /// The shape of a bar of that formulation at the end, and the mean of its volume over that of the start.
-fn bar(registry: &Registry, across: usize, formulation: &str) -> Result<(Shape, f64)> {
+fn bar(registry: &Registry, across: usize, formulation: &str) -> Result<(BarShape, f64)> {
     let text = include_str!("../../../tests/validation/taylor_soft/scene.ron");
     let mut simulation = Template::new("tests/validation/taylor_soft/scene.ron", text)
         .set("bodies.bar.spacing", DIAMETER / across as f64)?

@@ -89,7 +89,7 @@ fn height_of(simulation: &Simulation, billet: BodyId) -> Result<f64> {
     Ok(face(1.0) - face(-1.0))
 }
 
-struct Shape {
+struct BilletShape {
     volume: f64,
     radius: f64,
     bulge: f64,
@@ -97,7 +97,7 @@ struct Shape {
 }
 
 /// Radii are those of the second moment, r^2 = 2 <x^2 + y^2> weighted by volume: that of a disc.
-fn measure(simulation: &Simulation, billet: BodyId) -> Result<Shape> {
+fn measure(simulation: &Simulation, billet: BodyId) -> Result<BilletShape> {
     let (view, rows) = simulation.world().body_view(billet);
     let (position, reference) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);
     let (gradient, strain) = (view.read::<DeformationGradient>()?, view.read::<PlasticStrain>()?);
@@ -110,7 +110,7 @@ fn measure(simulation: &Simulation, billet: BodyId) -> Result<Shape> {
     let from_middle = |row: usize| (reference[row].0.z / HEIGHT - 0.5).abs();
     let (middle, ends) =
         (mean(&square, &|row| from_middle(row) < 0.15), mean(&square, &|row| from_middle(row) > 0.35));
-    Ok(Shape {
+    Ok(BilletShape {
         volume: mean(&|row| gradient[row].0.determinant(), &|_| true),
         radius: mean(&square, &|_| true).sqrt(),
         bulge: (middle / ends).sqrt(),

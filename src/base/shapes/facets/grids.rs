@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::{Facets, coarse, contour, refine, round};
-use crate::shapes::check::Check;
+use crate::shapes::check::ShapeCheck;
 use crate::shapes::concentric::Rings;
 use crate::shapes::mesh;
 use crate::shapes::shape::Shape;
@@ -27,7 +27,7 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
 
 /// The surface of a single shape, and of combinations whose parts are apart or hollow.
 fn exact(shape: &Shape, folder: &Path, length: f64) -> Option<Facets> {
-    let check = Check { dimension: Dimension::Three, folder, path: "shape" };
+    let check = ShapeCheck { dimension: Dimension::Three, folder, path: "shape" };
     Some(match shape {
         Shape::Box { min, max } => block(min.0, max.0, length),
         Shape::Sphere { center, radius } => round::sphere(center.0, *radius, length),

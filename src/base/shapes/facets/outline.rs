@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::{Facets, contour, cut};
-use crate::shapes::check::Check;
+use crate::shapes::check::ShapeCheck;
 use crate::shapes::region::Aabb;
 use crate::shapes::shape::Shape;
 use crate::shapes::transform::turned;
@@ -60,7 +60,7 @@ fn is_single(shape: &Shape) -> bool {
 
 /// The outlines of all parts of a shape, each as if it were alone.
 fn leaves(shape: &Shape, within: &Aabb, length: f64) -> Option<Facets> {
-    let check = Check { dimension: Dimension::Two, folder: Path::new(""), path: "shape" };
+    let check = ShapeCheck { dimension: Dimension::Two, folder: Path::new(""), path: "shape" };
     let all = |shapes: &mut dyn Iterator<Item = &Shape>| {
         let mut sum = Facets { axes: 2, ..Facets::default() };
         for shape in shapes {

@@ -74,18 +74,18 @@ impl ContactNodes {
 
     /// Makes room for that many candidates.
     pub fn reserve(&mut self, candidates: usize) {
-        fn room<V>(list: &mut Vec<V>, count: usize) {
+        fn make_room<V>(list: &mut Vec<V>, count: usize) {
             list.reserve(count.saturating_sub(list.len()));
         }
-        room(&mut self.ends, 2 * candidates);
+        make_room(&mut self.ends, 2 * candidates);
         let count = (2 * candidates).min(self.numbers.len());
-        room(&mut self.nodes, count);
-        room(&mut self.starts, count + 1);
-        room(&mut self.local_motions, count);
-        room(&mut self.forces, count);
-        room(&mut self.couples, count);
-        room(&mut self.stiffness, count);
-        room(&mut self.heat, count);
+        make_room(&mut self.nodes, count);
+        make_room(&mut self.starts, count + 1);
+        make_room(&mut self.local_motions, count);
+        make_room(&mut self.forces, count);
+        make_room(&mut self.couples, count);
+        make_room(&mut self.stiffness, count);
+        make_room(&mut self.heat, count);
     }
 
     /// Takes in the particles of a new list of candidates, which stand at these ends.

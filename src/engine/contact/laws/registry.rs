@@ -1,7 +1,7 @@
 //! Contact laws in the registry.
 
 use super::law::{ContactLaw, ContactPair, NormalForce};
-use crate::plugin::{Kind, Registry, SetupError};
+use crate::plugin::{EntryKind, Registry, SetupError};
 use crate::scene::{Item, Problem};
 
 type BuildContactLaw = fn(&Item, &ContactPair) -> Result<Box<dyn NormalForce>, Vec<Problem>>;
@@ -13,7 +13,7 @@ impl Registry {
             let law: L = item.parse()?;
             law.build(pair).map_err(|error| SetupError::from(error).into_problems(item))
         };
-        self.add_builder::<L, _>(Kind::ContactLaw, L::NAME, L::REFERENCE, build)
+        self.add_builder::<L, _>(EntryKind::ContactLaw, L::NAME, L::REFERENCE, build)
     }
 
     pub(crate) fn build_contact_law(
@@ -21,6 +21,6 @@ impl Registry {
         item: &Item,
         pair: &ContactPair,
     ) -> Result<Box<dyn NormalForce>, Vec<Problem>> {
-        self.builder::<BuildContactLaw>(Kind::ContactLaw, item)?(item, pair)
+        self.builder::<BuildContactLaw>(EntryKind::ContactLaw, item)?(item, pair)
     }
 }

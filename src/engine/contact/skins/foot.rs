@@ -84,7 +84,8 @@ impl CloseFacets {
     #[inline(always)]
     pub fn find<'a>(
         &'a mut self,
-        (number, own): (u32, &FacetPlace),
+        number: u32,
+        own: &FacetPlace,
         near: &NearFacets<'a>,
         farthest: f64,
     ) -> &'a [u32] {

@@ -159,7 +159,7 @@ impl SkinSide<'_> {
         let FacetPoint { facet, shares } = self.point(point);
         let (own, farthest) = (&self.places[0][facet as usize], DEPTH * self.length);
         let near = NearFacets { patch: self.other, places: self.places[1], facets, periodic: self.periodic };
-        let facets = close.find((facet, own), &near, farthest);
+        let facets = close.find(facet, own, &near, farthest);
         let foot = foot(&NearFacets { facets, ..near }, own.point(shares), farthest)?;
         Some(PointTouch { foot, weight: 0.0 })
     }

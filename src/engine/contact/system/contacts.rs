@@ -6,8 +6,10 @@ use super::touching::{Saved, Touching};
 use crate::contact::bodies::{CONTACT, MotionBounds, NodeTurn};
 use crate::contact::response::{CHANGE_OF_SURFACE, ContactEnergy, energy};
 use crate::plugin::SimBuilder;
-use crate::rigid::{RigidBodies, Wrench};
+use crate::removal::LEAVING;
+use crate::rigid::{RIGID_BODIES, RigidBodies, Wrench};
 use crate::schedule::{AccountKind, Mode, Resources, Run, Shared, Stage, Step, StepError, System};
+use crate::solids::{CORRECTED_STRESS, PACKED_SOLID};
 use crate::world::{
     Body, BodyId, BodySet, Damage, DeformationGradient, Force, Mass, Mobility, Position, ReferencePosition,
     Removed, Temperature, Velocity,
@@ -47,7 +49,7 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
     let contacts = sim.share(contacts);
     let mut system = System::new(Stage::Boundary, CONTACT, ContactSystem(contacts));
     if deforms {
-        system = system.reads_near::<DeformationGradient>().touches("corrected_stress", Mode::Adds);
+        system = system.reads_near::<DeformationGradient>().touches(CORRECTED_STRESS, Mode::Adds);
     }
     if can_break {
         system = system.reads_near::<Damage>();
@@ -61,7 +63,9 @@ pub(in crate::contact) fn add(sim: &mut SimBuilder<'_>, planned: Planned, bodies
             .reads_near::<Mobility>()
             .reads_near::<Removed>()
             .reads::<Mass>()
-            .touches("rigid_bodies", Mode::Adds),
+            .touches(PACKED_SOLID, Mode::ReadsNear)
+            .touches(LEAVING, Mode::Reads)
+            .touches_packed(RIGID_BODIES, Mode::Adds),
     );
     let push = move |step: &mut Step<'_>| step.resources.of(contacts).push(step);
     let system = System::new(Stage::External, CONTACT_FORCE, push).on_phases(phases).adds::<Force>();

@@ -18,90 +18,18 @@
 use glam::DMat3;
 
 use super::control_pairs::ControlPairs;
-use super::parameters::Divergence;
+use super::control_rows::{BodyControl, EulerianControlRows};
+use super::divergence::{Divergence, corrected};
 use super::rows::EulerianRows;
-use super::stress::corrected;
 use crate::column;
 use crate::parallel::{
     FourLanes, HotLoop, Lanes4, for_each_own_block, run_hot_on, share_rows, split_by_rows,
 };
 use crate::solids::{CorrectedStress, CorrectedStressRows, FoldedEnergy};
-use crate::symmetry::Map;
 
 column! {
     /// Energy of the hourglass control along pairs: half of that of all pairs of the particle.
     pub struct HourglassEnergy(f64) = "hourglass_energy", "U_h", "J";
-}
-
-/// What a particle carries along from the start, as its neighbours read it.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub(super) struct Carried {
-    /// The columns of F, and in their last lanes the modulus of the control, that of the last step, Pa, and the reference volume, m3.
-    pub columns: [Lanes4; 3],
-    /// X.
-    pub original: Lanes4,
-}
-
-impl Carried {
-    /// Takes up F, the modulus, Pa, and the reference volume, m3.
-    pub fn set(&mut self, f: &DMat3, modulus: f64, volume: f64) {
-        let before = self.columns[1].0[3];
-        self.columns =
-            [Lanes4::new(f.x_axis, modulus), Lanes4::new(f.y_axis, before), Lanes4::new(f.z_axis, volume)];
-    }
-
-    /// Takes up the modulus of the last step, Pa.
-    pub fn set_modulus_before(&mut self, modulus: f64) {
-        self.columns[1].0[3] = modulus;
-    }
-
-    fn deformation(&self) -> DMat3 {
-        let [x, y, z] = self.columns;
-        DMat3::from_cols(x.xyz(), y.xyz(), z.xyz())
-    }
-
-    #[inline(always)]
-    fn volume(&self) -> f64 {
-        self.columns[2].0[3]
-    }
-
-    /// That of a ghost.
-    pub fn image(&self, map: &Map) -> Self {
-        let mut image = Self { original: Lanes4::new(map.place(self.original.xyz()), 0.0), ..*self };
-        for (axis, column) in image.columns.iter_mut().enumerate() {
-            *column = Lanes4::new(column.xyz() * map.signs * map.signs[axis], column.0[3]);
-        }
-        image
-    }
-}
-
-/// What the pass writes of every row.
-#[derive(Default)]
-pub(super) struct EulerianControlRows {
-    /// Force at fixed F, N.
-    pub force: Vec<Lanes4>,
-    /// Sum of the stiffnesses of the pairs over the mass of the particle, 1/s2.
-    pub stiffness: Vec<f64>,
-    sums: Vec<FoldedEnergy>,
-}
-
-/// The control of a body.
-#[derive(Clone, Copy)]
-pub(super) struct BodyControl {
-    pub xi: f64,
-    /// Coefficient of the error across a pair over xi, for each Pa of the lesser modulus of the pair, 1/Pa.
-    pub across: f64,
-    /// Density rho_0, kg/m3.
-    pub density: f64,
-}
-
-impl EulerianControlRows {
-    /// Room for real rows.
-    pub fn resize(&mut self, rows: usize) {
-        self.force.resize(rows, Lanes4::ZERO);
-        self.stiffness.resize(rows, 0.0);
-    }
 }
 
 /// Runs the pass over body `k`: adds the stress of the control to what is there, writes its forces, and gives its energy. `energy` are the rows of

@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::control::Carried;
+use super::control_rows::Carried;
 use super::near::EulerianNeighbors;
-use super::rows::EulerianParticle;
+use super::particle::EulerianParticle;
 use crate::parallel::{FourLanes, Lanes4, Matrix, Number, Vector};
 
 /// The pairs of a body.

@@ -1,7 +1,7 @@
 //! The neighbours within the support at the end of a step, with their weights, and the sums that correct the gradient.
 
+use super::particle::EulerianParticle;
 use crate::correction::MomentMatrix;
-use crate::formulations::eulerian::rows::EulerianParticle;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::linalg::Sym3;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, Split, run_hot_in};

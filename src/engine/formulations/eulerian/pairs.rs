@@ -4,10 +4,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::rows::{EulerianParticle, EulerianRows};
+use super::particle::EulerianParticle;
+use super::rows::EulerianRows;
 use crate::pair::{Extras, FourVectors, PairBatch, PairReads, PairRows, PairSource, RowSlots, WeightAt};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Vector, run_hot_on};
-use crate::schedule::{Step, StepError};
+use crate::schedule::{Access, Mode, Step, StepError};
+use crate::solids::PACKED_SOLID;
 use crate::world::{BodyId, PhaseId};
 
 /// Gives pair terms the neighbours of the phase.
@@ -24,6 +26,10 @@ impl PairSource for EulerianPairs {
         let packed = step.resources.solid_rows::<EulerianRows>(self.0);
         let Some(body) = packed.lists.bodies.iter().find(|of| of.id == body) else { return Ok(()) };
         run(&PairsOfEulerianBody { packed: &packed, support: body.support })
+    }
+
+    fn access(&self) -> Vec<Access> {
+        vec![Access { column: PACKED_SOLID, mode: Mode::ReadsNear }]
     }
 }
 

@@ -2,19 +2,21 @@
 
 use glam::DMat3;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::artificial_stress::{ArtificialStress, TensileStress};
-use super::control::{BodyControl, EulerianControlRows, HourglassEnergy};
+use super::control::HourglassEnergy;
+use super::control_rows::{BodyControl, EulerianControlRows};
 use super::dilatation::DilatationRate;
+use super::divergence::Divergence;
 use super::force::EulerianForce;
 use super::lists::{EulerianBody, EulerianLists};
 use super::near::{EulerianNeighbors, LookAtBlock, NearbyMotion, NeighborRows};
 use super::pairs::EulerianPairs;
-use super::rates::VelocityGradients;
+use super::rates::{RATES, VelocityGradients};
 use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use super::stress::Stress;
-use crate::formulations::total_lagrangian::{HeldBody, all_shares, balanced_shares};
+use crate::formulations::bonded::{HeldBody, all_shares, balanced_shares};
 use crate::kernels::{Kernel, KernelName};
 use crate::linalg::Sym3;
 use crate::pair::add_pair_systems;
@@ -22,7 +24,7 @@ use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, Setup, SetupError, S
 use crate::removal::Leaving;
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{SolidBodies, TakenUp, require_support};
+use crate::solids::{CORRECTED_STRESS, PACKED_SOLID, SolidBodies, TakenUp, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, BodySet, Column, ColumnSet, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -43,16 +45,6 @@ pub struct Eulerian {
     pub artificial_stress: Option<ArtificialStress>,
 }
 
-/// How the force comes from the stress.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-pub enum Divergence {
-    /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are kept.
-    #[default]
-    Adjoint,
-    /// That of the paper (eqs. 10-11), with stresses over the sum of the kernel: momentum is kept, angular momentum and energy are not.
-    Shepard,
-}
-
 /// Support radius over spacing, where the scene gives none: a smoothing length of 1.3 spacings, as in the paper.
 const USUAL_SUPPORT: f64 = 2.6;
 
@@ -67,8 +59,6 @@ impl Default for Eulerian {
     }
 }
 
-/// Label of the system that makes velocity and deformation gradients.
-pub(super) const RATES: &str = "eulerian_rates";
 /// Label of the system that makes stress and corrected stress.
 const STRESS: &str = "eulerian_stress";
 /// Label of the system that makes the internal force.
@@ -169,7 +159,8 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
         .reads_near::<Removed>()
         .reads_near::<Velocity>()
         .reads_near::<DeformationGradient>()
-        .writes::<DeformationGradient>();
+        .writes::<DeformationGradient>()
+        .touches(PACKED_SOLID, Mode::Writes);
     let is_dilated = sim.columns(phase).get(DilatationRate::NAME).is_some();
     sim.add_system(if is_dilated { rates.reads::<DilatationRate>() } else { rates });
     let state = stress.access();
@@ -190,7 +181,7 @@ fn add_systems(phase: PhaseId, stress: Stress, sim: &mut SimBuilder<'_>) {
     let force = EulerianForce { phase, gravity: sim.gravity() };
     let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
     sim.add_system(
-        force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),
+        force.reads_near::<Position>().touches(CORRECTED_STRESS, Mode::ReadsNear).writes::<Force>(),
     );
 }
 

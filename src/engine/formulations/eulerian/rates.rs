@@ -7,16 +7,20 @@ use glam::{DMat3, DVec3};
 
 use super::dilatation::{DilatationRate, gradient};
 use super::near::LEAST_SPREAD;
-use super::rows::{EulerianParticle, EulerianRows, PointColumns};
+use super::particle::EulerianParticle;
+use super::rows::{EulerianRows, PointColumns};
 use super::start;
 use crate::correction::MomentMatrix;
-use crate::formulations::total_lagrangian::fit;
 use crate::kernels::{Kernel, KernelProfile, KernelVisitor, ProfiledKernel, ScaledKernel};
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_own_block, run_hot_in, share_rows};
 use crate::schedule::{Run, Step, StepError};
+use crate::solids::fit;
 use crate::world::{
     DeformationGradient, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed, Velocity, World,
 };
+
+/// Label of the system that makes velocity and deformation gradients.
+pub(super) const RATES: &str = "eulerian_rates";
 
 /// The system.
 pub(super) struct VelocityGradients {
@@ -67,7 +71,7 @@ fn update_lists(
 ) -> Result<(), StepError> {
     packed.update_lists(position, reference).map_err(|(body, error)| {
         let message = format!("neighbours of body `{}` cannot be listed: {error}", world.body(body).name);
-        StepError::System { system: super::parameters::RATES.to_owned(), message }
+        StepError::System { system: RATES.to_owned(), message }
     })
 }
 

@@ -1,36 +1,17 @@
 //! The packed rows of the phase.
 
-use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 
-use super::control::{BodyControl, Carried, EulerianControlRows};
+use super::control_rows::{BodyControl, Carried, EulerianControlRows};
+use super::divergence::Divergence;
 use super::lists::EulerianLists;
 use super::near::EulerianNeighbors;
-use super::parameters::Divergence;
+use super::particle::EulerianParticle;
 use crate::kernels::Kernel;
 use crate::parallel::{Lanes4, for_each_block};
 use crate::solids::CorrectedStress;
-use crate::symmetry::{Ghost, Map};
+use crate::symmetry::Ghost;
 use crate::world::{DeformationGradient, Position, ReferenceVolume, Velocity};
-
-/// A particle as its neighbours read it.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C, align(64))]
-pub(super) struct EulerianParticle {
-    /// x, and the reference volume V_0 in the last lane: zero for a removed particle.
-    pub place: Lanes4,
-    /// v, and the present volume V in the last lane.
-    pub velocity: Lanes4,
-}
-
-impl EulerianParticle {
-    fn image(&self, map: &Map) -> Self {
-        Self {
-            place: Lanes4::new(map.place(self.place.xyz()), self.place.0[3]),
-            velocity: Lanes4::new(map.vector(self.velocity.xyz()), self.velocity.0[3]),
-        }
-    }
-}
 
 /// How the sums of a body are taken.
 #[derive(Clone, Copy)]

@@ -3,12 +3,14 @@
 use glam::{DMat3, DVec3};
 
 use super::artificial_stress;
-use super::control::{self, Carried, HourglassEnergy};
+use super::control::{self, HourglassEnergy};
+use super::control_rows::Carried;
 use super::dilatation::Dilatation;
+use super::divergence::{Divergence, corrected};
 use super::force;
 use super::near::{LookAtBlock, NearbyMotion, NeighborRows};
-use super::parameters::Divergence;
-use super::rows::{EulerianKernel, EulerianParticle, EulerianRows, PointColumns};
+use super::particle::EulerianParticle;
+use super::rows::{EulerianKernel, EulerianRows, PointColumns};
 use crate::linalg::Sym3;
 use crate::parallel::{Lanes4, Largest, split_by_rows, sum_over_blocks};
 use crate::removal::REMOVED_ENERGY;
@@ -311,25 +313,6 @@ impl StressPass<'_> {
         }
         sum.close(&rows, block);
         sum
-    }
-}
-
-/// What neighbours read of the Kirchhoff stress of a particle of that mass.
-#[inline(always)]
-pub(super) fn corrected(
-    divergence: Divergence,
-    stress: &DMat3,
-    around: &NearbyMotion,
-    mass: f64,
-    point: &EulerianParticle,
-) -> DMat3 {
-    match divergence {
-        Divergence::Adjoint => *stress * around.inverse_moment.to_matrix(),
-        Divergence::Shepard => {
-            let (reference, volume) = (point.place.0[3], point.velocity.0[3]);
-            let density = mass / volume;
-            *stress * (reference / (volume * density * density * around.filled))
-        }
     }
 }
 

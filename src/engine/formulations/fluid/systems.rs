@@ -119,7 +119,7 @@ pub fn add(
 
 /// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
-    let pulls = groups.iter().any(Group::pulls);
+    let has_suction = groups.iter().any(Group::has_suction);
     let mut before = COMPRESSION;
     if let Some(edges) = EdgeMotion::new(groups, sim) {
         sim.add_system(
@@ -147,7 +147,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
         );
         before = WALL_ENDS;
     }
-    if pulls {
+    if has_suction {
         sim.add_system(
             System::new(Stage::Neighbors, WALL_COMPRESSION, WallCompression::default())
                 .on_phases([fluid])
@@ -159,7 +159,7 @@ fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId
     }
     let is_soft = |body: &BodyPlan| body.kind == BodyKind::Solid && boundaries.contains(&body.phase);
     if sim.bodies().iter().any(is_soft) {
-        let before = if pulls { WALL_COMPRESSION } else { before };
+        let before = if has_suction { WALL_COMPRESSION } else { before };
         sim.add_system(
             System::new(Stage::Neighbors, "stretching_surfaces", SurfaceStretching::default())
                 .on_phases([fluid])

@@ -6,12 +6,10 @@
 
 use glam::DVec3;
 
-use super::bonds::Bonds;
-use super::cracks::{EdgeRows, Mark};
-use super::frame::{AffineFrame, CompleteStress};
-use super::gather::{AddIdentity, CorrectStress, Gather, Written};
-use super::hessian::HessianBlock;
-use super::rows::PackedParticle;
+use crate::formulations::bonded::{
+    AddIdentity, AffineFrame, Bonds, CompleteStress, CorrectStress, EdgeRows, Gather, HessianBlock, Mark,
+    PackedParticle, Written,
+};
 use crate::linalg::Sym3;
 use crate::parallel::{BLOCK, Split, run_hot, run_hot_in};
 use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidSum};

@@ -6,9 +6,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::cracks::{CrackEdge, EdgeRows, Mark};
 use super::deformation::DeformationPass;
 use crate::correction::MomentMatrix;
+use crate::formulations::bonded::{CrackEdge, EdgeRows, Mark};
 use crate::linalg::dyad;
 use crate::solids::{Constitutive, FoldedEnergy, FoldedRows, FoldedTerm, SolidSum};
 
@@ -72,7 +72,7 @@ impl DeformationPass<'_> {
         (edge.stress, edge.stiffness) = (DMat3::ZERO, 0.0);
         let i = edge.row as usize;
         let held = |mark: Mark| mark != Mark::Failed;
-        let holds = |mark: Mark| mark == Mark::Holds;
+        let holds = |mark: Mark| mark == Mark::Intact;
         let of_all = row.displacement_gradient[0];
         let old = edge.is_new.then(|| self.fit(i, of_all, held));
         let new = self.fit(i, of_all, holds);

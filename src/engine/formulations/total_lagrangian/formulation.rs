@@ -5,18 +5,17 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::internal_force;
-use super::pairs::BondPairs;
 use super::phase::PackedRows;
-use super::set_up::{BodySetUp, SetUp};
-use super::support::choose_support;
+use super::set_up::SetUp;
 use super::system::Deformation;
+use crate::formulations::bonded::{BodySetUp, BondPairs, choose_support};
 use crate::kernels::KernelName;
 use crate::notation::{number, quantity};
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, Step, System};
-use crate::solids::{SolidBodies, TakenUp};
+use crate::solids::{CORRECTED_STRESS, SolidBodies, TakenUp};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, ColumnSet, DeformationGradient, Force, Mass, PiolaStress, Position, ReferencePosition,
@@ -129,7 +128,7 @@ impl Formulation for TotalLagrangian {
             .on_phases([phase])
             .reads::<Mass>()
             .reads_near::<Position>()
-            .touches("corrected_stress", Mode::ReadsNear)
+            .touches(CORRECTED_STRESS, Mode::ReadsNear)
             .writes::<Force>(),
         );
         add_pair_systems(sim, phase, BondPairs::<PackedRows>::of(phase))?;

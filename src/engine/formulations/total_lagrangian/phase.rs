@@ -4,12 +4,9 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::bonds::Bonds;
-use super::cracks::Cracks;
-use super::frame::{AffineFrame, fill_ghosts};
-use super::hessian::HessianRows;
-use super::pairs::{BodyKernel, BondedRows};
-use super::rows::PackedParticle;
+use crate::formulations::bonded::{
+    AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, HessianRows, PackedParticle, fill_ghosts,
+};
 use crate::parallel::{BLOCK, FourLanes, HotLoop, Lanes4, Picked, for_each_block, own_rows, run_hot};
 use crate::ranks::Halo;
 use crate::solids::{CorrectedStress, LocalMotion, SolidPhase};
@@ -71,7 +68,7 @@ impl PackedRows {
     /// Fills the stresses of the ghosts, which have their sites.
     pub fn fill_ghost_stresses(&mut self) {
         let Self { ghosts, frames, sites, stresses, hessian, .. } = self;
-        fill_ghosts(ghosts, frames, sites, stresses, |row| hessian.pull_of(row));
+        fill_ghosts(ghosts, frames, sites, stresses, |row| hessian.bond_force_of(row));
     }
 }
 
@@ -95,9 +92,7 @@ impl SolidPhase for PackedRows {
     }
 
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
-        for (j, weight) in self.bonds.row(row).filter(|(j, _)| self.sites[*j].is_present()) {
-            f(j, f64::from(weight));
-        }
+        self.bonds.for_each_present(&self.sites, row, f);
     }
 
     fn local_motion(

@@ -2,11 +2,9 @@
 
 use glam::DMat3;
 
-use super::bonds::Bonds;
-use super::internal_force::InternalForce;
 use super::phase::PackedRows;
-use super::rows::PackedParticle;
 use super::system::Deformation;
+use crate::formulations::bonded::{Bonds, InternalForce, PackedParticle};
 use crate::linalg::dyad;
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{AccountKind, Step, StepError};

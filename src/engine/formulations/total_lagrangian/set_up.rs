@@ -4,68 +4,20 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::balance::HeldBody;
-use super::bonds::{BodyBonds, Bonds};
-use super::cracks::Cracks;
-use super::held::HeldParticles;
-use super::hessian::HessianRows;
-use super::pairs::BodyKernel;
 use super::phase::PackedRows;
-use super::rows::PackedParticle;
-use super::support::choose_support;
-use crate::kernels::{Kernel, KernelName};
+use crate::formulations::bonded::{
+    BodyBonds, BodySetUp, Bonds, Cracks, HeldParticles, HessianRows, PackedParticle, choose_support, held_of,
+};
 use crate::neighbors::NeighborSearch;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::ranks::Halo;
 use crate::removal::Leaving;
-use crate::solids::{CorrectedStress, HessianDifference, StepEstimate};
-use crate::symmetry::{Ghosts, Repeat};
+use crate::solids::CorrectedStress;
+use crate::symmetry::Ghosts;
 use crate::world::{
     BodyId, DeformationGradient, MissingColumn, PhaseId, ReferencePosition, ReferenceVolume, SupportRadius,
     World,
 };
-
-/// A body with the input of its bonds.
-pub(in crate::formulations) struct BodySetUp {
-    pub id: BodyId,
-    pub kernel: KernelName,
-    /// Support radius, m.
-    pub support: f64,
-    /// Number of neighbours for which the support radius of each particle is chosen instead.
-    pub neighbors: Option<u32>,
-    pub estimate: StepEstimate,
-    pub hessian: Option<HessianDifference>,
-    pub repeats: Vec<Repeat>,
-    /// Whether neighbours and weights are meant to stay those of the start.
-    pub stays: bool,
-}
-
-impl BodySetUp {
-    /// Its kernel in that many dimensions.
-    pub fn kernel(&self, dimension: usize) -> BodyKernel {
-        let Some(kernel) = Kernel::new(self.kernel, dimension) else {
-            unreachable!("every kernel has a two- and a three-dimensional form");
-        };
-        BodyKernel { body: self.id, kernel, support: self.neighbors.is_none().then_some(self.support) }
-    }
-}
-
-/// What supports do to the bodies of a phase.
-pub(in crate::formulations) fn held_of(bodies: &[BodySetUp], sim: &SimBuilder<'_>) -> HeldParticles {
-    let dimension = sim.dimension().count();
-    let held = bodies.iter().map(|body| {
-        let plan = sim.body(body.id);
-        HeldBody {
-            plan,
-            kernel: body.kernel(dimension).kernel,
-            support: plan.support.unwrap_or(body.support),
-            neighbors: body.neighbors,
-            repeats: &body.repeats,
-            stays: body.stays,
-        }
-    });
-    HeldParticles::of(&held.collect::<Vec<_>>(), sim)
-}
 
 /// The bodies of a phase before the first step.
 pub(super) struct SetUp {

@@ -1,12 +1,9 @@
 //! The system of the first pass over all bodies of the phase.
 
-use super::cracks::EdgeRows;
 use super::deformation::{DeformationPass, DeformationRows};
-use super::frame::AffineFrame;
-use super::hessian::{BondedSites, FrameIndifferent};
 use super::phase::{PackedRows, middle};
 use super::removed::RemovedRows;
-use super::rows::pack;
+use crate::formulations::bonded::{AffineFrame, BondedSites, EdgeRows, FrameIndifferent, pack};
 use crate::parallel::share_picked;
 use crate::ranks;
 use crate::schedule::{Run, Step, StepError};
@@ -118,7 +115,7 @@ impl Deformation {
         hessian.add_vidal_stress(BondedSites { bonds, ghosts, sites }, stresses, self_force);
         packed.halo.fill(&mut packed.stresses);
         packed.fill_ghost_stresses();
-        packed.cracks.settle();
+        packed.cracks.age_marks();
         Ok(())
     }
 }

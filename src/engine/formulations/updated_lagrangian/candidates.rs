@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::formulations::total_lagrangian::Ellipsoid;
+use crate::formulations::bonded::Ellipsoid;
 use crate::neighbors::{
     Cloud, NeighborError, NeighborList, NeighborSearch, Parted, Parting, Periodic, SupportRadii,
 };
@@ -50,13 +50,14 @@ impl Candidates {
     /// The list of a body with these rows and rows of ghosts.
     pub fn renewed(
         &mut self,
-        (rows, ghost_rows): (Range<usize>, Range<usize>),
+        rows: Range<usize>,
+        ghost_rows: Range<usize>,
         searched: &Searched<'_>,
         search: &mut NeighborSearch,
     ) -> Result<&NeighborList, NeighborError> {
         let (places, radii) = (&searched.places[rows.clone()], &searched.radii[rows.clone()]);
         if !self.holds(places, radii) {
-            self.make((rows, ghost_rows), searched, search)?;
+            self.make(rows, ghost_rows, searched, search)?;
         }
         Ok(&self.list)
     }
@@ -80,7 +81,8 @@ impl Candidates {
 
     fn make(
         &mut self,
-        (rows, ghost_rows): (Range<usize>, Range<usize>),
+        rows: Range<usize>,
+        ghost_rows: Range<usize>,
         searched: &Searched<'_>,
         search: &mut NeighborSearch,
     ) -> Result<(), NeighborError> {
@@ -175,7 +177,7 @@ mod tests {
             radii(&support, &ellipsoids, &mut far);
             let searched = Searched { places: &places, radii: &far, ghosts: &ghosts, hidden: &[3, 500] };
             made += i32::from(!candidates.holds(&places, &far));
-            let list = candidates.renewed((0..600, 600..600), &searched, &mut search).expect("a list");
+            let list = candidates.renewed(0..600, 600..600, &searched, &mut search).expect("a list");
             for i in 0..600 {
                 let row = list.row(i);
                 assert!(row.is_sorted() && !row.contains(&3) && !row.contains(&500), "{row:?}");

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::parameters::{USUAL_CHANGE, Update};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BondedRows, Bonds, Ellipsoid, Ellipsoids, PackedParticle};
-use crate::linalg::{Sym3, smallest_and_largest_stretch};
+use super::update::{USUAL_CHANGE, Update};
+use crate::formulations::bonded::{BondedRows, Bonds, Ellipsoid, Ellipsoids, PackedParticle};
+use crate::linalg::{Sym3, extreme_stretches};
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Largest, Vector, run_hot, sum_over_blocks};
 use crate::world::DeformationGradient;
 
@@ -93,7 +93,7 @@ fn least_stretch(deformation: &[DeformationGradient]) -> f64 {
 /// The smallest stretch of some particles, at most one.
 fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
     let most: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
-        Largest::of(rows.iter().map(|f| 1.0 / smallest_and_largest_stretch(f.0).0))
+        Largest::of(rows.iter().map(|f| 1.0 / extreme_stretches(f.0).smallest))
     });
     1.0 / most.0.max(1.0)
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::control::Control;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{InternalForce as StressForce, bodies_of};
+use crate::formulations::bonded::{InternalForce as StressForce, bodies_of};
 use crate::parallel::{for_each_block, share_rows_of};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Mass, PhaseId};

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::control::{ControlPass, ControlRows};
 use super::reference_fit::{FittedBlock, ReferenceFit};
-use crate::formulations::total_lagrangian::{
+use crate::formulations::bonded::{
     AffineFrame, Bonds, CompleteStress, CorrectStress, HessianBlock, PackedParticle, Written,
 };
 use crate::linalg::Sym3;

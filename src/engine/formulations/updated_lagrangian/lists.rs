@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::candidates::{Candidates, Searched, largest, radii};
 use super::row_loops::{Corrections, MeasurePairs, PairBlock, PairOrigin, RowPairs, Weights};
 use super::seen::{Columns, SeenParticles, fill_columns};
-use crate::formulations::total_lagrangian::{BondError, Bonds, Ellipsoid};
+use crate::formulations::bonded::{BondError, Bonds, Ellipsoid};
 use crate::kernels::Kernel;
 use crate::neighbors::NeighborSearch;
 use crate::parallel::{BLOCK, block_count, run_hot_on};
@@ -85,7 +85,7 @@ impl ReferenceLists {
         let Self { candidates, search, radii, seen, blocks, .. } = self;
         let searched = Searched { places: reference.places, radii, ghosts: reference.ghosts, hidden };
         let candidates = &mut candidates[body];
-        let list = candidates.renewed((rows.clone(), ghost_rows), &searched, search)?;
+        let list = candidates.renewed(rows.clone(), ghost_rows, &searched, search)?;
         let square = largest(&radii[rows.clone()]).powi(2);
         let source = PairOrigin::Near { list, first: rows.start, square };
         let pairs = RowPairs { seen, source };

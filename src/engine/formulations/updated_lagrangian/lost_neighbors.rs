@@ -5,7 +5,7 @@
 //! support radius; if that is not enough, it carries no stress.
 
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BodyKernel, Ellipsoid};
+use crate::formulations::bonded::{BodyKernel, Ellipsoid};
 use crate::linalg::{Eigen, Sym3};
 use crate::notation::quantity;
 use crate::plugin::Setup;

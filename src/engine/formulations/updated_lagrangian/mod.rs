@@ -31,6 +31,9 @@ mod seen;
 mod set_up;
 mod smoothed_reference;
 mod system;
+mod update;
+mod weigh_control;
 
 pub use columns::{UpdatedGradient, UpdatedReference, UpdatedVolume};
-pub use parameters::{Update, UpdatedLagrangian};
+pub use parameters::UpdatedLagrangian;
+pub use update::Update;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::PackedParticle;
+use crate::formulations::bonded::PackedParticle;
 use crate::parallel::for_each_block;
 use crate::symmetry::Ghost;
 use crate::world::{MissingColumn, PhaseId, Position, ReferencePosition, World};

@@ -1,7 +1,7 @@
 //! The formulation as scenes name it: its parameters, their check, its columns and systems.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVolume};
 use super::due::UpdateRule;
@@ -9,13 +9,14 @@ use super::force::UpdatedForce;
 use super::phase::UpdatedRows;
 use super::set_up::UpdatedSetUp;
 use super::system::UpdatedSolids;
-use crate::formulations::total_lagrangian::{BodySetUp, BondPairs};
+use super::update::Update;
+use crate::formulations::bonded::{BodySetUp, BondPairs};
 use crate::kernels::KernelName;
 use crate::pair::add_pair_systems;
 use crate::plugin::{BodyKind, BodyPlan, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::Dimension;
 use crate::schedule::{Mode, Stage, System};
-use crate::solids::{SolidBodies, SolidBody, TakenUp, require_support};
+use crate::solids::{CORRECTED_STRESS, SolidBodies, SolidBody, TakenUp, require_support};
 use crate::symmetry::repeats_of;
 use crate::world::{
     BodyId, Column, ColumnSet, Damage, DeformationGradient, Force, Mass, PhaseId, PiolaStress, Position,
@@ -33,27 +34,6 @@ pub struct UpdatedLagrangian {
     /// When the present configuration becomes the reference.
     pub update: Update,
 }
-
-/// When the present configuration becomes the reference.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum Update {
-    /// `Adaptive(change: 1.0)` in bodies whose material flows plastically or can fail, and never in elastic ones, whose neighbours stay neighbours.
-    Automatic,
-    /// After every so many steps.
-    Every(u64),
-    /// When a pair has changed its length.
-    Adaptive {
-        /// Change of length over the smoothing length, half of the support radius \[1\].
-        change: f64,
-    },
-    /// Never: the reference stays that of the start.
-    Never,
-}
-
-/// Change of the length of a pair, over the smoothing length, after which the reference is updated where the scene does not say so: that of a pair at the edge of the support at a strain of a half.
-/// Updates at smaller changes add energy and take time; they are more accurate only where metal is squeezed flat (the table in docs/updated-lagrangian.md).
-pub(super) const USUAL_CHANGE: f64 = 1.0;
 
 /// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the paper.
 const USUAL_SUPPORT: f64 = 2.4;
@@ -131,7 +111,7 @@ impl Formulation for UpdatedLagrangian {
         let force = UpdatedForce { phase, plane, gravity: sim.gravity() };
         let force = System::new(Stage::Rates, FORCE, force).on_phases([phase]).reads::<Mass>();
         sim.add_system(
-            force.reads_near::<Position>().touches("corrected_stress", Mode::ReadsNear).writes::<Force>(),
+            force.reads_near::<Position>().touches(CORRECTED_STRESS, Mode::ReadsNear).writes::<Force>(),
         );
         add_pair_systems(sim, phase, BondPairs::<UpdatedRows>::of(phase))
     }

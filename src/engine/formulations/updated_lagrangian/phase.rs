@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::control::Control;
 use super::lists::ReferenceLists;
-use crate::formulations::total_lagrangian::{
+use crate::formulations::bonded::{
     AffineFrame, BodyKernel, BondedRows, Bonds, Cracks, Ellipsoid, HeldParticles, HessianRows,
     PackedParticle, bodies_of, fill_ghosts, frame_of,
 };
@@ -78,12 +78,12 @@ impl UpdatedRows {
     /// Fills the stresses of the ghosts, which have their sites.
     pub fn fill_ghost_stresses(&mut self) {
         let Self { ghosts, frames, sites, stresses, control, hessian, .. } = self;
-        let pull = |row: usize| hessian.pull_of(row);
+        let bond_force = |row: usize| hessian.bond_force_of(row);
         fill_ghosts(ghosts, frames, sites, stresses, |row| {
             let is_apart = control.is_apart[frame_of(frames, ghosts.source(row))];
-            if is_apart { DVec3::ZERO } else { pull(row) }
+            if is_apart { DVec3::ZERO } else { bond_force(row) }
         });
-        control.fill_ghost_stresses(ghosts, pull);
+        control.fill_ghost_stresses(ghosts, bond_force);
     }
 }
 
@@ -107,9 +107,7 @@ impl SolidPhase for UpdatedRows {
     }
 
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64)) {
-        for (j, weight) in self.bonds.row(row).filter(|(j, _)| self.sites[*j].is_present()) {
-            f(j, f64::from(weight));
-        }
+        self.bonds.for_each_present(&self.sites, row, f);
     }
 
     fn local_motion(

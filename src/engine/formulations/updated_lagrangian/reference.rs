@@ -6,8 +6,8 @@ use super::columns::{UpdatedGradient, UpdatedMetric, UpdatedReference, UpdatedVo
 use super::control::is_original;
 use super::lists::{ReferenceOfPhase, UpdatedBody};
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::{BodyKernel, BondError, Ellipsoid, Ellipsoids, PackedParticle};
-use crate::neighbors::bounds;
+use crate::formulations::bonded::{BodyKernel, BondError, Ellipsoid, Ellipsoids, PackedParticle};
+use crate::neighbors::{PointBounds, bounds};
 use crate::parallel::for_each_block;
 use crate::schedule::StepError;
 use crate::solids::{CorrectedStress, StepEstimate};
@@ -67,13 +67,12 @@ impl UpdatedRows {
 
     /// Makes the bonds and ghosts of the reference at these positions, m, with these support radii, m.
     fn renew_bonds(&mut self, world: &World, position: &[DVec3], support: &[f64]) -> Result<(), RenewError> {
-        let (low, high) = bounds(position);
-        self.origin = 0.5 * (low + high);
+        self.origin = bounds(position).middle();
         self.ghosts = Ghosts::new(position.len());
         let mut bodies = Vec::with_capacity(self.kernels.len());
         for (k, (kernel, repeats)) in self.kernels.iter().zip(&self.repeats).enumerate() {
             let rows = world.body(kernel.body).rows.clone();
-            let (low, high) = bounds(&position[rows.clone()]);
+            let PointBounds { low, high } = bounds(&position[rows.clone()]);
             let radii = support[rows.clone()].iter().zip(&self.ellipsoids[rows.clone()]);
             let widest = radii.map(|(support, own)| support * own.longest).fold(0.0, f64::max);
             let (repeats, reach) = follow(repeats, low, high, widest);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::total_lagrangian::{Bonds, Gather, PackedParticle, Written};
+use crate::formulations::bonded::{Bonds, Gather, PackedParticle, Written};
 use crate::parallel::{BLOCK, for_each_own_block, run_hot_in, share_rows_of};
 
 /// What the sums of the first pass give for all real rows of the phase.

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::formulations::total_lagrangian::Ellipsoid;
+use crate::formulations::bonded::Ellipsoid;
 use crate::parallel::{FourLanes, Lanes4, Number, Vector, for_each_block};
 use crate::symmetry::{Ghost, Ghosts};
 

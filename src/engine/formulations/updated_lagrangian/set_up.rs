@@ -7,7 +7,7 @@ use super::control::Control;
 use super::lists::ReferenceLists;
 use super::phase::UpdatedRows;
 use super::reference::RenewError;
-use crate::formulations::total_lagrangian::{BodySetUp, Bonds, Cracks, HeldParticles, HessianRows, held_of};
+use crate::formulations::bonded::{BodySetUp, Bonds, Cracks, HeldParticles, HessianRows, held_of};
 use crate::linalg::Sym3;
 use crate::plugin::{Setup, SetupError, SimBuilder};
 use crate::removal::Leaving;

@@ -19,7 +19,7 @@ use glam::{DMat3, DVec3};
 
 use super::columns::UpdatedReference;
 use super::phase::UpdatedRows;
-use crate::formulations::total_lagrangian::Bonds;
+use crate::formulations::bonded::Bonds;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
@@ -48,7 +48,7 @@ pub(super) struct ReferenceSmoothing<'a> {
 #[derive(Default)]
 pub(super) struct ReferenceRelaxation {
     held: Vec<Expected>,
-    pulls: Vec<DisplacementSum>,
+    own_sums: Vec<DisplacementSum>,
     /// What a place has moved from its particle, m, with the volume of what holds.
     moved: Vec<Lanes4>,
     next: Vec<Lanes4>,
@@ -98,18 +98,22 @@ impl ReferenceRelaxation {
         places: &mut [UpdatedReference],
     ) {
         self.expect(by, &rows, places);
-        let Self { held, pulls, moved, next } = self;
+        let Self { held, own_sums, moved, next } = self;
         let (bonds, ghosts, start) = (&by.packed.bonds, &by.packed.ghosts, rows.start);
-        for_each_block(&mut pulls[rows.clone()], &mut Vec::new(), &|first, pulls: &mut [DisplacementSum]| {
-            run_hot_in(by.plane, Pulls { bonds, held, first: start + first, pulls });
-        });
+        for_each_block(
+            &mut own_sums[rows.clone()],
+            &mut Vec::new(),
+            &|first, own_sums: &mut [DisplacementSum]| {
+                run_hot_in(by.plane, DisplacementSums { bonds, held, first: start + first, own_sums });
+            },
+        );
         let farthest = FARTHEST * by.h;
         for time in 0..TIMES {
             for_each_block(&mut next[rows.clone()], &mut Vec::new(), &|first, next: &mut [Lanes4]| {
                 let first = start + first;
                 run_hot_in(
                     by.plane,
-                    Moves { bonds, pulls, moved, first, farthest, next, is_first: time == 0 },
+                    Moves { bonds, own_sums, moved, first, farthest, next, is_first: time == 0 },
                 );
             });
             ghosts.fill(next, |ghost, own| Lanes4::new(ghost.map.vector(own.xyz()), own.0[3]));
@@ -131,9 +135,9 @@ impl ReferenceRelaxation {
             let holds = damage.is_none_or(|damage| damage[row].0 < 1.0);
             if holds { volume[row] } else { 0.0 }
         };
-        let Self { held, pulls, moved, next } = self;
+        let Self { held, own_sums, moved, next } = self;
         held.resize(sites.len(), Expected::default());
-        pulls.resize(volume.len(), DisplacementSum::default());
+        own_sums.resize(volume.len(), DisplacementSum::default());
         moved.resize(sites.len(), Lanes4::ZERO);
         next.resize(sites.len(), Lanes4::ZERO);
         let own = (&mut held[rows.clone()], &mut next[rows.clone()]);
@@ -159,22 +163,22 @@ impl ReferenceRelaxation {
 }
 
 /// Sums what moves the places of a block.
-struct Pulls<'a> {
+struct DisplacementSums<'a> {
     bonds: &'a Bonds,
     held: &'a [Expected],
     /// First row of the block in the phase.
     first: usize,
-    pulls: &'a mut [DisplacementSum],
+    own_sums: &'a mut [DisplacementSum],
 }
 
-impl PlaneOrSpace for Pulls<'_> {
+impl PlaneOrSpace for DisplacementSums<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, held, first, pulls } = self;
-        for (k, pull) in pulls.iter_mut().enumerate() {
+        let Self { bonds, held, first, own_sums } = self;
+        for (k, own_sum) in own_sums.iter_mut().enumerate() {
             let i = first + k;
             let own = &held[i];
-            *pull = DisplacementSum::default();
+            *own_sum = DisplacementSum::default();
             if own.place.0[3] == 0.0 {
                 continue;
             }
@@ -189,8 +193,8 @@ impl PlaneOrSpace for Pulls<'_> {
                 total += weight;
             }
             if total > 0.0 {
-                let sum = own.pull(a, &columns, place, total);
-                *pull = DisplacementSum { sum: Lanes4::new(sum, total), factor: SHARE / total };
+                let sum = own.displacement_sum(a, &columns, place, total);
+                *own_sum = DisplacementSum { sum: Lanes4::new(sum, total), factor: SHARE / total };
             }
         }
     }
@@ -199,7 +203,7 @@ impl PlaneOrSpace for Pulls<'_> {
 impl Expected {
     /// The sum over the bonds of a particle, from sums over its neighbours.
     #[inline(always)]
-    fn pull<A: FourLanes, const D: usize>(
+    fn displacement_sum<A: FourLanes, const D: usize>(
         &self,
         a: A,
         columns: &[Lanes4; D],
@@ -220,7 +224,7 @@ impl Expected {
 /// Moves the places of a block once.
 struct Moves<'a> {
     bonds: &'a Bonds,
-    pulls: &'a [DisplacementSum],
+    own_sums: &'a [DisplacementSum],
     moved: &'a [Lanes4],
     /// First row of the block in the phase.
     first: usize,
@@ -233,19 +237,19 @@ struct Moves<'a> {
 impl PlaneOrSpace for Moves<'_> {
     #[inline(always)]
     fn run<A: FourLanes, const D: usize>(self, a: A) {
-        let Self { bonds, pulls, moved, first, farthest, next, is_first } = self;
+        let Self { bonds, own_sums, moved, first, farthest, next, is_first } = self;
         for (k, next) in next.iter_mut().enumerate() {
             let i = first + k;
-            let (own, DisplacementSum { sum, factor }) = (moved[i], pulls[i]);
-            let mut pull = sum;
+            let (own, DisplacementSum { sum, factor }) = (moved[i], own_sums[i]);
+            let mut change = sum;
             if !is_first && factor > 0.0 {
-                pull = a.scale_add(-sum.0[3], own, pull);
+                change = a.scale_add(-sum.0[3], own, change);
                 for bond in bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize {
                     let other = moved[bonds.neighbors[bond] as usize];
-                    pull = a.scale_add(f64::from(bonds.weights[bond]) * other.0[3], other, pull);
+                    change = a.scale_add(f64::from(bonds.weights[bond]) * other.0[3], other, change);
                 }
             }
-            let to = a.scale_add(factor, pull, own);
+            let to = a.scale_add(factor, change, own);
             let square = to.0[0] * to.0[0] + to.0[1] * to.0[1] + to.0[2] * to.0[2];
             let share = if square > farthest * farthest { farthest / square.sqrt() } else { 1.0 };
             let to = a.scale(share, to);

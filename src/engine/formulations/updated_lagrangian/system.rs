@@ -13,9 +13,7 @@ use super::lost_neighbors::widen;
 use super::phase::UpdatedRows;
 use super::reference_fit::ReferenceFit;
 use super::smoothed_reference::{ReferenceRelaxation, ReferenceSmoothing};
-use crate::formulations::total_lagrangian::{
-    AffineFrame, BondedSites, Ellipsoid, FrameIndifferent, PackedParticle,
-};
+use crate::formulations::bonded::{AffineFrame, BondedSites, Ellipsoid, FrameIndifferent, PackedParticle};
 use crate::notation::quantity;
 use crate::parallel::share_picked;
 use crate::schedule::{AccountKind, Run, Step, StepError};

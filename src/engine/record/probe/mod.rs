@@ -4,6 +4,7 @@ mod body_points;
 mod direction;
 mod energies;
 mod flow;
+mod gauge;
 mod line;
 mod measure;
 mod particles;
@@ -21,4 +22,5 @@ mod wear;
 
 pub use energies::EnergyColumns;
 pub use flow::{pressure_on_face, water_level};
-pub use resolve::{Gauge, ResolvedProbe};
+pub use gauge::Gauge;
+pub use resolve::ResolvedProbe;

@@ -3,7 +3,7 @@
 use crate::fields::ChosenField;
 use crate::plugin::Selection;
 use crate::schedule::Resources;
-use crate::world::{MissingColumn, Removed, World};
+use crate::world::{MissingColumn, Removed, World, sum_by_row};
 
 /// A field taken over the particles of a selection, each with the same weight.
 pub struct ParticleGauge {
@@ -15,26 +15,31 @@ pub struct ParticleGauge {
 
 impl ParticleGauge {
     /// Mean or sum over the particles that have not been removed, one number for each component; a mean over none is not
-    /// a number. Sums run in row order, body by body.
+    /// a number. Sums run along the tree of blocks, body by body.
     pub(super) fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let width = self.field.width();
         let mut total = vec![0.0; width];
-        let mut count = 0_u32;
+        let mut count = 0.0;
         for (body, rows) in &self.selection.parts {
             let rows = world.rows_now(*body, rows)?;
             let (Some(&first), Some(&last)) = (rows.first(), rows.last()) else { continue };
             let values = self.field.read(world, resources, *body, first as usize..last as usize + 1)?;
-            let removed = world.body_view(*body).0.read::<Removed>()?;
-            for row in rows.iter().filter(|row| removed[**row as usize] == Removed::NO) {
-                count += 1;
-                let at = (row - first) as usize * width;
-                for (sum, value) in total.iter_mut().zip(&values[at..at + width]) {
-                    *sum += value;
-                }
+            let (view, own) = world.body_view(*body);
+            let removed = view.read::<Removed>()?;
+            let removed = &removed[..];
+            let sum = |value: &(dyn Fn(usize) -> f64 + Sync)| {
+                sum_by_row(own.len(), rows.len(), &|k| rows[k] as usize - own.start, &|k| {
+                    let is_there = removed[rows[k] as usize] == Removed::NO;
+                    if is_there { value((rows[k] - first) as usize) } else { 0.0 }
+                })
+            };
+            count += sum(&|_| 1.0);
+            for (component, total) in total.iter_mut().enumerate() {
+                *total += sum(&|row| values[row * width + component]);
             }
         }
         if !self.sum {
-            total.iter_mut().for_each(|value| *value /= f64::from(count));
+            total.iter_mut().for_each(|value| *value /= count);
         }
         Ok(total)
     }

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::body_points::{BodyPoints, Made};
+use super::gauge::{Gauge, at_probe};
 use super::line::SpaceLine;
 use super::particles::ParticleGauge;
 use super::point::PointGauge;
-use super::resolve::{Gauge, at_probe};
 use super::stencil::Stencil;
 use super::taken::Extremal;
 use crate::fields::ChosenField;

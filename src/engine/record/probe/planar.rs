@@ -1,7 +1,7 @@
 //! Probes of plane scenes: the columns that are zero in every plane motion are left out.
 
+use super::gauge::Gauge;
 use super::measure::Measure;
-use super::resolve::Gauge;
 use crate::schedule::Resources;
 use crate::world::{MissingColumn, World};
 

@@ -1,7 +1,7 @@
 //! The value at one place minus the value at another.
 
+use super::gauge::Gauge;
 use super::measure::Measure;
-use super::resolve::Gauge;
 use crate::schedule::Resources;
 use crate::world::{MissingColumn, World};
 

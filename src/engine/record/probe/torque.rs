@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use crate::parallel::BlockSum;
 use crate::plugin::Selection;
-use crate::world::{Column, Force, Mass, MissingColumn, Position, World};
+use crate::world::{Column, Force, Mass, MissingColumn, Position, World, sum_by_row};
 
 /// The particles whose forces turn something.
 pub struct TorqueGauge {
@@ -12,24 +13,48 @@ pub struct TorqueGauge {
     pub(super) about: Option<DVec3>,
 }
 
+/// What turns about the origin.
+#[derive(Clone, Copy, Default)]
+struct TorqueSum {
+    mass: f64,
+    /// Sum of masses times positions, kg m.
+    moment: DVec3,
+    force: DVec3,
+    torque: DVec3,
+}
+
+impl BlockSum for TorqueSum {
+    fn add(&mut self, next: &Self) {
+        self.mass += next.mass;
+        self.moment += next.moment;
+        self.force += next.force;
+        self.torque += next.torque;
+    }
+}
+
 impl TorqueGauge {
     /// Names of the particle columns that it reads.
     pub(super) const NEEDS: [&'static str; 3] = [Force::NAME, Mass::NAME, Position::NAME];
 
-    /// The three components, N m. Sums run in row order, body by body.
+    /// The three components, N m. Sums run along the tree of blocks, body by body.
     pub(super) fn read(&self, world: &World) -> Result<Vec<f64>, MissingColumn> {
-        let (mut mass, mut moment, mut force, mut torque) = (0.0, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        let mut all = TorqueSum::default();
         for (body, rows) in &self.selection.parts {
             let rows = world.rows_now(*body, rows)?;
-            let (view, _) = world.body_view(*body);
+            let (view, own) = world.body_view(*body);
             let (x, m, f) = (view.read::<Position>()?, view.read::<Mass>()?, view.read::<Force>()?);
-            for row in rows.iter().map(|&row| row as usize) {
-                mass += m[row].0;
-                moment += m[row].0 * x[row].0;
-                force += f[row].0;
-                torque += x[row].0.cross(f[row].0);
-            }
+            let (x, m, f) = (&x[..], &m[..], &f[..]);
+            all.add(&sum_by_row(own.len(), rows.len(), &|k| rows[k] as usize - own.start, &|k| {
+                let row = rows[k] as usize;
+                TorqueSum {
+                    mass: m[row].0,
+                    moment: m[row].0 * x[row].0,
+                    force: f[row].0,
+                    torque: x[row].0.cross(f[row].0),
+                }
+            }));
         }
+        let TorqueSum { mass, moment, force, torque } = all;
         let about = self.about.unwrap_or(moment / mass);
         Ok((torque - about.cross(force)).to_array().to_vec())
     }

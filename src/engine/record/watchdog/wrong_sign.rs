@@ -4,8 +4,9 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::remedies::Remedies;
-use crate::formulations::fluid::{FlowCloud, Group};
+use crate::formulations::fluid::{FlowCloud, FlowParticle, Group};
 use crate::notation::quantity;
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::plugin::{BodyKind, BodyPlan, SimBuilder};
 use crate::removal::REMOVED_ENERGY;
 use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, warn_anew};
@@ -101,19 +102,43 @@ fn work_of_weight(sim: &SimBuilder<'_>) -> f64 {
     moved.map(of).sum()
 }
 
+/// Corners of the box around a fluid, m, and the magnitude of the load on it along each axis, N.
+#[derive(Clone, Copy)]
+struct LoadedFluid {
+    low: DVec3,
+    high: DVec3,
+    weight: DVec3,
+}
+
+impl Default for LoadedFluid {
+    fn default() -> Self {
+        Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, weight: DVec3::ZERO }
+    }
+}
+
+impl BlockSum for LoadedFluid {
+    fn add(&mut self, next: &Self) {
+        (self.low, self.high) = (self.low.min(next.low), self.high.max(next.high));
+        self.weight += next.weight;
+    }
+}
+
 /// Work that the loads on fluids could do on them along their own heights, J: a `BodyForce` may be their gravity.
 fn work_of_loads(cloud: &FlowCloud) -> f64 {
     let of = |group: &Group| {
         let (Some(state), rows) = (group.fluid(), group.cloud.clone()) else { return 0.0 };
-        let (mut low, mut high, mut weight) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
-        for (i, record) in
-            rows.clone().zip(&cloud.records()[rows]).filter(|(_, record)| record.volume() > 0.0)
-        {
-            (low, high) = (low.min(record.position()), high.max(record.position()));
-            weight += state.density * record.volume() * cloud.load(i).abs();
-        }
-        let height = high - low;
-        if height.is_finite() { weight.dot(height) } else { 0.0 }
+        let start = rows.start;
+        let sum = sum_over_blocks(&cloud.records()[rows], &|first, records: &[FlowParticle]| {
+            let mut sum = LoadedFluid::default();
+            for (i, record) in (start + first..).zip(records).filter(|(_, record)| record.volume() > 0.0) {
+                let (low, high) = (record.position(), record.position());
+                let weight = state.density * record.volume() * cloud.load(i).abs();
+                sum.add(&LoadedFluid { low, high, weight });
+            }
+            sum
+        });
+        let height = sum.high - sum.low;
+        if height.is_finite() { sum.weight.dot(height) } else { 0.0 }
     };
     cloud.groups.iter().map(of).sum()
 }

@@ -107,7 +107,7 @@ impl FlowCloud {
 
     /// Whether walls or bodies may pull at the fluid, as those of a flow without a free surface do.
     pub fn is_confined(&self) -> bool {
-        self.groups.iter().any(Group::pulls)
+        self.groups.iter().any(Group::has_suction)
     }
 
     /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.

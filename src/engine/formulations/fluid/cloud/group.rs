@@ -77,8 +77,8 @@ pub struct Group {
 }
 
 impl Group {
-    /// Whether it is a boundary that can pull at the fluid.
-    pub fn pulls(&self) -> bool {
+    /// Whether it is a boundary whose pressure may be negative.
+    pub fn has_suction(&self) -> bool {
         matches!(&self.role, Role::Boundary(surface) if surface.suction)
     }
 

@@ -54,7 +54,9 @@ pub use parts::{ACCOUNTS, PARTS};
 pub use repelled::{Repelled, Shares};
 pub use row_pass::{NearPairs, RowPass};
 pub use rows::RowSums;
-pub use shared::{COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, REPELLED, SPINS};
+pub use shared::{
+    COMPRESSION_RATES, EDGES, ENDS, FLOW_LOADS, FLOW_RECORDS, GAP_FORCES, PLACES_BEFORE, REPELLED, SPINS,
+};
 pub use surroundings::smallest_eigenvalue;
 pub use viscosities::{NONE, PLAIN, Viscosities, WITH_SPIN};
 pub use wall_end::WallEnd;

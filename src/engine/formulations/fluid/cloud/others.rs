@@ -18,7 +18,7 @@ impl FlowCloud {
     /// Whether its loops need no more than what is near their own particles: where it is bounded by nothing but walls along which it slides.
     pub(in crate::formulations::fluid) fn decide_what_others_know(&mut self) {
         let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
-        let is_plain = bounds().all(|group| group.is_wall() && !group.sticks() && !group.pulls());
+        let is_plain = bounds().all(|group| group.is_wall() && !group.sticks() && !group.has_suction());
         let has_blocks = self.blocks.as_ref().is_some_and(|blocks| !blocks.hides);
         self.others.is_local = has_blocks
             && is_plain

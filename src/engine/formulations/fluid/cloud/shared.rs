@@ -1,5 +1,8 @@
 //! Names of what the systems of a flow share beside columns, for their declared access.
 
+use super::flow_cloud::FlowCloud;
+use crate::schedule::Shareable;
+
 /// Position, volume, velocity and pressure of every particle of a flow ([`FlowParticle`](crate::formulations::fluid::FlowParticle)).
 pub const FLOW_RECORDS: &str = "flow_records";
 /// Rates of compression of fluid particles.
@@ -14,5 +17,21 @@ pub const ENDS: &str = "wall_ends";
 pub const GAP_FORCES: &str = "gap_forces";
 /// Accelerations of fluid particles by loads.
 pub const FLOW_LOADS: &str = "flow_loads";
+/// Places of the particles of bodies that take sub-steps, at the start of the long one.
+pub const PLACES_BEFORE: &str = "places_before";
 /// Spins of fluid particles.
 pub const SPINS: &str = "fluid_spins";
+
+impl Shareable for FlowCloud {
+    const ROWS: &'static [&'static str] = &[
+        FLOW_RECORDS,
+        COMPRESSION_RATES,
+        REPELLED,
+        EDGES,
+        ENDS,
+        GAP_FORCES,
+        FLOW_LOADS,
+        PLACES_BEFORE,
+        SPINS,
+    ];
+}

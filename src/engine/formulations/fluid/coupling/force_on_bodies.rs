@@ -11,15 +11,15 @@ use super::correction_impulse::{ParticleRows, Particles, give_to_rigid_body};
 use super::drag;
 use super::drag::DragColumns;
 use super::exchange::{CouplingForce, CouplingFriction, CouplingPressure, Exchange};
-use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, Role};
+use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud, FluidState, Group, PARTS, PLACES_BEFORE, Role};
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::pack_states;
 use crate::formulations::fluid::moments::SurfaceMoments;
-use crate::formulations::fluid::passes::reads_flow;
+use crate::formulations::fluid::passes::{friction_on, reads_flow};
 use crate::parallel::{Lanes4, for_each_block};
 use crate::plugin::SimBuilder;
-use crate::rigid::RigidBodies;
-use crate::schedule::{AccountKind, Adds, Run, Stage, Step, StepError, System};
+use crate::rigid::{RIGID_BODIES, RigidBodies};
+use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
 /// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick. Where
@@ -40,6 +40,7 @@ pub fn add_force_on_bodies(
             step.resources.get_mut::<FlowCloud>().remember(phase, step.world)
         })
         .on_phases([phase])
+        .touches_packed(PLACES_BEFORE, Mode::Adds)
         .reads::<Position>()
         .in_long_steps(),
     );
@@ -69,6 +70,8 @@ pub fn add_force_on_bodies(
     let system = reads_flow(System::new(Stage::FinalIntegrate, label, coupling))
         .on_phases([phase])
         .in_long_steps()
+        .touches_packed(PLACES_BEFORE, Mode::Reads)
+        .touches_packed(RIGID_BODIES, Mode::Adds)
         .writes::<CouplingForce>()
         .writes::<CouplingFriction>()
         .writes::<CouplingPressure>()
@@ -231,7 +234,7 @@ impl Run for Coupling {
             let moving =
                 if let Role::Boundary(surface) = &group.role { surface.velocity } else { DVec3::ZERO };
             // What drives a belt does the work that friction turns into heat.
-            let belt = -self.parts.iter().step_by(PARTS).sum::<DVec3>().dot(moving) * step.clock.dt;
+            let belt = -friction_on(&self.total, &self.parts).dot(moving) * step.clock.dt;
             let kinetic = step.ledger.account("kinetic", AccountKind::Stored);
             let constraints = step.ledger.account("constraints", AccountKind::Supplied);
             step.ledger.add(kinetic, group.body, exchange.kinetic);

@@ -37,12 +37,13 @@ impl Skins {
     /// The usual ones of a spacing, m; less where a periodic domain is so short that a list would hold two images of a particle.
     pub fn new(support: f64, spacing: f64, periodic: &Periodic) -> Self {
         let lengths = periodic.lengths().to_array().into_iter().filter(|&length| length > 0.0);
-        let room =
-            lengths.fold(f64::INFINITY, |room, length| room.min((0.5 - 1e-9) * length - support)).max(0.0);
+        let widest = lengths
+            .fold(f64::INFINITY, |widest, length| widest.min((0.5 - 1e-9) * length - support))
+            .max(0.0);
         Self {
             support,
-            fluid: room.min(SKIN * spacing),
-            walls: room.min(WALL_SKIN * spacing),
+            fluid: widest.min(SKIN * spacing),
+            walls: widest.min(WALL_SKIN * spacing),
             gaps: f64::INFINITY,
         }
     }
@@ -87,7 +88,7 @@ impl Drift {
 
     /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
     /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
-    pub fn room(
+    pub fn remaining_skin(
         &mut self,
         (records, own): (&[FlowParticle], &[Range<usize>]),
         fluid: usize,
@@ -229,7 +230,7 @@ mod tests {
                     .enumerate()
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
-                let is_small = drift.room(&records(&now), 700, SKINS) >= 0.0;
+                let is_small = drift.remaining_skin((&records(&now), &[0..820]), 700, SKINS) >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -245,12 +246,13 @@ mod tests {
         let mut drift = Drift::default();
         drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
-        let room = drift.room(&records(&moved(DVec3::new(70.0, -3.0, 0.1))), 700, SKINS);
-        assert!((room - SKINS.fluid).abs() < 1e-12, "{room}");
+        let left =
+            drift.remaining_skin((&records(&moved(DVec3::new(70.0, -3.0, 0.1))), &[0..700]), 700, SKINS);
+        assert!((left - SKINS.fluid).abs() < 1e-12, "{left}");
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut now = moved(DVec3::ZERO);
             now[5].x = wrong;
-            assert!(drift.room(&records(&now), 700, SKINS) < 0.0);
+            assert!(drift.remaining_skin((&records(&now), &[0..700]), 700, SKINS) < 0.0);
         }
     }
 }

@@ -49,6 +49,20 @@ pub struct GapPairs {
     pub list: NeighborList,
 }
 
+/// What the lists are made of.
+#[derive(Clone, Copy)]
+pub struct GapSearch<'a> {
+    pub positions: &'a [DVec3],
+    /// The first so many positions are those of fluids.
+    pub fluid: usize,
+    /// The lists hold what is within these two, m.
+    pub support: f64,
+    pub skin: f64,
+    pub periodic: &'a Periodic,
+    /// The particles have been sorted into its cells.
+    pub drift: &'a Drift,
+}
+
 impl GapPairs {
     /// Of these boundaries, whose rows begin behind those of the fluids.
     pub fn new(sides: Vec<GapSide>) -> Self {
@@ -85,13 +99,9 @@ impl GapPairs {
         side_of(&self.sides, row)
     }
 
-    /// Builds the lists; the first `fluid` positions are those of fluids. They hold what is within `support` and `skin`, m. The particles have been sorted into the cells of their `drift`.
-    pub fn build(
-        &mut self,
-        (positions, fluid): (&[DVec3], usize),
-        (support, skin): (f64, f64),
-        (periodic, drift): (&Periodic, &Drift),
-    ) -> Result<(), NeighborError> {
+    /// Builds the lists.
+    pub fn build(&mut self, of: GapSearch<'_>) -> Result<(), NeighborError> {
+        let GapSearch { positions, fluid, support, skin, periodic, drift } = of;
         self.particles.clear();
         if !self.are_possible() {
             return Ok(());
@@ -107,7 +117,7 @@ impl GapPairs {
         targets.clear();
         targets.extend(rows.iter().map(|&i| positions[i]));
         search.sort(Cloud::uniform(&positions[fluid..], support), skin, periodic)?;
-        search.of_others((&*targets, &*ends), skin, periodic, list)?;
+        search.of_others(targets, ends, skin, periodic, list)?;
         list.shift(fluid as u32);
         let is_other = |i: usize, j: usize| {
             let (own, side) = (side_of(sides, i), side_of(sides, j));

@@ -6,12 +6,12 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::drift::{Drift, Skins};
-use super::gaps::GapPairs;
+use super::gaps::{GapPairs, GapSearch};
 use super::sides::{Sides, ThinBody};
 use super::spread::DisplacementBounds;
 use crate::formulations::fluid::lanes::FlowParticle;
 use crate::formulations::fluid::lists::blocks::{BlockLists, ListSources, OtherSources};
-use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
+use crate::neighbors::{Cloud, FirstOfCloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use crate::parallel::own_rows;
 use crate::ranks;
 
@@ -39,7 +39,7 @@ pub struct FlowPairs {
     pub gaps: GapPairs,
     plane: bool,
     /// How much particles that are near each other can at least still move against each other, m.
-    room: f64,
+    remaining_skin: f64,
     /// Bodies whose sides do not see each other.
     thin: Vec<ThinBody>,
     /// Number of builds.
@@ -60,7 +60,7 @@ impl FlowPairs {
             walls: NeighborList::default(),
             boundary: NeighborList::default(),
             gaps: GapPairs::default(),
-            room: f64::NEG_INFINITY,
+            remaining_skin: f64::NEG_INFINITY,
             thin,
             plane,
             builds: 0,
@@ -104,11 +104,12 @@ impl FlowPairs {
     /// far particles have moved since the question was last asked.
     pub fn are_stale(&mut self, records: &[FlowParticle], fluid: usize, moved: DisplacementBounds) -> bool {
         // Looking is needed when the particles may have used up the room that they had when it was last looked.
-        self.room -= moved.farthest(moved);
-        if self.room <= CERTAIN * self.skins.support {
-            self.room = self.drift.room((records, &self.own_rows(fluid)), fluid, self.skins);
+        self.remaining_skin -= moved.farthest(moved);
+        if self.remaining_skin <= CERTAIN * self.skins.support {
+            self.remaining_skin =
+                self.drift.remaining_skin((records, &self.own_rows(fluid)), fluid, self.skins);
         }
-        self.room < 0.0
+        self.remaining_skin < 0.0
     }
 
     /// Builds the lists; the first `fluid` positions are those of the fluid. With `blocks`, fluids have those in the place of lists of their own.
@@ -123,13 +124,15 @@ impl FlowPairs {
         if blocks.is_some() {
             self.search.sort(wet, skin, &self.periodic)?;
         } else {
-            self.search.of_first((fluid, &self.groups), wet, skin, &self.periodic, &mut self.fluid)?;
+            let first = FirstOfCloud { cloud: wet, targets: fluid };
+            self.search.of_first(first, &self.groups, skin, &self.periodic, &mut self.fluid)?;
         }
-        self.search.of_others((dry, &self.groups), wall_skin, &self.periodic, &mut self.boundary)?;
+        self.search.of_others(dry, &self.groups, wall_skin, &self.periodic, &mut self.boundary)?;
         self.boundary.turn(0..fluid, &mut self.walls);
         self.walls.shift(fluid as u32);
         self.drift.sort(positions, CELL * support, &self.periodic);
-        self.gaps.build((positions, fluid), (support, wall_skin), (&self.periodic, &self.drift))?;
+        let Self { gaps, periodic, drift, .. } = self;
+        gaps.build(GapSearch { positions, fluid, support, skin: wall_skin, periodic, drift })?;
         let mut hides = None;
         if !self.thin.is_empty() {
             let sides = Sides { thin: &self.thin, positions, periodic: &self.periodic, fluid };
@@ -155,7 +158,7 @@ impl FlowPairs {
             lists.build(&sources, (&mut self.search, &self.groups), near_boundaries)?;
         }
         // The particles may have moved already: those of an interrupted run have.
-        self.room = f64::NEG_INFINITY;
+        self.remaining_skin = f64::NEG_INFINITY;
         self.builds += 1;
         self.are_weighed = false;
         Ok(())

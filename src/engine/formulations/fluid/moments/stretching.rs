@@ -121,7 +121,7 @@ impl FlowCloud {
 
     /// What the stretching takes from the rate beside a particle of a group, in that row of the boundaries.
     fn rate_beside(&self, group: &Group, row: usize, stretch: &Sym3, half: f64) -> f64 {
-        if !group.pulls() {
+        if !group.has_suction() {
             return 0.0;
         }
         let (mut total, mut rate) = (0.0, 0.0);

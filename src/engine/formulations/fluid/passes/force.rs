@@ -7,7 +7,7 @@ use crate::formulations::fluid::cloud::{
 };
 use crate::formulations::fluid::moments::SurfaceMoments;
 use crate::pair::{BodyTerms, PhaseTerms};
-use crate::parallel::{for_each_own_block, share_wide_rows};
+use crate::parallel::{for_each_own_block, share_wide_rows, sum_over_blocks};
 use crate::schedule::{AccountKind, Mode, Run, Shared, Step, StepError, System};
 use crate::world::{Force, Mass, PhaseId, Removed};
 
@@ -38,6 +38,13 @@ pub struct FlowForce {
     pub terms: Option<PhaseTerms>,
 }
 
+/// Friction on all particles of a group, N, of the parts of the force on each.
+pub fn friction_on(rows: &[Force], parts: &[DVec3]) -> DVec3 {
+    sum_over_blocks(rows, &|first, rows: &[Force]| {
+        (first..first + rows.len()).map(|k| parts[PARTS * k]).sum::<DVec3>()
+    })
+}
+
 impl Run for FlowForce {
     fn run(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         let flows = self.gravity.is_some();
@@ -62,7 +69,7 @@ impl Run for FlowForce {
             cloud.lean_on_edges(group, total, forces);
             cloud.let_go(group, total);
             if let Some(gravity) = self.gravity {
-                let rows = (total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
+                let rows = (&mut *total, &mass[group.rows.clone()], &removed[group.rows.clone()]);
                 type Rows<'a> = (&'a mut [Force], &'a [Mass], &'a [Removed]);
                 for_each_own_block(rows, &mut Vec::new(), &|_, (f, m, removed): Rows<'_>| {
                     let (m, removed) = (&m[..f.len()], &removed[..f.len()]);
@@ -78,7 +85,7 @@ impl Run for FlowForce {
             {
                 share_wide_rows(forces, PARTS);
                 // What drives a belt does the work that friction turns into heat.
-                let friction: DVec3 = forces.iter().step_by(PARTS).sum();
+                let friction = friction_on(total, forces);
                 let work = -friction.dot(surface.velocity) * step.clock.dt;
                 let supplied = step.ledger.account("constraints", AccountKind::Supplied);
                 let dissipated = step.ledger.account(ACCOUNTS[0], AccountKind::Dissipated);

@@ -15,4 +15,4 @@ mod of_group;
 mod reaction;
 
 pub use compression::Compression;
-pub use force::{FLUID_FORCE, FlowForce, reads_flow};
+pub use force::{FLUID_FORCE, FlowForce, friction_on, reads_flow};

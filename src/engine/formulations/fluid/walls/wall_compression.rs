@@ -55,7 +55,7 @@ impl WallCompression {
             let Range { start, end } = group.cloud;
             let (rows, behind) = rest.split(end - start);
             rest = behind;
-            if group.pulls() {
+            if group.has_suction() {
                 for_each_own_block(rows, &mut Vec::new(), &|first, out: &mut [f64]| {
                     let first = start - cloud.fluid + first;
                     run_hot_in(cloud.plane, RatesBeside { cloud, back, first, out });

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::correction::{add_moment, moment_of};
 use crate::formulations::fluid::cloud::{FlowCloud, NearPairs, RowPass, RowSums, smallest_eigenvalue};
 use crate::notation::quantity;
-use crate::parallel::{Arithmetic, Vector};
+use crate::parallel::{Arithmetic, Vector, sum_over_blocks};
 use crate::schedule::{Step, warn_anew};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
@@ -66,8 +66,10 @@ impl FillingWatch {
 
 /// Mean of the filling over the particles inside; none where there are too few.
 fn mean_filling(rows: &[Option<f64>]) -> Option<f64> {
-    let inside = rows.iter().flatten().count();
-    (inside as f64 > PART * rows.len() as f64).then(|| rows.iter().flatten().sum::<f64>() / inside as f64)
+    let (inside, filling) = sum_over_blocks(rows, &|_, rows: &[Option<f64>]| {
+        (rows.iter().flatten().count() as f64, rows.iter().flatten().sum::<f64>())
+    });
+    (inside > PART * rows.len() as f64).then(|| filling / inside)
 }
 
 /// The filling about a particle; none near a surface.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::notation::quantity;
+use crate::parallel::sum_over_blocks;
 use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, ReferenceVolume};
@@ -53,7 +54,10 @@ impl HeldDown {
             |body: &&RigidBody| (0..3).all(|axis| gravity[axis] == 0.0 || !body.is_driven_along(axis));
         for body in bodies.iter().filter(falls) {
             let (view, rows) = step.world.body_view(body.id);
-            let volume = view.read::<ReferenceVolume>()?[rows].iter().map(|volume| volume.0).sum::<f64>();
+            let volume =
+                sum_over_blocks(&view.read::<ReferenceVolume>()?[rows], &|_, rows: &[ReferenceVolume]| {
+                    rows.iter().map(|volume| volume.0).sum::<f64>()
+                });
             let number = body.id.0 as u32;
             let before = self.seen.iter().find(|seen| seen.body == number).cloned();
             let moved = before.as_ref().map_or(f64::INFINITY, |seen| seen.place.distance(body.state.center));
@@ -82,5 +86,8 @@ impl HeldDown {
 
 /// Force of the fluids on a body, N.
 fn force_on(cloud: &FlowCloud, body: BodyId) -> DVec3 {
-    cloud.forces_on(body).unwrap_or_default().iter().map(|(force, _)| *force).sum()
+    let forces = cloud.forces_on(body).unwrap_or_default();
+    sum_over_blocks(&forces[..], &|_, rows: &[(DVec3, DVec3)]| {
+        rows.iter().map(|(force, _)| *force).sum::<DVec3>()
+    })
 }

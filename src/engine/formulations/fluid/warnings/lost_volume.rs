@@ -67,7 +67,7 @@ impl LostVolume {
             let cost = state.bulk_modulus() * opened;
             if *at_start < cost && sum.energy / sum.volume < LOST * cost {
                 self.is_told = true;
-                let text = text(group, state, (opened, *at_start), step);
+                let text = text(group, state, opened, *at_start, step);
                 step.warnings.push(text);
                 break;
             }
@@ -82,13 +82,17 @@ fn removed_volume(cloud: &FlowCloud, step: &Step<'_>) -> Result<f64, StepError> 
     for group in cloud.groups.iter().filter(|group| group.fluid().is_none()) {
         let view = step.world.phase(group.phase);
         let (removed, reference) = (view.read::<Removed>()?, view.read::<ReferenceVolume>()?);
-        let gone = group.rows.clone().filter(|&row| removed[row] != Removed::NO);
-        volume += gone.map(|row| reference[row].0).sum::<f64>();
+        let rows = (&removed[group.rows.clone()], &reference[group.rows.clone()]);
+        volume += sum_over_blocks(rows, &|_, (removed, volume): (&[Removed], &[ReferenceVolume])| {
+            let gone = removed.iter().zip(volume).filter(|(removed, _)| **removed != Removed::NO);
+            gone.map(|(_, volume)| volume.0).sum::<f64>()
+        });
     }
     Ok(volume)
 }
 
-fn text(group: &Group, state: &FluidState, (opened, at_start): (f64, f64), step: &Step<'_>) -> String {
+/// The warning: the share of the volume that has been `opened`, and the pressure `at_start`, Pa.
+fn text(group: &Group, state: &FluidState, opened: f64, at_start: f64, step: &Step<'_>) -> String {
     format!(
         "`{}` cannot fill the place of what has been removed: {:.1} % of its volume by {}, which costs {} of its pressure, with {} at the start; its mass stays, so that it is under tension, voids \
          open and the run depends on single particles from here on; start it with `Fluid(pressure: ...)` above {}, and more for what will still be removed",

@@ -48,8 +48,9 @@ pub fn look(
         let place_of = |row: usize| cloud.records[row].position();
         let targets: Vec<DVec3> = free.iter().map(|&k| place_of(group.cloud.start + k)).collect();
         let own = width(cloud, &cloud.records[group.cloud.start]);
-        let touching = touching(cloud, group, (&targets, own), spacing).map_err(|error| {
-            StepError::System { system: "fluid_watch".to_owned(), message: error.to_string() }
+        let touching = touching(cloud, group, &targets, own, spacing).map_err(|error| StepError::System {
+            system: "fluid_watch".to_owned(),
+            message: error.to_string(),
         })?;
         let Some(&first) =
             touching.first().filter(|_| touching.len() as f64 >= (LEAST * spacing / own).powi(across))
@@ -77,7 +78,8 @@ fn width(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
 fn touching(
     cloud: &FlowCloud,
     group: &Group,
-    (targets, own): (&[DVec3], f64),
+    targets: &[DVec3],
+    own: f64,
     spacing: f64,
 ) -> Result<Vec<usize>, NeighborError> {
     let others = cloud.groups.iter().filter(|other| other.fluid().is_none() && other.body != group.body);

@@ -12,6 +12,7 @@ use super::friction::{FrictionOf, FrictionOfParticle};
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
 use crate::formulations::fluid::density::DensityShift;
 use crate::notation::quantity;
+use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::schedule::Step;
 
 /// Share of the particles that have to be inside: a flow with a free surface is left alone.
@@ -98,18 +99,57 @@ struct Means {
     order: f64,
 }
 
+/// What the means are made of.
+#[derive(Clone, Copy, Default)]
+struct UnevennessSums {
+    count: f64,
+    /// Of h |m_i|, squared.
+    squares: f64,
+    /// Power of friction, W.
+    power: f64,
+    /// Of these squares times the power, W.
+    squares_by_power: f64,
+    /// Of the stress of order over that of friction, times the power, W.
+    order: f64,
+}
+
+impl UnevennessSums {
+    fn of(row: &FrictionOfParticle) -> Self {
+        let square = row.moment.powi(2);
+        Self {
+            count: 1.0,
+            squares: square,
+            power: row.power,
+            squares_by_power: row.power * square,
+            order: row.power * row.order,
+        }
+    }
+}
+
+impl BlockSum for UnevennessSums {
+    fn add(&mut self, next: &Self) {
+        self.count += next.count;
+        self.squares += next.squares;
+        self.power += next.power;
+        self.squares_by_power += next.squares_by_power;
+        self.order += next.order;
+    }
+}
+
 /// The means; none for a flow with a free surface.
 fn means(rows: &[Option<FrictionOfParticle>]) -> Option<Means> {
-    let inside = || rows.iter().flatten();
-    let count = inside().count() as f64;
+    let sums = sum_over_blocks(rows, &|_, rows: &[Option<FrictionOfParticle>]| {
+        let mut sums = UnevennessSums::default();
+        rows.iter().flatten().for_each(|row| sums.add(&UnevennessSums::of(row)));
+        sums
+    });
+    let UnevennessSums { count, squares, power, squares_by_power, order } = sums;
     if count <= CONFINED * rows.len() as f64 {
         return None;
     }
-    let plain = (inside().map(|row| row.moment.powi(2)).sum::<f64>() / count).sqrt();
-    let power: f64 = inside().map(|row| row.power).sum();
+    let plain = (squares / count).sqrt();
     if power <= 0.0 {
         return Some(Means { plain, weighted: 0.0, order: 0.0 });
     }
-    let weighted = (inside().map(|row| row.power * row.moment.powi(2)).sum::<f64>() / power).sqrt();
-    Some(Means { plain, weighted, order: inside().map(|row| row.power * row.order).sum::<f64>() / power })
+    Some(Means { plain, weighted: (squares_by_power / power).sqrt(), order: order / power })
 }

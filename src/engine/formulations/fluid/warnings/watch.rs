@@ -16,6 +16,7 @@ use super::stabilized;
 use super::unevenness::Unevenness;
 use crate::formulations::fluid::cloud::{FLOW_RECORDS, FlowCloud};
 use crate::plugin::SimBuilder;
+use crate::rigid::RIGID_BODIES;
 use crate::schedule::Trigger;
 use crate::schedule::{Mode, Run, Stage, Step, StepError, System};
 use crate::world::{Mobility, ParticleId, PhaseId, Position, ReferencePosition, ReferenceVolume, Removed};
@@ -81,6 +82,7 @@ pub fn add(phases: Vec<PhaseId>, spacing: f64, diffusion: Option<String>, sim: &
             .on_phases(phases)
             .touches_packed(FLOW_RECORDS, Mode::ReadsNear)
             .reads_own_packed()
+            .touches_packed(RIGID_BODIES, Mode::Reads)
             .reads::<Position>()
             .reads_near::<ReferencePosition>()
             .reads::<ReferenceVolume>()

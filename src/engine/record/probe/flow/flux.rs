@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use crate::formulations::fluid::FlowCloud;
+use crate::parallel::sum_over_blocks;
 use crate::record::probe::measure::Measure;
 use crate::schedule::Resources;
 use crate::shapes::Region;
@@ -33,22 +34,28 @@ impl Measure for FluxGauge {
 
     fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let Some(cloud) = resources.try_get::<FlowCloud>() else { return Ok(vec![f64::NAN]) };
-        let mut flux = 0.0;
+        let (cloud, mut flux) = (&*cloud, 0.0);
         for group in cloud.groups.iter().filter(|group| group.fluid().is_some()) {
             let view = world.phase(group.phase);
             let (position, velocity) = (view.read::<Position>()?, view.read::<Velocity>()?);
             let (mass, density) = (view.read::<Mass>()?, view.read::<Density>()?);
             let removed = view.read::<Removed>()?;
             let width = WIDTH * world.body(group.body).spacing;
-            for row in group.rows.clone().filter(|&row| removed[row] == Removed::NO) {
-                let offset = cloud.offset(self.at, position[row].0);
+            let (mass, density, velocity) = (&mass[..], &density[..], &velocity[..]);
+            let of_row = |(row, x): (usize, &Position)| {
+                let offset = cloud.offset(self.at, x.0);
                 let distance = offset.dot(self.normal);
                 let share = (1.0 - distance.abs() / width) / width;
                 let foot = self.at + offset - self.normal * distance;
-                if share > 0.0 && self.within.as_ref().is_none_or(|region| region.contains(foot)) {
-                    flux += mass[row].0 / density[row].0 * velocity[row].0.dot(self.normal) * share;
-                }
-            }
+                let counts = share > 0.0 && self.within.as_ref().is_none_or(|region| region.contains(foot));
+                let speed = velocity[row].0.dot(self.normal);
+                if counts { mass[row].0 / density[row].0 * speed * share } else { 0.0 }
+            };
+            let (start, removed) = (group.rows.start, &removed[..]);
+            flux += sum_over_blocks(&position[group.rows.clone()], &|first, rows: &[Position]| {
+                let rows = (start + first..).zip(rows).filter(|(row, _)| removed[*row] == Removed::NO);
+                rows.map(of_row).sum::<f64>()
+            });
         }
         Ok(vec![flux])
     }

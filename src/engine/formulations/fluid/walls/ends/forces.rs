@@ -11,7 +11,7 @@ pub const WITHIN: f64 = 1.0 - 1e-6;
 impl Group {
     /// Whether it is a wall with empty space behind its ends.
     pub(super) fn has_ends(&self) -> bool {
-        self.is_wall() && !self.pulls()
+        self.is_wall() && !self.has_suction()
     }
 }
 

@@ -6,7 +6,7 @@ use super::fill::{BoundaryMotion, Fill, Gap, RestOfGap};
 use super::moments::{GapPair, Surrounding, of_surface};
 use super::share::give;
 use crate::formulations::fluid::cloud::{FlowCloud, Group, PARTS};
-use crate::parallel::{for_each_block, for_each_heavy_block};
+use crate::parallel::{for_each_block, for_each_heavy_block, sum_over_blocks};
 use crate::schedule::{Run, Step, StepError};
 use crate::world::{Force, Velocity};
 
@@ -103,8 +103,11 @@ impl Run for GapPressure {
             if self.measure(&cloud) {
                 forces.resize(cloud.records.len() - cloud.fluid, DVec3::ZERO);
                 self.press(&cloud, &mut forces);
-                let power = forces.iter().zip(&self.velocities).map(|(force, velocity)| force.dot(*velocity));
-                self.work += step.clock.dt * power.sum::<f64>();
+                let pushed = (&forces[..], &self.velocities[..]);
+                let power = sum_over_blocks(pushed, &|_, (forces, velocities): (&[DVec3], &[DVec3])| {
+                    forces.iter().zip(velocities).map(|(force, velocity)| force.dot(*velocity)).sum::<f64>()
+                });
+                self.work += step.clock.dt * power;
             }
         }
         (cloud.gap_forces, cloud.gap_work) = (forces, self.work);

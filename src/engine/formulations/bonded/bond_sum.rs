@@ -1,0 +1,64 @@
+//! Sums over the bonds of a particle of what its neighbours show of their stress.
+
+use super::bonds::Bonds;
+use crate::parallel::{FourLanes, Lanes4};
+use crate::solids::CorrectedStress;
+
+/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for every other
+/// bond, so that additions need not wait for each other.
+pub(in crate::formulations) struct BondSum<const D: usize> {
+    /// `sum_j V_j w_ij A_j`, with `sum_j V_j w_ij k_j` in the last lane of the first column.
+    pub columns: [Lanes4; D],
+    /// `sum_j V_j w_ij q_j`.
+    pub traction: Lanes4,
+}
+
+/// Bonds between what is summed and what is asked for: some hundred cycles, which is what a row takes to arrive.
+const AHEAD: usize = 32;
+
+impl<const D: usize> BondSum<D> {
+    const ZERO: Self = Self { columns: [Lanes4::ZERO; D], traction: Lanes4::ZERO };
+
+    /// The sums over the bonds of row `i`.
+    #[inline(always)]
+    pub fn over<A: FourLanes>(a: A, bonds: &Bonds, stresses: &[CorrectedStress], i: usize) -> Self {
+        let row = bonds.offsets[i] as usize..bonds.offsets[i + 1] as usize;
+        let first = row.start;
+        let (mut even, mut odd) = (Self::ZERO, Self::ZERO);
+        let (pairs, last) = bonds.neighbors[row.clone()].as_chunks::<2>();
+        let (weights, last_weight) = bonds.weights[row].as_chunks::<2>();
+        // By number: zipped iterators would be called, off the instruction path.
+        let ahead = &bonds.neighbors[(first + AHEAD).min(bonds.neighbors.len())..];
+        for n in 0..pairs.len() {
+            let (j, weight) = (pairs[n], weights[n]);
+            if 2 * n + 1 < ahead.len() {
+                a.prefetch(stresses, ahead[2 * n] as usize);
+                a.prefetch(stresses, ahead[2 * n + 1] as usize);
+            }
+            even.add(a, &stresses[j[0] as usize], weight[0]);
+            odd.add(a, &stresses[j[1] as usize], weight[1]);
+        }
+        if let ([j], [weight]) = (last, last_weight) {
+            even.add(a, &stresses[*j as usize], *weight);
+        }
+        even.plus(a, &odd)
+    }
+
+    #[inline(always)]
+    fn add<A: FourLanes>(&mut self, a: A, other: &CorrectedStress, weight: f32) {
+        let weight = f64::from(weight) * other.traction.0[3];
+        for axis in 0..D {
+            self.columns[axis] = a.scale_add(weight, other.columns[axis], self.columns[axis]);
+        }
+        self.traction = a.scale_add(weight, other.traction, self.traction);
+    }
+
+    #[inline(always)]
+    fn plus<A: FourLanes>(mut self, a: A, other: &Self) -> Self {
+        for axis in 0..D {
+            self.columns[axis] = a.plus(self.columns[axis], other.columns[axis]);
+        }
+        self.traction = a.plus(self.traction, other.traction);
+        self
+    }
+}

@@ -1,0 +1,36 @@
+//! What the Lagrangian formulations of solids share: lists of neighbours of a reference configuration ("bonds"), with the sums over them.
+//!
+//! The total-Lagrangian formulation has them of the start, the updated-Lagrangian one of a reference that follows the body. Here are the bonds with weights and moment matrices, the packed
+//! particles, the gathering of F and the residual, the corrected stress in the frame of a body, cracks, differences of second derivatives, what held sides do to the particles beside them, the pass of the internal force, and the pairs for terms of plugins.
+
+mod balance;
+mod body_set_up;
+mod bond_sum;
+mod bonds;
+mod cracks;
+mod displacement_moment;
+mod frame;
+mod gather;
+mod held;
+mod hessian;
+mod internal_force;
+mod pairs;
+mod reach;
+mod rows;
+mod support;
+
+pub(super) use balance::{HeldBody, balanced_shares};
+pub(super) use body_set_up::{BodySetUp, held_of};
+pub(super) use bonds::BodyBonds;
+pub use bonds::{BondError, Bonds};
+pub(super) use cracks::{CrackEdge, Cracks, EdgeRows, Mark};
+pub(super) use frame::{AffineFrame, CompleteStress, bodies_of, fill_ghosts, frame_of};
+pub(super) use gather::{AddIdentity, CorrectStress, Gather, Written};
+pub(super) use held::{HeldParticles, all_shares};
+pub(super) use hessian::{BondedSites, FrameIndifferent, HessianBlock, HessianRows};
+pub(super) use internal_force::InternalForce;
+pub(super) use pairs::{BodyKernel, BondPairs, BondedRows};
+pub(super) use reach::{Ellipsoid, Ellipsoids};
+pub use rows::PackedParticle;
+pub(super) use rows::pack;
+pub(super) use support::choose_support;
