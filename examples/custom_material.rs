@@ -1,7 +1,8 @@
 //! A material of one's own: a hyperelastic law in one file, with one line of registration.
 //!
-//! `cargo run --release --example custom_material` runs the scene below and compares with the closed form. With
-//! arguments it is the whole `meshless` program, and its scenes may say `MooneyRivlin(density: 1000, ...)`.
+//! `cargo run --release --example custom_material` runs the scene below and compares with the closed form.
+//! With arguments it is the whole `meshless` program, and its scenes may say `MooneyRivlin(density: 1000,
+//! ...)`.
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -79,7 +80,8 @@ fn register(registry: &mut Registry) {
     registry.material::<MooneyRivlin>();
 }
 
-/// A sheet pulled to one and a half of its length, slowly and damped; 1000 times stiffer in volume than in shape.
+/// A sheet pulled to one and a half of its length, slowly and damped; 1000 times stiffer in volume than in
+/// shape.
 const SCENE: &str = r#"Scene(
     title: "Rubber sheet",
     dimension: Two,

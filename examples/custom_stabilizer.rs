@@ -1,7 +1,7 @@
 //! A stabilizer as a third party would write it: a pair term with its parameter, registered under a name.
 //!
-//! `cargo run --release --example custom_stabilizer` runs the scene below and compares with the closed form. With
-//! arguments it is the whole `meshless` program, and its scenes may say `bond_viscosity(viscosity: 10)`.
+//! `cargo run --release --example custom_stabilizer` runs the scene below and compares with the closed form.
+//! With arguments it is the whole `meshless` program, and its scenes may say `bond_viscosity(viscosity: 10)`.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -9,9 +9,9 @@ use std::process::ExitCode;
 
 use meshless::prelude::*;
 
-/// Resists every change of length of a bond in proportion to its rate, compression and shear alike; turning as a whole
-/// costs nothing. f_i = 2 (d + 2) eta V_i V_j w_ij (v_ij . e) e with e = x_ij / |x_ij|: to a uniform rate of strain D
-/// it does the work of a viscous stress 2 eta D + eta tr(D) I.
+/// Resists every change of length of a bond in proportion to its rate, compression and shear alike; turning
+/// as a whole costs nothing. f_i = 2 (d + 2) eta V_i V_j w_ij (v_ij . e) e with e = x_ij / |x_ij|: to a
+/// uniform rate of strain D it does the work of a viscous stress 2 eta D + eta tr(D) I.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct BondViscosity {

@@ -1,7 +1,8 @@
 //! A system of one's own: a field of force that pulls every particle towards a point.
 //!
-//! `cargo run --release --example custom_system` runs the scene below and compares with the closed form. With arguments
-//! it is the whole `meshless` program, and its scenes may say `central_field(center: (0, 0), frequency: 5)`.
+//! `cargo run --release --example custom_system` runs the scene below and compares with the closed form. With
+//! arguments it is the whole `meshless` program, and its scenes may say `central_field(center: (0, 0),
+//! frequency: 5)`.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -67,7 +68,8 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     let (scene, source) = parse(Source::new("central_field.ron", SCENE))?;
     let mut sim = build(&scene, &source, &registry)?;
     sim.run(|_| true)?;
-    // All particles have the same mass: the mean position is the centre of mass, and it swings like one particle.
+    // All particles have the same mass: the mean position is the centre of mass, and it swings like one
+    // particle.
     let (block, rows) = sim.world().body_view(BodyId(0));
     let position = block.read::<Position>()?;
     let mean = position[rows].iter().map(|x| x.0).sum::<DVec3>() / position.len() as f64;

@@ -1,6 +1,8 @@
-//! The gear wheel of `assets/meshes/gear.stl`: how to make a closed mesh for a scene, and how to see that it is one.
+//! The gear wheel of `assets/meshes/gear.stl`: how to make a closed mesh for a scene, and how to see that it
+//! is one.
 //!
-//! `cargo run --release --example gear_mesh` compares the file with what is made here, `... gear_mesh wheel.stl` writes another.
+//! `cargo run --release --example gear_mesh` compares the file with what is made here, `... gear_mesh
+//! wheel.stl` writes another.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -18,11 +20,13 @@ const FOOT: f64 = 16.0;
 const TIP: f64 = 20.0;
 /// Width of the wheel \[mm\].
 const WIDTH: f64 = 8.0;
-/// A tooth and the gap after it as points of the rim: where, as a part of the pitch, and at which radius \[mm\].
+/// A tooth and the gap after it as points of the rim: where, as a part of the pitch, and at which radius
+/// \[mm\].
 const TOOTH: [(f64, f64); 6] =
     [(0.0, FOOT), (0.14, TIP), (0.26, TIP), (0.40, FOOT), (0.60, FOOT), (0.80, FOOT)];
 
-/// A point of the section of the wheel at a point of the rim: the four corners, counter-clockwise from the lower inner one \[mm\].
+/// A point of the section of the wheel at a point of the rim: the four corners, counter-clockwise from the
+/// lower inner one \[mm\].
 fn point(around: usize, corner: usize) -> [f64; 3] {
     let (tooth, part) = (around / TOOTH.len() % TEETH, around % TOOTH.len());
     let angle = TAU * (tooth as f64 + TOOTH[part].0) / TEETH as f64;
@@ -41,7 +45,8 @@ fn triangles() -> Vec<[[f64; 3]; 3]> {
     (0..TEETH * TOOTH.len()).flat_map(|around| (0..4).flat_map(move |corner| quad(around, corner))).collect()
 }
 
-/// A binary STL file: 80 bytes of title, the number of triangles, for each its normal (left zero) and corners.
+/// A binary STL file: 80 bytes of title, the number of triangles, for each its normal (left zero) and
+/// corners.
 fn stl(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     let mut bytes = format!("{:80}", "gear wheel with 12 teeth, millimetres").into_bytes();
     bytes.extend((triangles.len() as u32).to_le_bytes());

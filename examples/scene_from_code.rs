@@ -1,4 +1,5 @@
-//! A scene that a program puts together: one bar in three lengths, each run writing its files, whose probe is read back.
+//! A scene that a program puts together: one bar in three lengths, each run writing its files, whose probe is
+//! read back.
 //!
 //! `cargo run --release --example scene_from_code`
 

@@ -1,8 +1,10 @@
-//! `meshless`: particle simulation of solids, fluids and their interaction by smoothed particle hydrodynamics.
+//! `meshless`: particle simulation of solids, fluids and their interaction by smoothed particle
+//! hydrodynamics.
 //!
-//! A scene is described in RON, run by the `meshless` program, and its recording is looked at in the rerun viewer. What
-//! the program cannot do is added in Rust: a plugin, a material, a condition or a formulation is a type that is
-//! registered under a name, and scenes then use the name. A program with an addition of its own is
+//! A scene is described in RON, run by the `meshless` program, and its recording is looked at in the rerun
+//! viewer. What the program cannot do is added in Rust: a plugin, a material, a condition or a formulation is
+//! a type that is registered under a name, and scenes then use the name. A program with an addition of its
+//! own is
 //!
 //! ```no_run
 //! # mod my_plugin { pub fn register(_: &mut meshless::prelude::Registry) {} }

@@ -69,11 +69,13 @@ fn counts_of(source: impl FnOnce() -> Source, threads: usize, steps: usize) -> V
 fn a_step_of_solids_with_all_stabilizers_allocates_nothing() {
     for dimension in [2, 3] {
         let counts = counts(&all_plugins(dimension), 1, 100);
-        // The grid of the search of a body that touches itself has more cells as the body grows, which some of its searches see.
+        // The grid of the search of a body that touches itself has more cells as the body grows, which some
+        // of its searches see.
         let some = counts.iter().filter(|&&count| count > 0).count();
         assert!(some <= 2, "{dimension} dimensions: {counts:?}");
     }
-    // The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies.
+    // The queues by which threads hand over work take a block of memory now and then, whatever the size of
+    // the bodies.
     let counts = counts(&all_plugins(3), 2, 100);
     assert!(counts.iter().sum::<u64>() < 20, "two threads: {counts:?}");
 }
@@ -114,7 +116,8 @@ fn a_step_of_eulerian_bodies_allocates_nothing_but_room_for_longer_lists() {
     }
 }
 
-/// The queues by which threads hand over work take a block of memory now and then, whatever the size of the bodies; a pass that allocates does so in every step.
+/// The queues by which threads hand over work take a block of memory now and then, whatever the size of the
+/// bodies; a pass that allocates does so in every step.
 #[test]
 fn steps_of_bodies_of_many_tasks_on_two_threads_allocate_nothing_of_their_own() {
     let solids = all_plugins(2);
@@ -142,8 +145,9 @@ fn a_contact_that_begins_and_spreads_allocates_nothing() {
 fn a_step_of_flows_allocates_nothing_but_room_for_longer_lists() {
     for source in [flow(2), flow(3), double(&flow(3))] {
         let counts = counts(&source, 1, 100);
-        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and its search; the number of blocks changes with the lists, and with it
-        // what each of some twenty arrays holds for a block.
+        // The largest number of neighbours grows as water is compressed, and with it the memory of a list and
+        // its search; the number of blocks changes with the lists, and with it what each of some twenty
+        // arrays holds for a block.
         let none = counts.iter().filter(|&&count| count == 0).count();
         assert!(none >= 95 && counts.iter().all(|&count| count < 20), "{}: {counts:?}", source.name);
     }

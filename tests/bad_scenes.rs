@@ -1,4 +1,5 @@
-//! The bad scenes of `tests/scenes/bad` that need the standard plugins to be found bad: `// level: build`, `// needs: plugins`.
+//! The bad scenes of `tests/scenes/bad` that need the standard plugins to be found bad: `// level: build`,
+//! `// needs: plugins`.
 
 use std::path::Path;
 

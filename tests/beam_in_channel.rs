@@ -1,4 +1,5 @@
-//! A soft beam, two particles of the fluid thick, bends in a driven channel: nothing enters it, and friction only takes energy.
+//! A soft beam, two particles of the fluid thick, bends in a driven channel: nothing enters it, and friction
+//! only takes energy.
 
 mod common;
 

@@ -48,7 +48,8 @@ fn a_run_ends_with_a_summary_and_leaves_a_checkpoint_if_it_is_cut_short() {
     assert!(text.contains("meshless view out/cantilever"), "{text}");
 }
 
-/// AVX-512 lends its registers to the loops and changes no sum. Where a processor has one path only, there is nothing to compare.
+/// AVX-512 lends its registers to the loops and changes no sum. Where a processor has one path only, there is
+/// nothing to compare.
 #[test]
 fn an_instruction_path_can_be_taken_and_avx_512_has_the_bits_of_avx2() {
     let folder = folder();

@@ -1,4 +1,5 @@
-//! Signals, output that cannot be written, moved scenes and slips of units, as users meet them; without recordings.
+//! Signals, output that cannot be written, moved scenes and slips of units, as users meet them; without
+//! recordings.
 
 mod program;
 
@@ -89,7 +90,8 @@ fn a_check_reviews_bodies_by_what_they_are() {
     assert!(notes.contains("conditions move all of body `beam`"), "{notes}");
 }
 
-/// Notes and warnings of `check` on water in a tank, with another fluid beside it where `other` has the text of one.
+/// Notes and warnings of `check` on water in a tank, with another fluid beside it where `other` has the text
+/// of one.
 fn notes_on_water(axes: &str, water: &str, other: &str, set: &str) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (dimension, gravity, [low, high, top, outer]) = match axes {

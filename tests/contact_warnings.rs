@@ -14,7 +14,8 @@ fn says(sim: &Simulation, part: &str) -> bool {
     sim.warnings().iter().any(|text| text.contains(part))
 }
 
-/// Whether a block that falls on a floor, which begins at `from`, m, is said to be off beside its side at x = 0.
+/// Whether a block that falls on a floor, which begins at `from`, m, is said to be off beside its side at
+/// x = 0.
 fn lands_beside_a_side(support: &str, from: f64) -> bool {
     let mut sim = built(format!(
         r#"(dimension: Two, materials: {{"m": NeoHookean(density: 1000, young: 1e8, poisson: 0.3)}},

@@ -1,4 +1,5 @@
-//! A system touches only the columns and the packed rows that it has declared, and rows of neighbours only where it has said so: otherwise the run ends, with what to add.
+//! A system touches only the columns and the packed rows that it has declared, and rows of neighbours only
+//! where it has said so: otherwise the run ends, with what to add.
 
 use meshless::prelude::*;
 use meshless::solids::PACKED_SOLID;

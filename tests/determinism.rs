@@ -50,7 +50,8 @@ fn one_two_and_seven_threads_give_the_same_bits() {
     }
 }
 
-/// Loops over rows are handed out in tasks of 1 024: bodies of several tasks, of every formulation, so that every pass is really divided.
+/// Loops over rows are handed out in tasks of 1 024: bodies of several tasks, of every formulation, so that
+/// every pass is really divided.
 #[test]
 fn bodies_of_many_tasks_give_the_same_bits_on_one_two_and_seven_threads() {
     let differences = |form: &str| {

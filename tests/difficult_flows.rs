@@ -1,4 +1,5 @@
-//! Flows that were silently wrong: thin bodies beside shifting, curved interfaces, walls that single particles passed, tilted surfaces, rows that break up.
+//! Flows that were silently wrong: thin bodies beside shifting, curved interfaces, walls that single
+//! particles passed, tilted surfaces, rows that break up.
 
 mod common;
 
@@ -30,7 +31,8 @@ fn assert_within(sim: &Simulation, low: [f64; 3], high: [f64; 3]) {
     }
 }
 
-/// A soft beam, two particles of the oil thick, in a driven channel whose oil is shifted, in `sub_steps` or one step for all.
+/// A soft beam, two particles of the oil thick, in a driven channel whose oil is shifted, in `sub_steps` or
+/// one step for all.
 fn shifted_beam(time: &str) -> Simulation {
     built(&format!(
         r#"(dimension: Two, domain: (min: (0.0, -0.06), max: (0.4, 0.16), periodic: [X]),
@@ -162,7 +164,8 @@ fn a_channel_whose_rows_break_up_says_that_friction_is_off() {
     assert!(error.abs() < 0.015 || says(&sim, text), "{error}: {:?}", sim.warnings());
 }
 
-/// How much the pressure at a side wall shakes from 1 to 3 s while water sloshes, Pa: rms deviation from its mean over 0.1 s. The surface is tilted at the start.
+/// How much the pressure at a side wall shakes from 1 to 3 s while water sloshes, Pa: rms deviation from its
+/// mean over 0.1 s. The surface is tilted at the start.
 fn noise(formulation: &str) -> f64 {
     let surface: Vec<String> = (0..=60)
         .map(|k| 1.2 - 0.02 * f64::from(k))

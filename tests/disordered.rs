@@ -1,4 +1,5 @@
-//! What holds exactly for particles in disorder: a lattice whose particles are moved at random by up to 30 % of the spacing along every axis.
+//! What holds exactly for particles in disorder: a lattice whose particles are moved at random by up to 30 %
+//! of the spacing along every axis.
 
 mod common;
 

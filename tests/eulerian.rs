@@ -1,4 +1,5 @@
-//! Solids whose kernels live in the present configuration: what is exact, against sums over all pairs that are written out here.
+//! Solids whose kernels live in the present configuration: what is exact, against sums over all pairs that
+//! are written out here.
 
 mod common;
 
@@ -88,7 +89,8 @@ impl Naive {
 }
 
 impl Naive {
-    /// The energy of the control with xi and Young's modulus 1, where the particles have moved on by `by` seconds at their velocities, and F with these.
+    /// The energy of the control with xi and Young's modulus 1, where the particles have moved on by `by`
+    /// seconds at their velocities, and F with these.
     fn energy(&self, xi: f64, by: f64, reference: &[DVec3], rates: &[DMat3]) -> f64 {
         let (h, n) = (self.h, self.all.len());
         let place = |i: usize| self.all[i].x + by * self.all[i].v;
@@ -199,7 +201,8 @@ fn an_affine_motion_has_its_gradient_to_the_bit_of_rounding_and_no_net_force() {
         (2, r#"("0.3*x + 0.2*y", "-0.5*x + 0.1*y")"#),
         (3, r#"("0.3*x + 0.2*y", "-0.5*x + 0.1*z", "0.2*y - 0.4*z")"#),
     ] {
-        // Nothing has acted before the second step: after the first, places are an affine map of those of the start.
+        // Nothing has acted before the second step: after the first, places are an affine map of those of the
+        // start.
         let sim = after(&block(dimension, "Eulerian()", velocity, ""), 1);
         let t = sim.clock().time;
         let rate = if dimension == 2 {

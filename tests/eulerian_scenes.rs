@@ -1,4 +1,5 @@
-//! Scenes with Eulerian bodies: bits, symmetry planes, periods, clamps, other bodies, and what they do not take.
+//! Scenes with Eulerian bodies: bits, symmetry planes, periods, clamps, other bodies, and what they do not
+//! take.
 
 mod common;
 
@@ -166,8 +167,9 @@ fn a_block_that_is_pressed_flat_bears_the_pressure_in_all_its_layers() {
     }
 }
 
-/// A square bar of 8 particles across and twice as long, whose ends are turned against each other by an angle of 0.02 and may warp; its torque over G J of the angle over
-/// the length, where J = 0.1406 a^4 (Timoshenko and Goodier 1951, section 94).
+/// A square bar of 8 particles across and twice as long, whose ends are turned against each other by an angle
+/// of 0.02 and may warp; its torque over G J of the angle over the length, where J = 0.1406 a^4 (Timoshenko
+/// and Goodier 1951, section 94).
 fn torque_of_twisted(material: &str) -> f64 {
     let end = |face: &str, angle: f64| {
         format!(
@@ -205,7 +207,8 @@ fn a_twisted_bar_bears_the_torque_of_its_section() {
     assert!((metal - 1.0).abs() < 0.07, "{metal}");
 }
 
-/// A strip of 8 particles across that is bent by tractions that grow linearly over its ends: its middle line is an arc of the curvature M / E', whose sagitta is x^2 M / 2 E'.
+/// A strip of 8 particles across that is bent by tractions that grow linearly over its ends: its middle line
+/// is an arc of the curvature M / E', whose sagitta is x^2 M / 2 E'.
 #[test]
 fn a_bent_strip_has_the_curvature_of_its_section() {
     let load = |face: &str, sign: f64| {
@@ -312,7 +315,8 @@ fn it_meets_fluids_and_lagrangian_bodies_and_the_books_close() {
     }
 }
 
-/// Energy that density diffusion takes out of a block whose density is rough, over that at the start, and the largest error of the balance.
+/// Energy that density diffusion takes out of a block whose density is rough, over that at the start, and the
+/// largest error of the balance.
 fn diffused(diffusion: &str) -> (f64, f64) {
     let text = format!(
         r#"(dimension: Two,
@@ -368,7 +372,8 @@ fn the_work_of_friction_on_eulerian_skins_is_heat_of_both_bodies() {
         let (mass, t) = (view.read::<Mass>().expect("masses"), view.read::<Temperature>().expect("K"));
         rows.map(|row| mass[row].0 * 450.0 * (t[row].0 - 300.0)).sum::<f64>()
     };
-    // Coulomb's friction has brought the block to rest, and taken what it moved with, m v^2 / 2, but for what its vibration lost.
+    // Coulomb's friction has brought the block to rest, and taken what it moved with, m v^2 / 2, but for what
+    // its vibration lost.
     let (block, floor) = (heat(0), heat(1));
     let vibration: f64 =
         ["artificial_viscosity", "contact_damping"].iter().map(|name| sim.ledger().total_named(name)).sum();

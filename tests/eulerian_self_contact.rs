@@ -1,4 +1,5 @@
-//! Eulerian bodies that touch themselves: two arms of one body that are thrown at each other, and a strip of metal that folds onto what it stands on.
+//! Eulerian bodies that touch themselves: two arms of one body that are thrown at each other, and a strip of
+//! metal that folds onto what it stands on.
 
 mod common;
 
@@ -37,7 +38,8 @@ fn nearest(sim: &Simulation, place: DVec3) -> usize {
     rows.min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a particle")
 }
 
-/// How far apart the tips of the arms are at each hundredth of a second, the largest error of the energy balance, and the momentum at the end over that of an arm.
+/// How far apart the tips of the arms are at each hundredth of a second, the largest error of the energy
+/// balance, and the momentum at the end over that of an arm.
 fn gaps(mut sim: Simulation) -> (Vec<f64>, f64, f64) {
     sim.start().expect("a start");
     let tips = [DVec3::new(0.135, 0.985, 0.0), DVec3::new(0.465, 0.985, 0.0)].map(|x| nearest(&sim, x));
@@ -74,7 +76,8 @@ fn arms_of_one_body_rebound_as_those_of_a_lagrangian_one() {
     assert!(error < 2e-3 && momentum < 1e-12, "{error}, {momentum}");
 }
 
-/// A strip of metal that stands on a block of the same body, six particles across, and is thrown over: it bends plastically at its foot and strikes the block with its tip, as a chip the workpiece.
+/// A strip of metal that stands on a block of the same body, six particles across, and is thrown over: it
+/// bends plastically at its foot and strikes the block with its tip, as a chip the workpiece.
 fn folding(formulation: &str, contact: &str) -> Simulation {
     simulation(&Source::new(
         "folding.ron",
@@ -93,7 +96,8 @@ fn folding(formulation: &str, contact: &str) -> Simulation {
     ))
 }
 
-/// Where the tip of the strip is at each hundredth of a second, the least distance of the upper strip from the block, and the largest error of the energy balance.
+/// Where the tip of the strip is at each hundredth of a second, the least distance of the upper strip from
+/// the block, and the largest error of the energy balance.
 fn path(mut sim: Simulation) -> (Vec<DVec3>, f64, f64) {
     sim.start().expect("a start");
     let tip = nearest(&sim, DVec3::new(0.15, 0.79, 0.0));

@@ -146,7 +146,8 @@ fn cracks_keep_momentum_and_books_with_every_control() {
     }
 }
 
-/// Whether each particle of a block of 7 x 5 at (0.1, 0.1), (0.2, 0.1) and so on has been removed after some steps at rest, when those that are named have failed.
+/// Whether each particle of a block of 7 x 5 at (0.1, 0.1), (0.2, 0.1) and so on has been removed after some
+/// steps at rest, when those that are named have failed.
 fn left_of_block(formulation: &str, failed: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let text = format!(
         r#"(dimension: Two, materials: {{"glass": NeoHookean(density: 1, young: 1, poisson: 0.3)}},
@@ -243,7 +244,8 @@ fn what_johnson_and_cook_have_failed_has_no_deviator_and_no_control_for_good_in_
     }
 }
 
-/// A rubber plate, part of which fails and is then shot through: rubble must not press by areas that it has no more.
+/// A rubber plate, part of which fails and is then shot through: rubble must not press by areas that it has
+/// no more.
 #[test]
 fn rubble_that_flies_apart_makes_no_energy() {
     let text = r#"(dimension: Three, materials: {"m": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)},
@@ -266,7 +268,8 @@ fn rubble_that_flies_apart_makes_no_energy() {
     assert!(ledger.relative_error().abs() < 1e-2, "{}", ledger.relative_error());
 }
 
-/// Two halves of a strip that have been drawn apart at a row of failed particles: each of them is only turned, and has no error.
+/// Two halves of a strip that have been drawn apart at a row of failed particles: each of them is only
+/// turned, and has no error.
 #[test]
 fn the_hourglass_residual_does_not_see_the_sides_of_a_crack_part() {
     let text = r#"(dimension: Two, materials: {"m": StVenantKirchhoff(density: 1000, young: 1e7, poisson: 0.3)},
@@ -337,12 +340,14 @@ fn what_contacts_of_removed_particles_held_is_booked() {
         let gone =
             view.read::<Removed>().expect("a column").iter().filter(|row| **row == Removed::YES).count();
         assert!(gone > 20, "{gone}");
-        // What the leapfrog misses where a particle breaks at once; a particle in contact holds up to a hundredth of the energy.
+        // What the leapfrog misses where a particle breaks at once; a particle in contact holds up to a
+        // hundredth of the energy.
         assert!(largest < 1.5e-3 && last.abs() < 2e-3, "{anvil}: {largest} in a step, {last} in the end");
     }
 }
 
-/// A block that slides without friction on another one, flat on flat, under its weight, and can fail at that strain; in steps of that share of the usual ones.
+/// A block that slides without friction on another one, flat on flat, under its weight, and can fail at that
+/// strain; in steps of that share of the usual ones.
 fn sliding(contact: &str, limit: f64, factor: f64) -> Simulation {
     let end = if limit < 0.01 { 0.004 } else { 0.06 };
     let text = format!(
@@ -406,7 +411,8 @@ fn a_skin_whose_particle_fails_hands_its_energy_over_to_particles() {
     assert!(coarse.abs() < 2e-4 && fine.abs() < 0.3 * coarse.abs(), "{coarse} {fine}");
 }
 
-/// A brittle block that hits a rigid floor, in steps of that share of the usual ones; the largest change of the balance in a step, and the last.
+/// A brittle block that hits a rigid floor, in steps of that share of the usual ones; the largest change of
+/// the balance in a step, and the last.
 fn crashed(factor: f64) -> (f64, f64) {
     let text = format!(
         r#"(dimension: Two, materials: {{"brittle": NeoHookean(density: 1000, young: 1e9, poisson: 0.3)}},
@@ -433,13 +439,15 @@ fn crashed(factor: f64) -> (f64, f64) {
 
 #[test]
 fn nothing_is_lost_silently_where_particles_that_touch_are_removed() {
-    // What is left is the error of the leapfrog, which falls with the square of the step. Released energy that was booked twice left 1e-3 in one step of any length.
+    // What is left is the error of the leapfrog, which falls with the square of the step. Released energy
+    // that was booked twice left 1e-3 in one step of any length.
     let ([coarse, fine], [large, small]) = ([0.25, 0.1].map(crashed), [1.0, 0.25].map(|f| crashed(f).1));
     assert!(coarse.0 < 5e-5 && fine.0 < 1e-5, "{coarse:?} {fine:?}");
     assert!(small.abs() < 0.2 * large.abs() && fine.1.abs() < 3e-5, "{large} {small} {fine:?}");
 }
 
-/// A block with that plugin list that is drawn by a traction of 0.1 MPa on one side, above that symmetry plane, in steps of that share of the usual ones.
+/// A block with that plugin list that is drawn by a traction of 0.1 MPa on one side, above that symmetry
+/// plane, in steps of that share of the usual ones.
 fn drawn(plugins: &str, conditions: &str, factor: f64) -> Simulation {
     let text = format!(
         r#"(dimension: Two, materials: {{"soft": NeoHookean(density: 1000, young: 1e6, poisson: 0.3)}},

@@ -1,4 +1,5 @@
-//! Every plugin of fluids on coarse variants of every shipped flow; `meshless validate sweep` takes the flows as they are.
+//! Every plugin of fluids on coarse variants of every shipped flow; `meshless validate sweep` takes the flows
+//! as they are.
 
 use meshless::standard_plugins;
 use meshless_validation::sweep::{flows, sweep_of, warnings_of};

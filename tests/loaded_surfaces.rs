@@ -7,8 +7,9 @@ use meshless::scene::Source;
 use meshless::simulation::Simulation;
 use meshless::world::{BodyId, DeformationGradient, Mass, Velocity};
 
-/// The strain along y of all particles of a block that is pressed from above by 1e5 Pa, over that of the closed form, from the least to the largest one; the block stands on one side and leans on the other, held along the
-/// normals of both.
+/// The strain along y of all particles of a block that is pressed from above by 1e5 Pa, over that of the
+/// closed form, from the least to the largest one; the block stands on one side and leans on the other, held
+/// along the normals of both.
 fn strains(formulation: &str) -> (f64, f64) {
     let mut sim = simulation(&Source::new(
         "block.ron",
@@ -33,12 +34,14 @@ fn strains(formulation: &str) -> (f64, f64) {
 fn a_load_beside_a_side_held_along_its_normal_is_carried_by_the_cells_of_particles() {
     for formulation in ["TotalLagrangian", "UpdatedLagrangian"] {
         let (low, high) = strains(formulation);
-        // With shares by where the particles of the sides have been put, 0.7 to 1.3 in single particles beside the corner.
+        // With shares by where the particles of the sides have been put, 0.7 to 1.3 in single particles
+        // beside the corner.
         assert!(low > 0.8 && high < 1.2, "{formulation}: {low} to {high}");
     }
 }
 
-/// Spin of an elastic disc after an oblique impact, times its radius, over that of a rigid one that sticks, 2/3 of its speed along the floor.
+/// Spin of an elastic disc after an oblique impact, times its radius, over that of a rigid one that sticks,
+/// 2/3 of its speed along the floor.
 fn spin(along: f64, friction: f64) -> f64 {
     let mut sim: Simulation = simulation(&Source::new(
         "disc.ron",
@@ -58,13 +61,15 @@ fn spin(along: f64, friction: f64) -> f64 {
     let (m, v) = (view.read::<Mass>().expect("masses"), view.read::<Velocity>().expect("velocities"));
     let mass: f64 = rows.clone().map(|row| m[row].0).sum();
     let speed = rows.map(|row| m[row].0 * v[row].0.x).sum::<f64>() / mass;
-    // The impulse acts at the floor, and the moment of inertia of a disc is half of its mass times its radius squared.
+    // The impulse acts at the floor, and the moment of inertia of a disc is half of its mass times its radius
+    // squared.
     2.0 * (along - speed) / (2.0 / 3.0 * along)
 }
 
 #[test]
 fn an_elastic_disc_gains_the_spin_that_finite_elements_give_it() {
-    // Triangles of another program with penalty and friction at their nodes, 32 along the radius (and 16): 1.466 (1.467), 0.588 (0.588), 1.479 (1.489).
+    // Triangles of another program with penalty and friction at their nodes, 32 along the radius (and 16):
+    // 1.466 (1.467), 0.588 (0.588), 1.479 (1.489).
     for (along, friction, expected) in [(1.0, 0.3, 1.466), (3.0, 0.3, 0.588), (1.0, 0.5, 1.479)] {
         let found = spin(along, friction);
         assert!((found / expected - 1.0).abs() < 0.05, "{along} m/s, {friction}: {found}, not {expected}");
@@ -120,7 +125,8 @@ fn what_drives_bodies_or_lets_them_fall_counts_as_their_velocity_does() {
     // The gap of .2 mm closes at 4.05 m/s after 99 us.
     let held = r#"conditions: [Fix(on: Select(body: "target", face: MaxX))],"#;
     assert!(meets_face_to_face(&format!("gravity: (4.1e4, 0), {held}"), 1e-3));
-    // A body that turns meets the other one with its edge, one that begins to press slowly sends no front, and bodies with a common velocity do not meet.
+    // A body that turns meets the other one with its edge, one that begins to press slowly sends no front,
+    // and bodies with a common velocity do not meet.
     assert!(!condition(r#"InitialVelocity(on: Select(body: "flyer"), value: ("4-400*(y-0.005)", "400*x"))"#));
     assert!(!condition(
         r#"Velocity(on: Select(body: "flyer"), value: ("4.001+40*smoothstep((t-5.2e-5)/5e-6)", 0.0))"#

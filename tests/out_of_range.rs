@@ -1,5 +1,5 @@
-//! Every parameter of laws, equations of state, failure, control, contact and tools: a value out of range is refused where it stands in the scene, with
-//! what would be right.
+//! Every parameter of laws, equations of state, failure, control, contact and tools: a value out of range is
+//! refused where it stands in the scene, with what would be right.
 
 use meshless::assembly::build;
 use meshless::scene::{Source, parse};

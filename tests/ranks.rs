@@ -103,7 +103,8 @@ fn flows() {
     assert_equal_bits("thin bodies", &thin(), 150);
 }
 
-/// Water that falls from a step in a tank along which it slides: loops need what is near their own particles and no more. The tank moves, or stands still.
+/// Water that falls from a step in a tank along which it slides: loops need what is near their own particles
+/// and no more. The tank moves, or stands still.
 fn sliding(is_solid: bool, moves: bool, plugins: &str) -> Source {
     let [water, outer, inner, at] = match is_solid {
         true => [
@@ -195,7 +196,8 @@ fn piston() -> Source {
     Source::new("piston.ron", text)
 }
 
-/// A box on the floor of a tank, under water that has no room below it, and a probe of the force on the walls.
+/// A box on the floor of a tank, under water that has no room below it, and a probe of the force on the
+/// walls.
 fn gap() -> Source {
     let text = r#"(dimension: Two, gravity: (0.0, -9.81),
         materials: {"water": Fluid(density: 1000.0, viscosity: 0.1, sound_speed: 20.0), "wood": NeoHookean(density: 600, young: 1e9, poisson: 0.3)},

@@ -12,7 +12,8 @@ use common::{all_plugins, crash, double, failing, failing_metals, flow, metals, 
 fn a_resumed_run_has_the_bits_of_one_that_was_not_interrupted() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("state.mlc");
-    // The memory of the time step is longer than 500 steps: some restarts fall before, some after it turns over.
+    // The memory of the time step is longer than 500 steps: some restarts fall before, some after it turns
+    // over.
     let scenes = [
         (all_plugins(2), 700u64, 11u64),
         (all_plugins(2), 700, 12),

@@ -303,12 +303,14 @@ fn steps_of_a_body_that_is_squeezed_are_those_of_its_present_reference() {
     };
     let (total, _) = run("TotalLagrangian(kernel: cubic_spline, support: 2.4)");
     let (updated, balance) = run("UpdatedLagrangian()");
-    // Seen from the undeformed configuration the wave speed grows as one over the smallest stretch; over present lengths it stays.
+    // Seen from the undeformed configuration the wave speed grows as one over the smallest stretch; over
+    // present lengths it stays.
     assert!(updated < total, "{updated} steps, {total} of a total-Lagrangian bar");
     assert!(balance < 0.01, "energy balance error {balance}");
 }
 
-/// Strain energy of the square of S5, eight across, at three times its length, and what the run has warned of.
+/// Strain energy of the square of S5, eight across, at three times its length, and what the run has warned
+/// of.
 fn drawn(formulation: &str) -> (f64, Vec<String>) {
     let scene = include_str!("validation/rubber_pull/scene.ron")
         .replace("formulation: TotalLagrangian", &format!("formulation: {formulation}"))

@@ -1,4 +1,5 @@
-//! What wear leaves in a flow: fragments without stress, and places of removed particles that a closed flow has to fill.
+//! What wear leaves in a flow: fragments without stress, and places of removed particles that a closed flow
+//! has to fill.
 
 mod common;
 
@@ -7,7 +8,8 @@ use meshless::scene::Source;
 use meshless::simulation::Simulation;
 use meshless::world::{BodyId, Position, Removed, Velocity};
 
-/// A channel of water under a pressure, Pa, periodic along x, between walls that pull, with `body` in the place of some of its water.
+/// A channel of water under a pressure, Pa, periodic along x, between walls that pull, with `body` in the
+/// place of some of its water.
 fn channel(pressure: f64, body: &str, shape: &str) -> Simulation {
     let text = format!(
         r#"(dimension: Two, domain: (min: (0, -0.006), max: (0.02, 0.03), periodic: [X]),
@@ -80,7 +82,8 @@ fn what_a_fluid_crushes_ends_the_run_or_is_taken_out() {
             .map(|(name, shape)| chip(name, shape, formulation, ", remove_fragments(particles: 1)"));
         let (two, shape) = (two.collect::<Vec<_>>().join(", "), format!("Union([{}])", small.join(", ")));
         let one = chip("a", &large, formulation, ", remove_fragments()");
-        // The fluid fills their place at a fifth of its speed of sound, which costs some per cent of its energy.
+        // The fluid fills their place at a fifth of its speed of sound, which costs some per cent of its
+        // energy.
         for (bodies, shape, particles, error) in [(two, shape, 8, 0.01), (one, large.clone(), 48, 0.05)] {
             let mut sim = channel(1.5e4, &bodies, &shape);
             sim.run(|_| true).unwrap_or_else(|error| panic!("{formulation}: {error}"));
@@ -91,7 +94,8 @@ fn what_a_fluid_crushes_ends_the_run_or_is_taken_out() {
     }
 }
 
-/// The warning of a channel under a pressure in which half of the uppermost layer of a slab on its floor is worn off at the start.
+/// The warning of a channel under a pressure in which half of the uppermost layer of a slab on its floor is
+/// worn off at the start.
 fn worn(pressure: f64) -> Option<String> {
     let shape = "Box(min: (0, 0), max: (0.02, 0.008))";
     let body = format!(
@@ -115,7 +119,8 @@ fn worn(pressure: f64) -> Option<String> {
 
 #[test]
 fn a_closed_flow_that_cannot_fill_what_is_worn_is_told_the_pressure_it_lacks() {
-    // Ten particles of a slab beside 240 of water: 4.2 % of its volume, 16.7 kPa of its modulus of 400 kPa, a little less as it expands.
+    // Ten particles of a slab beside 240 of water: 4.2 % of its volume, 16.7 kPa of its modulus of 400 kPa, a
+    // little less as it expands.
     let told = worn(5e3).expect("a warning");
     assert!(told.contains("costs 16.") && told.contains("above 16."), "{told}");
     assert_eq!(worn(1.9e4), None);

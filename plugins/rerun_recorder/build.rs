@@ -1,4 +1,5 @@
-//! Takes the files of rerun's web viewer out of the crate that holds them, for `src/recording/web_viewer.rs` to build in.
+//! Takes the files of rerun's web viewer out of the crate that holds them, for `src/recording/web_viewer.rs`
+//! to build in.
 
 #[cfg(not(feature = "rerun"))]
 fn main() {}

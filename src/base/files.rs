@@ -9,7 +9,8 @@ pub(crate) const LARGEST_TEXT: u64 = 64 << 20;
 /// Largest mesh or particle file, B.
 pub(crate) const LARGEST_GEOMETRY: u64 = 4 << 30;
 
-/// The content of a file of at most `limit` bytes. A device or pipe has no length; it is read to the limit of texts.
+/// The content of a file of at most `limit` bytes. A device or pipe has no length; it is read to the limit of
+/// texts.
 ///
 /// # Errors
 /// It cannot be read, or is longer.

@@ -1,7 +1,9 @@
-//! What the engine of `meshless` stands on: linear algebra, parallel loops, kernels, neighbour search, shapes, and the language of scenes.
+//! What the engine of `meshless` stands on: linear algebra, parallel loops, kernels, neighbour search,
+//! shapes, and the language of scenes.
 //!
-//! Nothing here knows particles with columns, systems or formulations. The package `meshless_engine` passes all of it on; who extends the program depends on
-//! that one alone. The two are compiled one beside the other.
+//! Nothing here knows particles with columns, systems or formulations. The package `meshless_engine` passes
+//! all of it on; who extends the program depends on that one alone. The two are compiled one beside the
+//! other.
 
 pub mod correction;
 mod files;

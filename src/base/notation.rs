@@ -37,7 +37,8 @@ pub fn quantity(value: f64, unit: &str) -> String {
     .to_owned()
 }
 
-/// A value with its unit and an SI prefix, all of its `digits`: `4.80 kJ`. Pure numbers have the unit `1` and no prefix.
+/// A value with its unit and an SI prefix, all of its `digits`: `4.80 kJ`. Pure numbers have the unit `1` and
+/// no prefix.
 pub fn quantity_to(value: f64, unit: &str, digits: usize) -> String {
     let unit = if unit == "1" { "" } else { unit };
     if value == 0.0 || !value.is_finite() {
@@ -62,7 +63,8 @@ pub fn quantity_to(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
-/// A place with at most six digits each, `(0.1, 0.03)`: without its third coordinate where that is zero, as in the plane.
+/// A place with at most six digits each, `(0.1, 0.03)`: without its third coordinate where that is zero, as
+/// in the plane.
 pub fn place(coordinates: impl Into<[f64; 3]>) -> String {
     let [x, y, z] = coordinates.into();
     let shown = if z == 0.0 { vec![x, y] } else { vec![x, y, z] };

@@ -1,8 +1,8 @@
 //! `meshless bench`: how fast the program is on the benchmark cases, with everything on and output off.
 //!
-//! A case is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with ledger,
-//! watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine: ratios of benchmarks
-//! measured in one call count.
+//! A case is a scene of `benches/scenes/` at a given number of particles; it runs through the registry, with
+//! ledger, watchdog and adaptive step, as any scene does. Absolute figures differ from machine to machine:
+//! ratios of benchmarks measured in one call count.
 
 mod apart;
 mod bench_case;

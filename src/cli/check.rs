@@ -24,7 +24,8 @@ mod trial;
 use body::BodyReport;
 use trial::TrialSteps;
 
-/// Check a scene without writing anything: particles, neighbours, memory, time step, estimated run time, and notes on its set-up
+/// Check a scene without writing anything: particles, neighbours, memory, time step, estimated run time, and
+/// notes on its set-up
 #[derive(Args)]
 pub struct CheckArguments {
     #[command(flatten)]

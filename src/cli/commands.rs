@@ -67,7 +67,8 @@ impl Command {
     }
 }
 
-/// Runs the program with the arguments it was started with: the whole `main` of a program that scenes are run with.
+/// Runs the program with the arguments it was started with: the whole `main` of a program that scenes are run
+/// with.
 pub fn run(registry: Registry) -> ExitCode {
     ranks::let_the_first_speak();
     let command = match CommandLine::try_parse() {

@@ -7,7 +7,8 @@ use super::commands::CommandLine;
 use super::failure::CommandFailure;
 use super::text::say;
 
-/// Print the completions of a shell: `meshless completions bash > ~/.local/share/bash-completion/completions/meshless`
+/// Print the completions of a shell: `meshless completions
+/// bash > ~/.local/share/bash-completion/completions/meshless`
 #[derive(Args)]
 pub struct CompletionsArguments {
     /// Shell

@@ -123,7 +123,8 @@ impl Execution {
                     progress.steps(&self.sim),
                     &self.sim.state_hash(),
                 ));
-                // What lies there is a help to the user; a folder that cannot be listed is no failure of the run.
+                // What lies there is a help to the user; a folder that cannot be listed is no failure of the
+                // run.
                 if speaks()
                     && let Ok(files) = self.files()
                 {

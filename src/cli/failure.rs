@@ -27,7 +27,8 @@ pub enum CommandFailure {
         expect(dead_code, reason = "a program built without MPI is one process")
     )]
     Told(u8),
-    /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that was ended by it.
+    /// A signal stopped the run, by its number. Exit code 128 and this number, as shells count a program that
+    /// was ended by it.
     #[error("the run was interrupted")]
     Interrupted(u8),
 }

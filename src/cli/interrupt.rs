@@ -42,13 +42,15 @@ fn stop(signal: u8) {
     complain("stopping after this step; a second Ctrl-C ends the program at once");
 }
 
-/// The exit code of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+/// The exit code of a program that a signal has ended, as shells count: 130 for Ctrl-C, 143 for SIGTERM, 129
+/// for SIGHUP.
 pub fn exit_code(signal: u8) -> u8 {
     128 + signal
 }
 
-/// Calls `then` with the number of each signal to stop, on a thread of its own. A closed terminal that the program was started to ignore, as
-/// `nohup` starts it, stays ignored; Ctrl-C is heard by programs that a script started in the background, too.
+/// Calls `then` with the number of each signal to stop, on a thread of its own. A closed terminal that the
+/// program was started to ignore, as `nohup` starts it, stays ignored; Ctrl-C is heard by programs that a
+/// script started in the background, too.
 #[cfg(unix)]
 fn listen(then: fn(u8)) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

@@ -11,7 +11,8 @@ pub fn resident_bytes() -> Option<usize> {
 /// Time that the processors have spent on this program, s, as far as the system tells.
 pub fn processor_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name of the program, in parentheses, may hold spaces; the times are the 12th and 13th fields behind it.
+    // The name of the program, in parentheses, may hold spaces; the times are the 12th and 13th fields behind
+    // it.
     let fields = text.rsplit_once(')')?.1;
     let mut times = fields.split_whitespace().skip(11).map(|ticks| ticks.parse::<f64>().ok());
     Some((times.next()?? + times.next()??) / TICKS_PER_SECOND)

@@ -19,8 +19,8 @@ pub struct NeighborCounts {
 }
 
 impl NeighborCounts {
-    /// Counts the neighbours of the particles of a body: those of the reference configuration in solids, those that are near now
-    /// in fluids. None where particles have no neighbours of their own.
+    /// Counts the neighbours of the particles of a body: those of the reference configuration in solids,
+    /// those that are near now in fluids. None where particles have no neighbours of their own.
     pub fn count(sim: &Simulation, body: BodyId) -> Result<Option<Self>, CommandFailure> {
         if let Some(cloud) = FlowCloud::whole(sim.resources())
             && let Some(counts) = cloud.neighbor_counts(body)

@@ -27,14 +27,16 @@ pub fn started() -> usize {
     number_in(&SIZES).unwrap_or(1)
 }
 
-/// Threads of a rank, where the user does not say: the cores of the machine over the ranks that are on it. None for a program that runs alone.
+/// Threads of a rank, where the user does not say: the cores of the machine over the ranks that are on it.
+/// None for a program that runs alone.
 pub fn usual_threads() -> Option<usize> {
     let here = number_in(&LOCAL_SIZES).filter(|_| started() > 1)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Some((cores / here.max(1)).max(1))
 }
 
-/// Carries a command out as one of the ranks, on a thread of the pool: parallel loops and exchanges begin there.
+/// Carries a command out as one of the ranks, on a thread of the pool: parallel loops and exchanges begin
+/// there.
 pub fn together<T: Send>(
     command: impl FnOnce() -> Result<T, CommandFailure> + Send,
 ) -> Result<T, CommandFailure> {
@@ -52,7 +54,8 @@ fn on_ranks<T>(_: usize, command: impl FnOnce() -> Result<T, CommandFailure>) ->
         let done = require_equal("program", env!("CARGO_PKG_VERSION"))
             .and_then(|()| require_equal("instruction path", meshless_engine::parallel::instruction_path()))
             .and_then(|()| command());
-        // As soon as one process ends with an error, `mpirun` ends the others, which may not have told theirs yet.
+        // As soon as one process ends with an error, `mpirun` ends the others, which may not have told theirs
+        // yet.
         done.map_err(|failure| {
             failure.report();
             ranks::any(true);

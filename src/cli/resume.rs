@@ -26,7 +26,8 @@ pub struct ResumeArguments {
     /// Run to this time [s] instead of the end time of the scene
     #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Present path of the scene file, relative to which the files that it names are found; the scene itself is the one in the checkpoint
+    /// Present path of the scene file, relative to which the files that it names are found; the scene itself
+    /// is the one in the checkpoint
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Replace a value of the scene from here on, as in `record.every=0.001`; may be given several times

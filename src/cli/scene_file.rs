@@ -15,7 +15,8 @@ pub struct SceneFile {
     /// Scene file; `-` reads it from the standard input
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
-    /// Replace a value of the scene, as in `time.end=0.5` or `bodies.plate.spacing=0.01`; may be given several times
+    /// Replace a value of the scene, as in `time.end=0.5` or `bodies.plate.spacing=0.01`; may be given
+    /// several times
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = replacement)]
     pub set: Vec<(String, String)>,
 }

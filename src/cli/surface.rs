@@ -7,7 +7,8 @@ use clap::Args;
 use super::failure::CommandFailure;
 use super::values::time;
 
-/// Write the surface of a body in a recording as a mesh, .obj or .vtp (three dimensions; needs a build with `--features surfaces`)
+/// Write the surface of a body in a recording as a mesh, .obj or .vtp (three dimensions; needs a build with
+/// `--features surfaces`)
 #[derive(Args)]
 pub struct SurfaceArguments {
     /// Recording (.rrd), or an output folder whose newest recording is meant

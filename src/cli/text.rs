@@ -34,13 +34,15 @@ pub fn say(text: &str) {
     }
 }
 
-/// Why what was to be said has not reached its reader, if it has not. That nobody reads on, as after `| head`, is no failure.
+/// Why what was to be said has not reached its reader, if it has not. That nobody reads on, as after `|
+/// head`, is no failure.
 pub fn unsaid() -> Option<std::io::Error> {
     let error = UNSAID.lock().ok()?.take();
     error.filter(|error| error.kind() != ErrorKind::BrokenPipe)
 }
 
-/// Whether errors and progress may have colours: on a terminal, unless the user wants none (<https://no-color.org>).
+/// Whether errors and progress may have colours: on a terminal, unless the user wants none
+/// (<https://no-color.org>).
 pub fn in_colour() -> bool {
     let unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     std::io::stderr().is_terminal() && !unwanted
@@ -54,7 +56,8 @@ pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{}", text.trim_end());
 }
 
-/// How this program was called, for hints that can be pasted: its path, or its name where the shell has found it.
+/// How this program was called, for hints that can be pasted: its path, or its name where the shell has found
+/// it.
 pub fn program() -> String {
     let called = std::env::args().next().filter(|called| called.contains(std::path::MAIN_SEPARATOR));
     called.map_or_else(|| "meshless".to_owned(), |path| quoted(&path))

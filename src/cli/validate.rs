@@ -13,7 +13,8 @@ use report::ValidationReport;
 /// Run cases with known answers and print measured value, reference, error and tolerance.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct ValidateArguments {
-    /// Cases to run, such as `S11`; all if none is given. `sweep` runs every plugin of fluids on every shipped flow, which takes minutes.
+    /// Cases to run, such as `S11`; all if none is given. `sweep` runs every plugin of fluids on every
+    /// shipped flow, which takes minutes.
     #[arg(value_name = "ID")]
     pub cases: Vec<String>,
     /// Particles across the smallest dimension, in place of the cheapest meaningful resolution of each case.

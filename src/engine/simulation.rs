@@ -182,7 +182,8 @@ impl Simulation {
         }
     }
 
-    /// What a probe of the scene shows now: name and value of each of its columns; nothing for energies, and if no probe has the name.
+    /// What a probe of the scene shows now: name and value of each of its columns; nothing for energies, and
+    /// if no probe has the name.
     ///
     /// # Errors
     /// A column is missing.
@@ -207,7 +208,8 @@ impl Simulation {
         &self.schedule
     }
 
-    /// Speed of sound in the undeformed material of each body, m/s: of longitudinal waves in solids, c_0 in fluids. None for walls.
+    /// Speed of sound in the undeformed material of each body, m/s: of longitudinal waves in solids, c_0 in
+    /// fluids. None for walls.
     pub fn sound_speeds(&self) -> &[Option<f64>] {
         &self.sound_speeds
     }
@@ -257,8 +259,8 @@ impl Simulation {
         self.stop.is_some() || self.clock.time >= self.end
     }
 
-    /// Evaluates the right-hand side at the start and records the initial state. [`Simulation::step`] does this by
-    /// itself; call it to know the first limit before any step is done.
+    /// Evaluates the right-hand side at the start and records the initial state. [`Simulation::step`] does
+    /// this by itself; call it to know the first limit before any step is done.
     pub fn start(&mut self) -> Result<(), RunError> {
         if self.started {
             return Ok(());
@@ -309,7 +311,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Divides loops among ranks anew ([`ranks`]), with the same cut on all of them. Results do not depend on it.
+    /// Divides loops among ranks anew ([`ranks`]), with the same cut on all of them. Results do not depend on
+    /// it.
     pub fn set_cut(&mut self, cut: Cut) {
         self.world.phases().for_each(|phase| self.world.phase(phase).complete_all());
         ranks::set_cut(cut);

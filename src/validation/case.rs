@@ -20,7 +20,8 @@ pub struct Case {
     pub run: fn(&Registry, usize) -> Result<Vec<Check>>,
 }
 
-/// Hands the list of all cases, `<id> <group>::<file>::<constant>;`, to the macro of that name: [`CASES`] and the tests are made of it.
+/// Hands the list of all cases, `<id> <group>::<file>::<constant>;`, to the macro of that name: [`CASES`] and
+/// the tests are made of it.
 #[macro_export]
 macro_rules! for_each_case {
     ($then:ident) => {

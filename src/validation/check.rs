@@ -97,7 +97,8 @@ impl Check {
         Self { converges: true, rate: Some(rate), ..self }
     }
 
-    /// The same check with a relative tolerance that many times as wide: for a formulation that is compared with another.
+    /// The same check with a relative tolerance that many times as wide: for a formulation that is compared
+    /// with another.
     #[must_use]
     pub fn widened(self, factor: f64) -> Self {
         let tolerance = match self.tolerance {

@@ -1,7 +1,8 @@
 //! The sweep: every plugin of fluids at its default on every shipped flow.
 //!
-//! Each plugin joins those that the scene gives its fluids, or takes the place of the one of its name. Looked at is what holds for every flow: the volume of the
-//! fluid, the signs of the accounts, and that nothing is inside of a wall.
+//! Each plugin joins those that the scene gives its fluids, or takes the place of the one of its name. Looked
+//! at is what holds for every flow: the volume of the fluid, the signs of the accounts, and that nothing is
+//! inside of a wall.
 
 use anyhow::{Context, Result};
 use meshless_engine::assembly;
@@ -86,7 +87,8 @@ pub fn sweep_of(registry: &Registry, flow: &str, set: &[(&str, &str)], steps: u6
     Ok(checks)
 }
 
-/// What one of the flows, as it is shipped but for values set as `--set path=value` does, warns of within so many steps.
+/// What one of the flows, as it is shipped but for values set as `--set path=value` does, warns of within so
+/// many steps.
 ///
 /// # Errors
 /// No such flow, a value that cannot be set, or a run that fails.
@@ -162,7 +164,8 @@ fn without(source: Source, name: &str) -> Result<Source> {
     Ok(set.map_err(|problem| source.error(vec![problem]))?)
 }
 
-/// Volume of the fluids by their density, m3, and the volume that particles away from surfaces have over the room that they take.
+/// Volume of the fluids by their density, m3, and the volume that particles away from surfaces have over the
+/// room that they take.
 fn volumes(simulation: &Simulation) -> [f64; 2] {
     let cloud = simulation.resources().get::<FlowCloud>();
     let volume: f64 = (0..cloud.fluid).map(|i| cloud.volume(i)).sum();
@@ -181,8 +184,8 @@ fn volumes(simulation: &Simulation) -> [f64; 2] {
     [volume, filled / count]
 }
 
-/// Largest energy that an account of dissipation has given, and that walls have, over the largest account. Walls push water on at the start and take as much when it arrives:
-/// of them a share is allowed.
+/// Largest energy that an account of dissipation has given, and that walls have, over the largest account.
+/// Walls push water on at the start and take as much when it arrives: of them a share is allowed.
 fn given(simulation: &Simulation) -> [f64; 2] {
     let ledger = simulation.ledger();
     let total = |name: &str| ledger.total_named(name);

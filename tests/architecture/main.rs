@@ -140,6 +140,31 @@ fn files_are_short() {
     assert!(median <= 150, "the median is {median} lines");
 }
 
+/// Tables, addresses and formulas, which mean something else in two lines, are left as they are: rows of
+/// tables, and text that is set in as code.
+#[test]
+fn comments_are_no_wider_than_the_code() {
+    let is_prose = |comment: &str| !comment.starts_with('|') && !comment.starts_with("    ");
+    for path in sources() {
+        let text = read(&path);
+        let mut is_code = false;
+        for (number, line) in text.lines().enumerate() {
+            let marks = ["///", "//!", "//"];
+            let start = line.trim_start();
+            let Some(comment) = marks.iter().find_map(|mark| start.strip_prefix(mark)) else { continue };
+            let comment = comment.strip_prefix(' ').unwrap_or(comment);
+            is_code ^= comment.starts_with("```");
+            let is_wide = line.chars().count() > 110 && comment.contains(' ');
+            assert!(
+                !is_wide || is_code || !is_prose(comment),
+                "{}:{}: a comment wider than 110 characters",
+                shown(&path),
+                number + 1
+            );
+        }
+    }
+}
+
 #[test]
 fn nothing_is_left_open_and_nothing_is_a_grab_bag() {
     let open = ["TO", "DO"].concat();

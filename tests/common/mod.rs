@@ -71,7 +71,8 @@ pub fn removal() -> Source {
     Source::new("removal.ron", text)
 }
 
-/// A breaking dam between walls that move, with drops that leave the domain; in two dimensions with a rubber plate in its way.
+/// A breaking dam between walls that move, with drops that leave the domain; in two dimensions with a rubber
+/// plate in its way.
 pub fn flow(dimension: usize) -> Source {
     let (name, water, outer, inner, spacing) = if dimension == 2 {
         ("Two", "(0, 0), max: (0.4, 0.4)", "(-0.1, -0.1), max: (0.7, 0.5)", "(0, 0), max: (0.6, 1)", 0.02)
@@ -116,7 +117,8 @@ pub fn double(source: &Source) -> Source {
     Source::new("double.ron", source.text.replacen("(dimension", "(precision: Double, dimension", 1))
 }
 
-/// Metals that hit a wall: every law with state, every form of the hourglass control, an equation of state with energy.
+/// Metals that hit a wall: every law with state, every form of the hourglass control, an equation of state
+/// with energy.
 pub fn metals() -> Source {
     let body = |name: &str, at: f64, control: &str| {
         format!(
@@ -271,8 +273,8 @@ pub fn eulerian(source: &Source) -> Source {
     Source::new(name, text.replace("form: Ganzenmueller2015", "form: Stiffness"))
 }
 
-/// The scene with every spacing divided by the least whole number that gives it more than 4096 particles: several tasks of 1 024 rows, so that loops over rows
-/// are really divided between threads.
+/// The scene with every spacing divided by the least whole number that gives it more than 4096 particles:
+/// several tasks of 1 024 rows, so that loops over rows are really divided between threads.
 pub fn of_many_tasks(source: &Source) -> Source {
     let finer = (1..).map(|factor| refined(source, f64::from(factor)));
     let large = |source: &Source| simulation(source).world().len() > 4096;

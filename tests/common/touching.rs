@@ -2,7 +2,8 @@
 
 use meshless::scene::Source;
 
-/// In the plane: metal between a floor and a tool that presses and shears it with friction that sticks, a horseshoe that closes on itself, a disc that jumps.
+/// In the plane: metal between a floor and a tool that presses and shears it with friction that sticks, a
+/// horseshoe that closes on itself, a disc that jumps.
 pub fn touching() -> Source {
     let text = r#"(dimension: Two, gravity: (0.0, -0.1),
         materials: {
@@ -78,8 +79,8 @@ pub fn landing() -> Source {
     Source::new("landing.ron", text.to_owned())
 }
 
-/// A rigid ball and a rigid block, each of as many particles as the rubber and the water that they fall on: every pass over particles of rigid bodies is as long as
-/// those of the others.
+/// A rigid ball and a rigid block, each of as many particles as the rubber and the water that they fall on:
+/// every pass over particles of rigid bodies is as long as those of the others.
 pub fn large_rigid_bodies() -> Source {
     let text = r#"(dimension: Two, gravity: (0.0, -9.81),
         materials: {"rubber": NeoHookean(density: 1000, young: 1e6, poisson: 0.3), "wood": NeoHookean(density: 600, young: 1e9, poisson: 0.3),

@@ -1,4 +1,5 @@
-//! Grains in a flow that wear the floor of their channel: fluid, rigid bodies, an Eulerian solid that fails, removal, contact in a period.
+//! Grains in a flow that wear the floor of their channel: fluid, rigid bodies, an Eulerian solid that fails,
+//! removal, contact in a period.
 
 use meshless::scene::Source;
 

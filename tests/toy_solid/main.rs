@@ -1,5 +1,6 @@
-//! A formulation of solids that is one file and one line of registration has all that solids have: hourglass control, pair terms, contact, coupling to a
-//! fluid, symmetry, failure, checkpoints. It is a naive second implementation of the method of `TotalLagrangian` and moves its bodies alike.
+//! A formulation of solids that is one file and one line of registration has all that solids have: hourglass
+//! control, pair terms, contact, coupling to a fluid, symmetry, failure, checkpoints. It is a naive second
+//! implementation of the method of `TotalLagrangian` and moves its bodies alike.
 
 mod toy;
 
@@ -30,8 +31,8 @@ fn positions(sim: &Simulation) -> Vec<DVec3> {
     bodies.flat_map(of_body).collect()
 }
 
-/// Runs the scene, in which bodies move by `FORMULATION`, with this formulation and with `TotalLagrangian`: the particles move alike, to a share of
-/// what they have moved. Gives both.
+/// Runs the scene, in which bodies move by `FORMULATION`, with this formulation and with `TotalLagrangian`:
+/// the particles move alike, to a share of what they have moved. Gives both.
 fn alike(text: &str, steps: u64, tolerance: f64) -> [Simulation; 2] {
     let start = positions(&simulation(&text.replace("FORMULATION", "Toy")));
     let [toy, full] =

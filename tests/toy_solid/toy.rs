@@ -1,4 +1,5 @@
-//! A solid formulation in few lines, the pattern for a new one: a naive second implementation of the method of `TotalLagrangian`.
+//! A solid formulation in few lines, the pattern for a new one: a naive second implementation of the method
+//! of `TotalLagrangian`.
 
 use meshless::correction::MomentMatrix;
 use meshless::glam::{DMat3, DVec3};

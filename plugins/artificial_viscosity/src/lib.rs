@@ -1,9 +1,9 @@
 //! Artificial viscosity: the friction that shocks and impacts need in a scheme without any.
 //!
-//! For pairs that approach, `mu = h v_ij.x_ij / (|x_ij|^2 + 0.01 h^2) < 0` and
-//! `f_i = V_i V_j rho_0 (alpha c mu - beta mu^2) |W'_ij| x_ij / |x_ij|`: a repulsion, linear and quadratic in the speed of
-//! approach. h is half the support radius, c the speed of longitudinal waves, or of sound in a fluid. In fluids the linear part
-//! acts on pairs that part as well (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
+//! For pairs that approach, `mu = h v_ij.x_ij / (|x_ij|^2 + 0.01 h^2) < 0` and `f_i = V_i V_j rho_0 (alpha c
+//! mu - beta mu^2) |W'_ij| x_ij / |x_ij|`: a repulsion, linear and quadratic in the speed of approach. h is
+//! half the support radius, c the speed of longitudinal waves, or of sound in a fluid. In fluids the linear
+//! part acts on pairs that part as well (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};
@@ -70,8 +70,8 @@ impl Plugin for ArtificialViscosity {
 const LEAST_REYNOLDS: f64 = 50.0;
 
 impl ArtificialViscosity {
-    /// Warns where the viscosity is too large for a flow of a tenth of the speed of sound, which this is chosen for, over the smallest extent
-    /// of the body: `nu = alpha h c_0 / 8`, in three dimensions over 10.
+    /// Warns where the viscosity is too large for a flow of a tenth of the speed of sound, which this is
+    /// chosen for, over the smallest extent of the body: `nu = alpha h c_0 / 8`, in three dimensions over 10.
     fn warn_where_it_drowns(self, id: BodyId, sim: &mut SimBuilder<'_>) {
         let body = sim.body(id);
         let (share, h, axes) = if sim.dimension() == Dimension::Two { (8.0, 1.5, 2) } else { (10.0, 1.3, 3) };

@@ -1,7 +1,9 @@
-//! Diffusion of density (delta-SPH): takes the noise of the grid out of density and pressure, and leaves smooth fields alone.
+//! Diffusion of density (delta-SPH): takes the noise of the grid out of density and pressure, and leaves
+//! smooth fields alone.
 //!
-//! `drho_i/dt = 2 delta h c_0 sum_j V_j w_ij [(rho_j - rho_i) - (g_i + g_j).x_ij / 2]` over the neighbours of the same body; g is the renormalised
-//! gradient of the density with `model: Antuono`, zero with `model: Molteni`.
+//! `drho_i/dt = 2 delta h c_0 sum_j V_j w_ij [(rho_j - rho_i) - (g_i + g_j).x_ij / 2]` over the neighbours of
+//! the same body; g is the renormalised gradient of the density with `model: Antuono`, zero with `model:
+//! Molteni`.
 
 mod gradient;
 mod solid;
@@ -21,7 +23,8 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<DensityDiffusion>();
 }
 
-/// Diffuses the density of fluids, so that the noise of their pressure decays; in the list of an Eulerian solid, its density.
+/// Diffuses the density of fluids, so that the noise of their pressure decays; in the list of an Eulerian
+/// solid, its density.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DensityDiffusion {

@@ -1,7 +1,9 @@
 //! Diffusion of the density of Eulerian solids (Mohseni-Mofidi and Bierwisch 2020, eq. 21).
 //!
-//! `d ln V_i/dt = -(2 delta h c / s_i) sum_j V_j w_ij [(s_j - s_i) - (g_i + g_j) . x_ij / 2]` with the density over that of the start, `s = 1 / det F`, and `c = sqrt(K / rho_0)`.
-//! The gradient g is that of fluids; the paper has none. Without it, bending, which is a linear field of pressure, would be diffused away.
+//! `d ln V_i/dt = -(2 delta h c / s_i) sum_j V_j w_ij [(s_j - s_i) - (g_i + g_j) . x_ij / 2]` with the
+//! density over that of the start, `s = 1 / det F`, and `c = sqrt(K / rho_0)`. The gradient g is that of
+//! fluids; the paper has none. Without it, bending, which is a linear field of pressure, would be diffused
+//! away.
 
 use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;

@@ -84,7 +84,8 @@ fn a_linear_density_is_left_alone() {
 
 #[test]
 fn it_takes_energy_and_the_books_close() {
-    // Noise of the grid swings as fast as the step allows: what is left is the error of the leapfrog, and falls with the step.
+    // Noise of the grid swings as fast as the step allows: what is left is the error of the leapfrog, and
+    // falls with the step.
     let error = |factor: f64| {
         let mut sim = simulation_with_step("density_diffusion()", ROUGH, factor);
         sim.run(|sim| sim.clock().time < 0.05).expect("a run");

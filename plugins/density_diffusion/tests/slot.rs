@@ -26,7 +26,8 @@ fn is_warned(slot: f64) -> bool {
     sim.warnings().iter().any(|text| text.contains("`density_diffusion` has taken"))
 }
 
-/// Nothing but the jet takes energy: Bernoulli's pressure on the piston is the kinetic energy that leaves. A sixth of it was lost at the lips, and nothing was said.
+/// Nothing but the jet takes energy: Bernoulli's pressure on the piston is the kinetic energy that leaves. A
+/// sixth of it was lost at the lips, and nothing was said.
 #[test]
 fn a_jet_that_tears_at_the_lips_of_a_slot_is_warned_of() {
     assert!(is_warned(0.08));

@@ -4,7 +4,8 @@ use meshless_engine::assembly::build;
 use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 
-/// Walls whose particles form stairs shake what turns past them: three quarters of its energy were lost, and nothing was said.
+/// Walls whose particles form stairs shake what turns past them: three quarters of its energy were lost, and
+/// nothing was said.
 #[test]
 fn a_liquid_that_loses_its_motion_to_stairs_is_warned_of() {
     let drum = |lattice: &str| {

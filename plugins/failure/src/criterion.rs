@@ -24,7 +24,8 @@ pub enum Criterion {
         /// Limit, above zero, Pa.
         limit: f64,
     },
-    /// The sum of plastic strain increments over the failure strain of Johnson and Cook reaches 1. For materials with plastic flow.
+    /// The sum of plastic strain increments over the failure strain of Johnson and Cook reaches 1. For
+    /// materials with plastic flow.
     JohnsonCook(JohnsonCookFailure),
 }
 

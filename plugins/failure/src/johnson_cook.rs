@@ -4,8 +4,9 @@ use meshless_engine::materials::ParameterError;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Failure strain eps_f = (d1 + d2 exp(d3 s*)) (1 + d4 ln max(rate / reference_rate, 1)) (1 + d5 T*), not below `least_strain`;
-/// s* = mean stress / von Mises stress, T* = (T - reference_temperature) / (melt_temperature - reference_temperature) from 0 to 1.
+/// Failure strain eps_f = (d1 + d2 exp(d3 s*)) (1 + d4 ln max(rate / reference_rate, 1)) (1 + d5 T*), not
+/// below `least_strain`; s* = mean stress / von Mises stress, T* = (T - reference_temperature) /
+/// (melt_temperature - reference_temperature) from 0 to 1.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JohnsonCookFailure {

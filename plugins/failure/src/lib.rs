@@ -1,5 +1,5 @@
-//! Failure of solids: when a particle breaks, how fast, and what it then does. It wraps the material of a body,
-//! whichever that is.
+//! Failure of solids: when a particle breaks, how fast, and what it then does. It wraps the material of a
+//! body, whichever that is.
 
 mod criterion;
 mod energy;
@@ -40,7 +40,8 @@ column! {
     pub struct DamagedDeformation(glam::DMat3) = "damaged_deformation", "F_D", "1";
     /// Whether a failed particle has been at a surface of its body at the end of the last step: 1 or 0.
     pub struct Exposed(u32) = "exposed", "-", "1";
-    /// Volume ratio of a failed particle at the end of the last step; infinite for one that has lost its integrity.
+    /// Volume ratio of a failed particle at the end of the last step; infinite for one that has lost its
+    /// integrity.
     pub struct FailedVolume(f64) = "failed_volume", "J_D", "1";
     /// Mean stress of a failed particle at the end of the last step.
     pub struct FailedStress(f64) = "failed_stress", "sigma_m", "Pa";
@@ -67,8 +68,8 @@ pub enum Growth {
     /// From 0 to 1 within one step.
     #[default]
     AtOnce,
-    /// The cube root of the damage grows by factor c / h per second: a crack crosses the support h (the mean of the body) at the speed
-    /// factor c, c being the speed of longitudinal waves.
+    /// The cube root of the damage grows by factor c / h per second: a crack crosses the support h (the mean
+    /// of the body) at the speed factor c, c being the speed of longitudinal waves.
     CrackSpeed {
         /// Speed of the crack over the speed of waves.
         #[serde(default = "usual_speed")]

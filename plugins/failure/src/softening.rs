@@ -5,19 +5,23 @@ use meshless_engine::linalg::{Eigen, Sym3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to be lost.
+/// What a particle does whose damage has reached 1. On the way there damage D takes the share D of what is to
+/// be lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Then {
-    /// It resists compression of its volume alone, like a granular material, until it is so long and thin that its areas are three times as large: it then carries
-    /// nothing any more. On the way there damage takes from positive principal stresses.
+    /// It resists compression of its volume alone, like a granular material, until it is so long and thin
+    /// that its areas are three times as large: it then carries nothing any more. On the way there damage
+    /// takes from positive principal stresses.
     #[default]
     NoTension,
-    /// It resists changes of its volume alone, like a liquid, tension included, until it loses its integrity: volume ratio above 2,
-    /// inverted (det F <= 0), or areas three times as large. It then carries nothing any more. On the way there damage takes from the deviator.
+    /// It resists changes of its volume alone, like a liquid, tension included, until it loses its integrity:
+    /// volume ratio above 2, inverted (det F <= 0), or areas three times as large. It then carries nothing
+    /// any more. On the way there damage takes from the deviator.
     NoDeviator,
     /// It is taken out of the run. On the way there damage takes from positive principal stresses.
     Removed,
-    /// It is worn off: taken out of the run as soon as it is at a surface of its body. Inside, it is as with `NoDeviator`.
+    /// It is worn off: taken out of the run as soon as it is at a surface of its body. Inside, it is as with
+    /// `NoDeviator`.
     RemovedAtSurface,
 }
 
@@ -46,8 +50,8 @@ impl Then {
         matches!(self, Self::NoDeviator | Self::RemovedAtSurface)
     }
 
-    /// Whether a failed particle of that deformation, volume ratio and cofactor holds together no more: it would act on what is far
-    /// away, at shapes that no time step follows.
+    /// Whether a failed particle of that deformation, volume ratio and cofactor holds together no more: it
+    /// would act on what is far away, at shapes that no time step follows.
     pub(crate) fn is_torn(self, volume: f64, cofactor: &DMat3) -> bool {
         let [x, y, z] = [cofactor.x_axis, cofactor.y_axis, cofactor.z_axis];
         let area = ((x.length_squared() + y.length_squared() + z.length_squared()) / 3.0).sqrt();
@@ -60,10 +64,12 @@ impl Then {
     }
 }
 
-/// Volume ratio beyond which a liquid has lost its integrity, and mean ratio of areas beyond which liquids and granular materials have.
+/// Volume ratio beyond which a liquid has lost its integrity, and mean ratio of areas beyond which liquids
+/// and granular materials have.
 const TORN: [f64; 2] = [2.0, 3.0];
 
-/// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is singular.
+/// The cofactor J F^-T: what turns a Cauchy stress into a first Piola-Kirchhoff stress, also where F is
+/// singular.
 pub(crate) fn cofactor(f: &DMat3) -> DMat3 {
     let (a, b, c) = (f.x_axis, f.y_axis, f.z_axis);
     DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
@@ -77,8 +83,8 @@ pub(crate) fn cauchy(p: &DMat3, f: &DMat3) -> Sym3 {
 /// Volume ratios between which the pressure of a failed particle follows its law; beyond them it stays.
 const VOLUMES: [f64; 2] = [0.3, 3.0];
 
-/// The deformation at failure, blown up or pressed together to the volume ratio `j`: what the law of a failed particle is shown. Its
-/// deviator and plastic flow stay as they were; only the pressure moves.
+/// The deformation at failure, blown up or pressed together to the volume ratio `j`: what the law of a failed
+/// particle is shown. Its deviator and plastic flow stay as they were; only the pressure moves.
 pub(crate) fn at_volume(at_failure: &DMat3, j: f64) -> DMat3 {
     let ratio = j.clamp(VOLUMES[0], VOLUMES[1]) / at_failure.determinant().clamp(VOLUMES[0], VOLUMES[1]);
     *at_failure * ratio.cbrt()
@@ -113,7 +119,8 @@ mod tests {
         };
         assert!(!torn(Then::NoDeviator, 1.0, 1.0, 1.9) && torn(Then::NoDeviator, 1.0, 1.0, 2.1));
         assert!(torn(Then::NoDeviator, 1.0, 1.0, -1.0) && !torn(Then::NoDeviator, 0.5, 0.5, 0.5));
-        // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of 1.6.
+        // Areas of 4, 4 and 1/16 times have a root of the mean square of 3.3, those of 2, 2 and 1/4 one of
+        // 1.6.
         assert!(torn(Then::NoDeviator, 0.25, 0.25, 16.0) && !torn(Then::NoDeviator, 0.5, 0.5, 4.0));
     }
 

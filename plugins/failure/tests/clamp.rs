@@ -5,8 +5,9 @@ use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::world::{BodyId, Damage, ReferencePosition};
 
-/// Particles that a clamp holds and moves to the plane where it ends carry nothing of their stress. They failed by it once, tore the body off its clamp, and what they set free was booked
-/// though nothing had held it: with `Removed` 41 and 84 % of the energy.
+/// Particles that a clamp holds and moves to the plane where it ends carry nothing of their stress. They
+/// failed by it once, tore the body off its clamp, and what they set free was booked though nothing had held
+/// it: with `Removed` 41 and 84 % of the energy.
 #[test]
 fn what_a_clamp_holds_does_not_fail_by_a_stress_that_it_does_not_carry() {
     for formulation in ["TotalLagrangian", "UpdatedLagrangian()"] {

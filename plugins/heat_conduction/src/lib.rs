@@ -21,7 +21,8 @@ pub fn register(registry: &mut Registry) {
 }
 
 column! {
-    /// Temperature at the end of the last step: what is above it has come from elsewhere, such as plastic work and friction.
+    /// Temperature at the end of the last step: what is above it has come from elsewhere, such as plastic
+    /// work and friction.
     pub struct ConductedTemperature(f64) = "conducted_temperature", "T_n", "K";
 }
 
@@ -31,7 +32,8 @@ column! {
 pub struct HeatConduction {
     /// Thermal conductivity k \[W/(m K)\] of all bodies whose material is not in `materials`.
     pub conductivity: Option<f64>,
-    /// Thermal conductivity \[W/(m K)\] by the names of the scene's materials: `{"aluminium": 167.0, "acrylic": 0.19}`.
+    /// Thermal conductivity \[W/(m K)\] by the names of the scene's materials: `{"aluminium": 167.0,
+    /// "acrylic": 0.19}`.
     pub materials: BTreeMap<String, f64>,
     /// Specific heat \[J/(kg K)\] of bodies whose material has none.
     pub specific_heat: Option<f64>,

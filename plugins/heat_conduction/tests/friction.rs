@@ -1,4 +1,5 @@
-//! Two strips without ends that rub on each other are warmed as half-spaces with a constant flux through their surface.
+//! Two strips without ends that rub on each other are warmed as half-spaces with a constant flux through
+//! their surface.
 
 use std::f64::consts::PI;
 
@@ -44,15 +45,16 @@ fn rubbing() -> Simulation {
     build(&scene, &source, &registry).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Rise of the temperature at a depth, m, below the surface of a half-space through which a flux, W/m2, has come for a time, s (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids
-/// (1959), section 2.9).
+/// Rise of the temperature at a depth, m, below the surface of a half-space through which a flux, W/m2, has
+/// come for a time, s (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids (1959), section 2.9).
 fn rise(flux: f64, depth: f64, time: f64) -> f64 {
     let root = (CONDUCTIVITY / (DENSITY * SPECIFIC_HEAT) * time).sqrt();
     let xi = depth / (2.0 * root);
     2.0 * flux * root / CONDUCTIVITY * ((-xi * xi).exp() / PI.sqrt() - xi * erfc(xi))
 }
 
-/// The complementary error function (M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions (1964), 7.1.26, to 1.5e-7).
+/// The complementary error function (M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions (1964),
+/// 7.1.26, to 1.5e-7).
 fn erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.3275911 * x);
     let [a, b, c, d, e] = [0.254829592, -0.284496736, 1.421413741, -1.453152027, 1.061405429];

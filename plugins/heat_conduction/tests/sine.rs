@@ -100,7 +100,8 @@ fn no_heat_leaves_a_surface() {
 
 #[test]
 fn a_stretched_bar_conducts_along_its_present_length() {
-    // To 1.4 times its length, so short a time that it has not begun to shrink: the volume has grown as much, and a cosine decays by k/(rho c) pi^2 / 1.4.
+    // To 1.4 times its length, so short a time that it has not begun to shrink: the volume has grown as much,
+    // and a cosine decays by k/(rho c) pi^2 / 1.4.
     let pi = std::f64::consts::PI;
     for formulation in FORMULATIONS {
         let stretched = r#"conditions: [InitialDisplacement(on: Select(), value: ("0.4*x", None))],"#;

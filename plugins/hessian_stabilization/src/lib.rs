@@ -1,7 +1,8 @@
 //! Stabilization of solids by differences of second derivatives.
 //!
-//! Motions that leave the mean deformation gradient as it is meet no resistance from stress. A second derivative of the positions sees them, and the gradient
-//! of the gradient does not: their difference is resisted. The engine computes it ([`HessianDifference`]), with the neighbours of the formulation.
+//! Motions that leave the mean deformation gradient as it is meet no resistance from stress. A second
+//! derivative of the positions sees them, and the gradient of the gradient does not: their difference is
+//! resisted. The engine computes it ([`HessianDifference`]), with the neighbours of the formulation.
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Offer, Plugin, Registry, SetupError, SimBuilder};
@@ -34,10 +35,12 @@ impl Default for HessianStabilization {
 /// Forms of the stabilization.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum DifferenceForm {
-    /// The difference of two Laplacians of the positions stores energy: no direction counts more than another.
+    /// The difference of two Laplacians of the positions stores energy: no direction counts more than
+    /// another.
     FrameIndifferent,
-    /// The deformation gradient has the difference of two second derivatives times a vector added whose components are all the smoothing length
-    /// (Vidal, Bonet, Huerta 2007, eqs. 17-21): modes across the diagonal are not seen.
+    /// The deformation gradient has the difference of two second derivatives times a vector added whose
+    /// components are all the smoothing length (Vidal, Bonet, Huerta 2007, eqs. 17-21): modes across the
+    /// diagonal are not seen.
     Vidal2007,
 }
 

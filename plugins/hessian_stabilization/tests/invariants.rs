@@ -1,4 +1,5 @@
-//! What holds exactly: affine maps, force as the gradient of the energy, momentum and angular momentum, in both Lagrangian formulations, and after updates.
+//! What holds exactly: affine maps, force as the gradient of the energy, momentum and angular momentum, in
+//! both Lagrangian formulations, and after updates.
 
 use std::error::Error;
 

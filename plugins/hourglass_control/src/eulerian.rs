@@ -1,4 +1,5 @@
-//! The control of bodies whose weights are those of the present places: pair terms, which leave out what has failed.
+//! The control of bodies whose weights are those of the present places: pair terms, which leave out what has
+//! failed.
 
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies, PairControl};
@@ -23,8 +24,8 @@ pub struct Elastic {
     pub has_energy: bool,
 }
 
-/// Adds an elastic part, and the viscous form with the coefficient zeta, to a body. The deformation gradient is a state of its particles, so that it needs
-/// no other fit beside cracks.
+/// Adds an elastic part, and the viscous form with the coefficient zeta, to a body. The deformation gradient
+/// is a state of its particles, so that it needs no other fit beside cracks.
 pub fn add(elastic: Elastic, zeta: f64, id: BodyId, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
     let Elastic { xi, across, after_yield, has_energy } = elastic;
     let (bodies, fails) = (BodySet::new([id]), can_fail(sim, id)?);

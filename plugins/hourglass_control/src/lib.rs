@@ -1,8 +1,8 @@
 //! Hourglass control of solids.
 //!
-//! The deformation gradient of a particle is a mean over its neighbourhood; motions that leave the mean as it is, the
-//! zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of the mean,
-//! `e_ij = F_i X_ij - x_ij`.
+//! The deformation gradient of a particle is a mean over its neighbourhood; motions that leave the mean as it
+//! is, the zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of
+//! the mean, `e_ij = F_i X_ij - x_ij`.
 
 mod cracks;
 mod eulerian;
@@ -41,11 +41,14 @@ pub fn register(registry: &mut Registry) {
 pub struct HourglassControl {
     /// How the error of the mean deformation is resisted.
     pub form: Form,
-    /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in Lagrangian bodies. Default: 5, 25 of the last.
+    /// Coefficient alpha of the elastic resistance of `Variational`, `Combined` and `Ganzenmueller2015` in
+    /// Lagrangian bodies. Default: 5, 25 of the last.
     pub alpha: Option<f64>,
-    /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 7 of `Variational`, 10 of `Stiffness`, and 20 of `Combined` and `MohseniMofidi2020`.
+    /// Coefficient xi of the elastic resistance in Eulerian bodies. Default: 7 of `Variational`, 10 of
+    /// `Stiffness`, and 20 of `Combined` and `MohseniMofidi2020`.
     pub xi: Option<f64>,
-    /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`. Default: 10.
+    /// Coefficient zeta of the viscous resistance, of `Viscous`, `Combined` and `MohseniMofidi2020`.
+    /// Default: 10.
     pub zeta: Option<f64>,
     /// Share chi of the viscous part of `Combined` and `MohseniMofidi2020`, 0 to 1. Default: 0.5.
     pub chi: Option<f64>,
@@ -71,19 +74,23 @@ impl Default for HourglassControl {
 pub enum Form {
     /// `Variational`; `Combined` in Eulerian bodies whose material flows plastically.
     Default,
-    /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation gradient, in Lagrangian bodies; of the error along
-    /// the bond and a tenth of that across it, with the kernel of the present places, in Eulerian ones.
+    /// The exact gradient of an energy: of the whole error vector, with the weights of the deformation
+    /// gradient, in Lagrangian bodies; of the error along the bond and a tenth of that across it, with the
+    /// kernel of the present places, in Eulerian ones.
     Variational,
-    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of Lagrangian bodies.
+    /// The error along the bond (Ganzenmueller 2015, eqs. 31-32). It has no energy, and is booked as work. Of
+    /// Lagrangian bodies.
     Ganzenmueller2015,
-    /// The error along the bond, with the kernel of the present places (Mohseni-Mofidi and Bierwisch 2020, eq. 32). It has no energy, and is booked as
-    /// work. Of Eulerian bodies.
+    /// The error along the bond, with the kernel of the present places (Mohseni-Mofidi and Bierwisch 2020,
+    /// eq. 32). It has no energy, and is booked as work. Of Eulerian bodies.
     Stiffness,
-    /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq. 33).
+    /// A viscous force along the bond against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq.
+    /// 33).
     Viscous,
     /// chi times `Viscous` and 1 - chi times `Variational` (Ganzenmueller and others 2016).
     Combined,
-    /// chi times `Viscous` and 1 - chi times `Stiffness` (Mohseni-Mofidi and Bierwisch 2020, eq. 34). Of Eulerian bodies.
+    /// chi times `Viscous` and 1 - chi times `Stiffness` (Mohseni-Mofidi and Bierwisch 2020, eq. 34). Of
+    /// Eulerian bodies.
     MohseniMofidi2020,
 }
 
@@ -98,14 +105,17 @@ impl Form {
 const WORK: &str = "hourglass_work";
 /// Account of what the viscous form takes.
 const VISCOSITY: &str = "hourglass_viscosity";
-/// Resistance of `Variational` to the error across a pair, over that to the error along it. Where a body is twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar of 8 particles across is
-/// twisted by 11 % too small a torque, and a plate of 8 bends by 5 % too much. It goes with the lesser E_i of the pair over Young's modulus: in metal
-/// that flows, neighbours slide past each other, which is no error of theirs.
+/// Resistance of `Variational` to the error across a pair, over that to the error along it. Where a body is
+/// twisted the errors of all pairs are across them, and bending has a part of them: without it a square bar
+/// of 8 particles across is twisted by 11 % too small a torque, and a plate of 8 bends by 5 % too much. It
+/// goes with the lesser E_i of the pair over Young's modulus: in metal that flows, neighbours slide past each
+/// other, which is no error of theirs.
 const ACROSS: f64 = 0.1;
 /// Coefficient zeta and share chi where the scene gives none.
 const USUAL_ZETA: f64 = 10.0;
 const USUAL_CHI: f64 = 0.5;
-/// Coefficient xi where the scene gives none: of `Variational` alone, and of all other forms, before the share of the viscous part is taken off.
+/// Coefficient xi where the scene gives none: of `Variational` alone, and of all other forms, before the
+/// share of the viscous part is taken off.
 const USUAL_XI: [f64; 2] = [7.0, 10.0];
 
 impl Plugin for HourglassControl {
@@ -132,7 +142,8 @@ fn flows(id: BodyId, sim: &SimBuilder<'_>) -> Result<bool, SetupError> {
     Ok(sim.body(id).solid_law()?.initial_yield_stress().is_some())
 }
 
-/// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their weights are not those of a reference.
+/// The bodies that take terms which fold into the internal force, and those that take pair terms alone: their
+/// weights are not those of a reference.
 fn split(sim: &SimBuilder<'_>) -> Result<(BodySet, BodySet), SetupError> {
     let solids = sim.scope_of(BodyKind::Solid)?;
     let folds = |id: &BodyId| sim.body(*id).offers(Offer::FoldedTerms);

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 /// What the control resists with in a particle that has yielded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum AfterYield {
-    /// The present flow stress (Ganzenmueller 2015, section 4.5): an elastic resistance would carry load that the metal
-    /// cannot, and suppress the flow.
+    /// The present flow stress (Ganzenmueller 2015, section 4.5): an elastic resistance would carry load that
+    /// the metal cannot, and suppress the flow.
     #[default]
     YieldStress,
     /// Young's modulus, as before yield.

@@ -1,13 +1,13 @@
 //! The variational form: the exact gradient of an energy.
 //!
-//! `U = sum_i (alpha/12) E_i V_i sum_j V_j w_ij |F_i X_ij - x_ij|^2`. F_i is the fit that makes the inner sum least, so
-//! its change does not contribute to dU/dx, and the force is
-//! `f_i = -(alpha/6) V_i sum_j V_j w_ij [E_i (F_i X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors.
-//! With F_i X_ij - x_ij = H_i X_ij - u_ij it folds into the corrected stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness,
-//! k_i += (alpha/6) E_i.
+//! `U = sum_i (alpha/12) E_i V_i sum_j V_j w_ij |F_i X_ij - x_ij|^2`. F_i is the fit that makes the inner sum
+//! least, so its change does not contribute to dU/dx, and the force is `f_i = -(alpha/6) V_i sum_j V_j w_ij
+//! [E_i (F_i X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors. With F_i X_ij - x_ij = H_i
+//! X_ij - u_ij it folds into the corrected stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness, k_i +=
+//! (alpha/6) E_i.
 //!
-//! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has worked for
-//! that: it is booked as released.
+//! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has
+//! worked for that: it is booked as released.
 
 use meshless_engine::parallel::{FourLanes, HotLoop, run_hot};
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
@@ -58,7 +58,8 @@ impl HotLoop for AddBlock<'_, '_> {
                 let memory = &mut rows.memory;
                 let (before, error) = (memory.modulus[k], memory.residual[k]);
                 if before > 0.0 {
-                    // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 e_n . e_n+1 beyond the change of energy.
+                    // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 e_n . e_n+1 beyond the
+                    // change of energy.
                     let both = 0.5 * rows.volume[k] * (error * rows.residual[k]).max(0.0).sqrt();
                     energy.released += factor * (before - modulus) * both;
                 }

@@ -1,4 +1,5 @@
-//! No hourglass force across a crack, whatever the form of the control: against an energy summed anew, and on halves that have come apart.
+//! No hourglass force across a crack, whatever the form of the control: against an energy summed anew, and on
+//! halves that have come apart.
 
 use std::sync::Arc;
 
@@ -82,8 +83,8 @@ impl SolidLaw for Crumbling {
     }
 }
 
-/// An irregular block, 1 m long, at the start: particles with |X - 0.5| < `half` have failed; with `half` below zero none has, and those that will bear what
-/// they did.
+/// An irregular block, 1 m long, at the start: particles with |X - 0.5| < `half` have failed; with `half`
+/// below zero none has, and those that will bear what they did.
 fn started(
     dimension: usize,
     control: &str,

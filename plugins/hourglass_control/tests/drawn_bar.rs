@@ -5,7 +5,8 @@ use meshless_engine::plugin::Registry;
 use meshless_engine::scene::{Source, parse};
 use meshless_engine::world::{BodyId, PlasticStrain};
 
-/// The plastic strain of every particle over their mean, least and greatest, in a bar eight spacings thick that is drawn along an axis by 4 %.
+/// The plastic strain of every particle over their mean, least and greatest, in a bar eight spacings thick
+/// that is drawn along an axis by 4 %.
 fn spread(sizes: (f64, f64), (low, high): (&str, &str), velocity: &dyn Fn(&str) -> String) -> (f64, f64) {
     let axis = if sizes.0 > sizes.1 { "x" } else { "y" };
     let text = format!(
@@ -31,8 +32,9 @@ fn spread(sizes: (f64, f64), (low, high): (&str, &str), velocity: &dyn Fn(&str) 
     (all().fold(f64::INFINITY, f64::min) / mean, all().fold(0.0, f64::max) / mean)
 }
 
-/// A uniform stress makes a uniform strain. Rows of triangles end in zigzags at the sides along x: where shares of stress are those of a body with its mirror image behind the side, plastic strain is 0.78 to 1.21 of its mean along x and 0.89 to
-/// 1.25 along y.
+/// A uniform stress makes a uniform strain. Rows of triangles end in zigzags at the sides along x: where
+/// shares of stress are those of a body with its mirror image behind the side, plastic strain is 0.78 to 1.21
+/// of its mean along x and 0.89 to 1.25 along y.
 #[test]
 fn a_hexagonal_bar_is_drawn_evenly_along_both_axes() {
     let along_x = |value: &str| format!("(\"{value}\", None)");

@@ -1,4 +1,5 @@
-//! What holds exactly with the control, in both Lagrangian formulations: affine maps, force as the slope of the energy, conservation.
+//! What holds exactly with the control, in both Lagrangian formulations: affine maps, force as the slope of
+//! the energy, conservation.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -54,7 +55,8 @@ fn an_affine_map_is_exact_and_holds_nothing() {
         let make = || block(dimension, formulation, control, 1.0);
         let found = Specimen::new(&make).affine(map, DVec3::new(0.7, -0.4, 0.0))?;
         assert!(found.gradient < 1e-10 && found.net.size > 0.1, "{control}, {formulation}: {found:?}");
-        // The paper's form acts along the bonds, the variational one is the gradient of an energy that turns with the body.
+        // The paper's form acts along the bonds, the variational one is the gradient of an energy that turns
+        // with the body.
         assert!(found.net.force < 1e-10 && found.net.torque < 1e-10, "{control}, {formulation}: {found:?}");
         assert!(found.held < 1e-13, "{control}, {formulation}: {found:?}");
         Ok(())

@@ -1,4 +1,5 @@
-//! The control under plastic flow: viscous form against a naive sum, balance of the energy that softening releases, the switch.
+//! The control under plastic flow: viscous form against a naive sum, balance of the energy that softening
+//! releases, the switch.
 
 use glam::{DMat2, DVec2, DVec3};
 use meshless_engine::assembly::build;

@@ -1,5 +1,5 @@
-//! The proposed time step against the critical one of a naive second implementation: the largest frequency of the
-//! linearised equations, found by power iteration over all pairs.
+//! The proposed time step against the critical one of a naive second implementation: the largest frequency of
+//! the linearised equations, found by power iteration over all pairs.
 
 use glam::{DMat2, DVec2, DVec3};
 use meshless_engine::assembly::build;

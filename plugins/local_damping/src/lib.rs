@@ -1,7 +1,7 @@
 //! Damping of the motion of each particle by itself: v decays, whatever the neighbours do.
 //!
-//! With a constant rate, or as dynamic relaxation: the rate follows the slowest oscillation that is left, until the bodies
-//! are at rest.
+//! With a constant rate, or as dynamic relaxation: the rate follows the slowest oscillation that is left,
+//! until the bodies are at rest.
 
 mod decay;
 mod relaxation;
@@ -25,18 +25,20 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<LocalDamping>();
 }
 
-/// Takes energy out of the motion of every particle that is free to move, but not out of that of rigid bodies.
+/// Takes energy out of the motion of every particle that is free to move, but not out of that of rigid
+/// bodies.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LocalDamping {
-    /// Rate \[1/s\] at which velocities decay, v' = -rate v; only in mode `Constant`, which needs it. An oscillation of
-    /// period T is critically damped at 4 pi / T.
+    /// Rate \[1/s\] at which velocities decay, v' = -rate v; only in mode `Constant`, which needs it. An
+    /// oscillation of period T is critically damped at 4 pi / T.
     pub rate: Option<f64>,
     /// Constant rate, or relaxation until rest.
     pub mode: DampingMode,
     /// Time \[s\] from which it acts. Default: the start.
     pub from: Option<f64>,
-    /// Time \[s\] until which it acts, so that it is off before anything dynamic is recorded. Default: the end.
+    /// Time \[s\] until which it acts, so that it is off before anything dynamic is recorded. Default: the
+    /// end.
     pub until: Option<f64>,
 }
 
@@ -47,11 +49,12 @@ pub enum DampingMode {
     /// The rate that is given.
     #[default]
     Constant,
-    /// Dynamic relaxation to the static solution. The rate is twice the frequency of the motion that is left, so that the
-    /// slowest oscillation is critically damped; the frequency is the Rayleigh quotient of the last step.
+    /// Dynamic relaxation to the static solution. The rate is twice the frequency of the motion that is left,
+    /// so that the slowest oscillation is critically damped; the frequency is the Rayleigh quotient of the
+    /// last step.
     Relaxation {
-        /// The bodies are at rest when kinetic energy and the energy of the forces out of balance together are below
-        /// tolerance^2 times the elastic energy: the displacement is then within about `tolerance`.
+        /// The bodies are at rest when kinetic energy and the energy of the forces out of balance together
+        /// are below tolerance^2 times the elastic energy: the displacement is then within about `tolerance`.
         #[serde(default = "default_tolerance")]
         tolerance: f64,
         /// Time \[s\] before which nothing counts as rest: the end of a ramp of the load.

@@ -1,7 +1,8 @@
 //! Particle shifting: moves fluid particles a little from where they are crowded to where there is room.
 //!
-//! Two passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, from which `displacement` makes the displacement of each particle,
-//! and `response` computes how velocity and density respond. The README has the equations and the variants that were tried.
+//! Two passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, from which
+//! `displacement` makes the displacement of each particle, and `response` computes how velocity and density
+//! respond. The README has the equations and the variants that were tried.
 
 mod displacement;
 mod local;
@@ -32,7 +33,8 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<ParticleShifting>();
 }
 
-/// Keeps the particles of fluids evenly spread, so that flows with stagnation points form no gaps and threads.
+/// Keeps the particles of fluids evenly spread, so that flows with stagnation points form no gaps and
+/// threads.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticleShifting {
@@ -62,7 +64,8 @@ impl Plugin for ParticleShifting {
         sim.add_column_to::<DensityShift>(&bodies);
         sim.add_column_to::<PendingDilation>(&bodies);
         let own = bodies.iter().map(|id| (id, self.strength));
-        // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies, however many have the plugin.
+        // Displacements of one fluid change the volumes of its neighbours: one system serves all bodies,
+        // however many have the plugin.
         if let Some(shifted) = sim.take_extensions::<Shared<Shifted>>().pop() {
             sim.shared_mut(shifted).extend(own);
             sim.leave_note(shifted);

@@ -24,7 +24,8 @@ const RETURN: f64 = 1.0;
 pub struct ShiftResponse {
     /// Change of its velocity, m/s: its new place has another.
     pub velocity: DVec3,
-    /// Change of volume over volume by the displacements, `sum_j V_j (dx_j - dx_i) . grad_i W` halfway along them.
+    /// Change of volume over volume by the displacements, `sum_j V_j (dx_j - dx_i) . grad_i W` halfway along
+    /// them.
     pub dilation: f64,
     /// Excess of volume as a mean over its neighbours.
     pub excess: f64,
@@ -124,7 +125,8 @@ pub fn change_density(
     let dt = step.clock.dt;
     let sound_speed = cloud.state(id).map_or(0.0, |state| state.sound_speed);
     let share = 1.0 - (-dt * sound_speed / (FOLLOWS * cloud.kernel.smoothing_length())).exp();
-    // In a step of the usual length neighbours take a mean: what they share does not depend on the number of steps.
+    // In a step of the usual length neighbours take a mean: what they share does not depend on the number of
+    // steps.
     let mixing = (FOLLOWS * share / 0.4).min(1.0);
     for row in rows {
         let ShiftResponse { dilation, excess, shared, .. } = responses[row];

@@ -119,7 +119,8 @@ fn flux(fluid: &str) -> f64 {
     1.5 * velocity.iter().map(|v| v.0.x).sum::<f64>() / velocity.len() as f64
 }
 
-/// A shift that leaves out the part along the normal of these walls lets rows part under tension: the flow comes off the wall, and its flux rises by 4 to 28 %.
+/// A shift that leaves out the part along the normal of these walls lets rows part under tension: the flow
+/// comes off the wall, and its flux rises by 4 to 28 %.
 #[test]
 fn a_channel_keeps_its_flux_with_every_kernel() {
     for fluid in ["", "support: 3.4", "kernel: wendland_c4", "kernel: wendland_c6", "kernel: quintic_spline"]

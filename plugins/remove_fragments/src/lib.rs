@@ -1,7 +1,9 @@
-//! Takes debris of solids out of the run: particles that are crushed, and pieces too small to have an interior.
+//! Takes debris of solids out of the run: particles that are crushed, and pieces too small to have an
+//! interior.
 //!
-//! What the law of a body cannot bear squeezes its particles to nothing, until they turn inside out and the run ends. What is left of a body that has failed may be single particles, whose
-//! deformation gradient is fitted to one or two neighbours and means nothing. Neither is a solid that the spacing resolves.
+//! What the law of a body cannot bear squeezes its particles to nothing, until they turn inside out and the
+//! run ends. What is left of a body that has failed may be single particles, whose deformation gradient is
+//! fitted to one or two neighbours and means nothing. Neither is a solid that the spacing resolves.
 
 mod debris;
 
@@ -18,7 +20,8 @@ pub fn register(registry: &mut Registry) {
 }
 
 column! {
-    /// Whether a particle has been crushed, or belonged to a piece that is too small, at the end of the last step: 1 or 0.
+    /// Whether a particle has been crushed, or belonged to a piece that is too small, at the end of the last
+    /// step: 1 or 0.
     pub struct IsDebris(u32) = "debris", "-", "1";
 }
 
@@ -28,8 +31,8 @@ column! {
 pub struct RemoveFragments {
     /// Volume over that of the start below which a particle is crushed; zero: none is.
     pub least_volume: f64,
-    /// Pieces of fewer particles are taken out; 1: none is. A piece is what hangs together by kernels. Default: 5 in the plane and 7 in space, a particle with its
-    /// nearest neighbours.
+    /// Pieces of fewer particles are taken out; 1: none is. A piece is what hangs together by kernels.
+    /// Default: 5 in the plane and 7 in space, a particle with its nearest neighbours.
     pub particles: Option<usize>,
 }
 

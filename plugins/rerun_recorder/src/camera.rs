@@ -61,7 +61,8 @@ pub struct Eye {
     pub up: [f64; 3],
 }
 
-/// Diagonal below which a scene is small, m: the viewer leaves out what is within 0.01 of its eye, so that a scene of a few millimetres could not be seen.
+/// Diagonal below which a scene is small, m: the viewer leaves out what is within 0.01 of its eye, so that a
+/// scene of a few millimetres could not be seen.
 const SMALL: f64 = 0.1;
 /// Small scenes are drawn in millimetres.
 const ENLARGED: f64 = 1000.0;
@@ -73,8 +74,8 @@ pub const OPENING: f64 = 0.5206;
 const MARGIN: f64 = 1.12;
 
 impl Eye {
-    /// An eye that has the box in view: from the front in two dimensions, else from the front, right and above.
-    /// `up` is a unit vector along an axis, `aspect` the width over the height of the picture.
+    /// An eye that has the box in view: from the front in two dimensions, else from the front, right and
+    /// above. `up` is a unit vector along an axis, `aspect` the width over the height of the picture.
     pub fn on(bounds: &Bounds, dimension: Dimension, up: [f64; 3], aspect: f64) -> Self {
         let axis = (0..3).find(|&k| up[k] != 0.0).unwrap_or(2);
         let direction = match (dimension, axis) {

@@ -1,6 +1,7 @@
 //! Colour maps: a number between 0 and 1 becomes a colour.
 //!
-//! The tables are every fifteenth of the 256 colours of the published maps; between them colours are interpolated.
+//! The tables are every fifteenth of the 256 colours of the published maps; between them colours are
+//! interpolated.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,7 +17,8 @@ pub enum Colormap {
     Turbo,
     /// Blue to red through grey: zero is in the middle (K. Moreland, 2009).
     CoolWarm,
-    /// Light blue to light red through black: zero is in the middle, and stands out from a light background (F. Crameri, 2018).
+    /// Light blue to light red through black: zero is in the middle, and stands out from a light background
+    /// (F. Crameri, 2018).
     Berlin,
 }
 

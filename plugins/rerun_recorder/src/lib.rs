@@ -1,8 +1,8 @@
 //! Recordings for the rerun viewer.
 //!
-//! A recording opens as it should be looked at: the bodies as points of the right radius, coloured by a field, with a
-//! colour bar; beside them energies, the error of their balance, and probes over the simulated time. A frame can be read back and drawn
-//! as a picture, without a viewer and without a screen.
+//! A recording opens as it should be looked at: the bodies as points of the right radius, coloured by a
+//! field, with a colour bar; beside them energies, the error of their balance, and probes over the simulated
+//! time. A frame can be read back and drawn as a picture, without a viewer and without a screen.
 //!
 //! Without the feature `rerun` the plugin knows its parameters and writes nothing.
 

@@ -1,4 +1,5 @@
-//! A picture of a frame: the particles, a title, the time, and the colour bar; drawn without a viewer and without a screen.
+//! A picture of a frame: the particles, a title, the time, and the colour bar; drawn without a viewer and
+//! without a screen.
 
 mod annotate;
 mod canvas;

@@ -18,26 +18,28 @@ pub fn register(registry: &mut Registry) {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RerunRecorder {
-    /// The field that colours the particles, such as `"von_mises"` or `"velocity"`; of a vector its magnitude.
-    /// Default: the first of `record.fields`, else `"velocity"`.
+    /// The field that colours the particles, such as `"von_mises"` or `"velocity"`; of a vector its
+    /// magnitude. Default: the first of `record.fields`, else `"velocity"`.
     pub color_by: Option<String>,
-    /// Values at the two ends of the colour scale, in the unit of the field. Default: round values around those of all
-    /// frames so far, so that the scale only grows; one particle in two hundred may lie outside at either end, and what a single frame
-    /// alone has reached, such as an impact.
+    /// Values at the two ends of the colour scale, in the unit of the field. Default: round values around
+    /// those of all frames so far, so that the scale only grows; one particle in two hundred may lie outside
+    /// at either end, and what a single frame alone has reached, such as an impact.
     pub range: Option<(f64, f64)>,
     /// Colour map. Default: `Viridis`, or `Berlin` where the values lie on both sides of zero.
     pub colormap: Option<Colormap>,
-    /// Bodies drawn in grey, whatever their field, and left out of the range. Default: the walls, so that a fluid can be told from
-    /// its tank. In three dimensions they are dots, so that one sees into it; so are bodies that do not have the field, such as rigid tools
-    /// beside stresses.
+    /// Bodies drawn in grey, whatever their field, and left out of the range. Default: the walls, so that a
+    /// fluid can be told from its tank. In three dimensions they are dots, so that one sees into it; so are
+    /// bodies that do not have the field, such as rigid tools beside stresses.
     pub grey: Option<Vec<String>>,
     /// Dots where the particles were in the first frame. Default: false.
     pub undeformed: bool,
-    /// Bodies drawn as closed surfaces, in three dimensions. It needs a program built with `--features surfaces`. Default: none.
+    /// Bodies drawn as closed surfaces, in three dimensions. It needs a program built with `--features
+    /// surfaces`. Default: none.
     pub surfaces: Vec<String>,
     /// Radius of the particles in the picture over half their spacing \[1\]. Default: 1.
     pub radius_scale: f64,
-    /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written all the same.
+    /// A rerun viewer that shows the run while it goes on, such as `"127.0.0.1:9876"`; the file is written
+    /// all the same.
     pub connect: Option<String>,
 }
 

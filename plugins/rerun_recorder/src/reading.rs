@@ -26,7 +26,8 @@ pub struct RecordedBody {
     pub radius: f32,
     /// When they were there \[ns\].
     time: i64,
-    /// The row of the recording that had them first: bodies are written in the order of the scene, but not kept in it.
+    /// The row of the recording that had them first: bodies are written in the order of the scene, but not
+    /// kept in it.
     first_row: Option<RowId>,
 }
 

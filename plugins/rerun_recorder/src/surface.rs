@@ -1,7 +1,8 @@
 //! The surface of a body as a mesh of triangles, reconstructed from its particles.
 //!
-//! The density of the particles is contoured by marching cubes (W. Lorensen, H. Cline, SIGGRAPH 1987; by the crate `splashsurf_lib`),
-//! the mesh is smoothed by Laplacian steps, and its colours are Shepard means of those of the particles around.
+//! The density of the particles is contoured by marching cubes (W. Lorensen, H. Cline, SIGGRAPH 1987; by the
+//! crate `splashsurf_lib`), the mesh is smoothed by Laplacian steps, and its colours are Shepard means of
+//! those of the particles around.
 
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -46,7 +47,8 @@ pub enum SurfaceError {
     Reconstruction(String),
 }
 
-/// The surface of particles of that radius \[m\]; `colors` has one for each, or one for all. Nothing for no particles.
+/// The surface of particles of that radius \[m\]; `colors` has one for each, or one for all. Nothing for no
+/// particles.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! What the plugin does in a build without rerun: scenes stay valid, and the run says that there is no recording.
+//! What the plugin does in a build without rerun: scenes stay valid, and the run says that there is no
+//! recording.
 
 use std::convert::Infallible;
 

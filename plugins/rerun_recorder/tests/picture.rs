@@ -9,7 +9,8 @@ use meshless_engine::scene::Dimension;
 use rerun_recorder::{Colormap, Look, ReadError, RerunFile, RerunRecorder, draw, read_frame};
 use tempfile::TempDir;
 
-/// Four frames of a lone grey particle and a pair of coloured ones, of which the right one rises by 1 m a frame.
+/// Four frames of a lone grey particle and a pair of coloured ones, of which the right one rises by 1 m a
+/// frame.
 fn recording(folder: &Path, depth: f32) -> PathBuf {
     let settings = RerunRecorder { range: Some((0.0, 10.0)), ..RerunRecorder::default() };
     let grey = vec!["post".to_owned()];
@@ -152,7 +153,8 @@ fn particles_are_where_they_are_and_as_large_as_they_are() {
 
 #[test]
 fn what_is_nearer_hides_what_is_behind() {
-    // Seen from (1, 0.8, 1.6), the post hides nothing beside the pair; moved towards the eye from the right particle, it hides it.
+    // Seen from (1, 0.8, 1.6), the post hides nothing beside the pair; moved towards the eye from the right
+    // particle, it hides it.
     let folder = folder();
     let path = recording(folder.path(), 2.0);
     let mut frame = read_frame(&path, None).expect("a frame");

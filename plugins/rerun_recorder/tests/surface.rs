@@ -25,7 +25,8 @@ fn corners(mesh: &SurfaceMesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
     triangle.map(|k| mesh.positions[k as usize].map(f64::from))
 }
 
-/// Volume within the mesh, by the divergence theorem: positive where triangles are anticlockwise seen from outside.
+/// Volume within the mesh, by the divergence theorem: positive where triangles are anticlockwise seen from
+/// outside.
 fn volume(mesh: &SurfaceMesh) -> f64 {
     let of = |triangle: &[u32; 3]| {
         let [a, b, c] = corners(mesh, *triangle).map(|[x, y, z]| [x - 1.0, y - 2.0, z - 3.0]);

@@ -1,8 +1,10 @@
-//! Tensile control (delta-plus-SPH): where the pressure is negative inside a fluid, particles neither pair nor tear.
+//! Tensile control (delta-plus-SPH): where the pressure is negative inside a fluid, particles neither pair
+//! nor tear.
 //!
-//! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is less
-//! `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no energy and no opposite: momentum is kept
-//! no better than particles are evenly spread, and all of it is scaled down where it would give more energy than it has taken.
+//! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is
+//! less `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no
+//! energy and no opposite: momentum is kept no better than particles are evenly spread, and all of it is
+//! scaled down where it would give more energy than it has taken.
 
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::fluid::{
@@ -38,7 +40,8 @@ impl Plugin for TensileControl {
         if bodies.is_empty() {
             return Ok(());
         }
-        // What is inside is found for all fluids at once: one system serves all bodies, however many have the plugin.
+        // What is inside is found for all fluids at once: one system serves all bodies, however many have the
+        // plugin.
         if let Some(controlled) = sim.take_extensions::<Shared<Controlled>>().pop() {
             sim.shared_mut(controlled).extend(bodies.iter());
             sim.leave_note(controlled);

@@ -1,4 +1,5 @@
-//! Even particles feel nothing; the force of uneven ones against a naive second implementation; no energy from it.
+//! Even particles feel nothing; the force of uneven ones against a naive second implementation; no energy
+//! from it.
 
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;
@@ -129,7 +130,8 @@ fn given(sim: &mut Simulation) -> (f64, f64) {
     (given, account(sim))
 }
 
-/// The front of a dam break is two particles thin where it hits the wall, with pressures of a water hammer: before the control left free surfaces alone, it gave 7 J of 165 within 3 ms.
+/// The front of a dam break is two particles thin where it hits the wall, with pressures of a water hammer:
+/// before the control left free surfaces alone, it gave 7 J of 165 within 3 ms.
 #[test]
 fn an_impact_gets_no_energy() {
     for precision in ["Mixed", "Double"] {

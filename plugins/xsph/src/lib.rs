@@ -1,6 +1,7 @@
 //! XSPH: fluid particles move with a velocity between their own and the mean around them.
 //!
-//! `dx_i/dt = v_i + epsilon sum_j V_j W_ij v_ij` over the neighbours of the same body. Velocities and forces stay what they are.
+//! `dx_i/dt = v_i + epsilon sum_j V_j W_ij v_ij` over the neighbours of the same body. Velocities and forces
+//! stay what they are.
 
 use std::ops::Range;
 
@@ -19,8 +20,8 @@ pub fn register(registry: &mut Registry) {
     registry.plugin::<Xsph>();
 }
 
-/// Moves fluid particles with the mean velocity around them, so that they keep their order and do not pass through each
-/// other.
+/// Moves fluid particles with the mean velocity around them, so that they keep their order and do not pass
+/// through each other.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Xsph {

@@ -5,7 +5,8 @@ use glam::{DMat3, DVec3};
 use super::moment::MomentMatrix;
 use crate::linalg::dyad;
 
-/// Sums over the neighbours of a particle for the displacement gradient that fits them: `(sum_j V_j w_ij u_ij (x) X_ij) M_i^-1`.
+/// Sums over the neighbours of a particle for the displacement gradient that fits them: `(sum_j V_j w_ij u_ij
+/// (x) X_ij) M_i^-1`.
 #[derive(Clone, Copy, Debug)]
 pub struct AffineFit {
     moment: MomentMatrix,
@@ -18,7 +19,8 @@ impl AffineFit {
         Self { moment: MomentMatrix::new(dimension), spread: DMat3::ZERO }
     }
 
-    /// Adds a neighbour: its weight V_j w_ij, m^-2, and the vectors to it, X_ij in the reference configuration and `u_ij = x_ij - X_ij`, m.
+    /// Adds a neighbour: its weight V_j w_ij, m^-2, and the vectors to it, X_ij in the reference
+    /// configuration and `u_ij = x_ij - X_ij`, m.
     pub fn add(&mut self, weight: f64, reference: DVec3, change: DVec3) {
         self.moment.add(weight, reference);
         self.spread += dyad(change, reference * weight);

@@ -4,11 +4,12 @@ use crate::linalg::Sym3;
 use crate::parallel::Lanes4;
 use glam::DVec3;
 
-/// Least determinant of a moment matrix in units of `(tr M / d)^d`: below it the neighbours lie on a line (or, in three
-/// dimensions, in a plane) to within about a thousandth of their distance, or are too few.
+/// Least determinant of a moment matrix in units of `(tr M / d)^d`: below it the neighbours lie on a line
+/// (or, in three dimensions, in a plane) to within about a thousandth of their distance, or are too few.
 pub const SINGULAR: f64 = 1e-6;
 
-/// `M_i = sum_j V_j w_ij x_ij (x) x_ij`, dimensionless: near the identity inside a body, about half of it at a face.
+/// `M_i = sum_j V_j w_ij x_ij (x) x_ij`, dimensionless: near the identity inside a body, about half of it at
+/// a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentMatrix {
     matrix: Sym3,
@@ -37,7 +38,8 @@ impl MomentMatrix {
         Self::of(columns.get(2).map_or(plane, solid), D)
     }
 
-    /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their row.
+    /// Adds a neighbour by `V_j w_ij` (m^-2) and `x_ij` (m); neighbours are to come in the order of their
+    /// row.
     #[inline]
     pub fn add(&mut self, volume_weight: f64, x_ij: DVec3) {
         self.matrix += Sym3::dyad(x_ij) * volume_weight;
@@ -49,9 +51,9 @@ impl MomentMatrix {
         &self.matrix
     }
 
-    /// The correction matrix `M_i^-1`, with zeros along the axes that the dimension lacks, so that corrected gradients
-    /// never leave the line or the plane. `None` where the moment matrix is singular, see [`SINGULAR`], or not finite:
-    /// such a particle has no deformation gradient and is free of stress.
+    /// The correction matrix `M_i^-1`, with zeros along the axes that the dimension lacks, so that corrected
+    /// gradients never leave the line or the plane. `None` where the moment matrix is singular, see
+    /// [`SINGULAR`], or not finite: such a particle has no deformation gradient and is free of stress.
     #[inline]
     pub fn inverse(&self) -> Option<Sym3> {
         self.inverse_above(SINGULAR)

@@ -6,8 +6,8 @@ use super::MomentMatrix;
 use crate::linalg::Sym3;
 use crate::parallel::{Arithmetic, Number, Vector};
 
-/// Adds neighbours by `V_j w_ij` (m^-2) and `x_ij` (m) to the sums of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij`: products of a component with all of those from it on, which are
-/// xx, xy, xz; yy, yz; zz.
+/// Adds neighbours by `V_j w_ij` (m^-2) and `x_ij` (m) to the sums of a moment matrix `sum_j V_j w_ij x_ij
+/// (x) x_ij`: products of a component with all of those from it on, which are xx, xy, xz; yy, yz; zz.
 #[inline(always)]
 pub fn add_moment<A: Arithmetic>([x, y, z]: [&mut Vector<A>; 3], volume_weight: Number<A>, x_ij: Vector<A>) {
     let weighed = x_ij * volume_weight;

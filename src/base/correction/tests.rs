@@ -118,7 +118,8 @@ fn singular_neighbourhoods_are_refused() {
     }
 }
 
-/// Neighbours of height a over the x axis: M = diag(1, a^2), so the limit is a^2 = 1e-6 ((1 + a^2) / 2)^2 at every scale.
+/// Neighbours of height a over the x axis: M = diag(1, a^2), so the limit is a^2 = 1e-6 ((1 + a^2) / 2)^2 at
+/// every scale.
 #[test]
 fn the_limit_is_relative() {
     let limit = (1e-6_f64 / 4.0).sqrt();

@@ -87,8 +87,8 @@ impl Kernel {
         self.dispatch(Curvature(r, smoothing_length))
     }
 
-    /// Pair weight `w = |dW/dr| / r >= 0` (1/m^(d+2)), so that `grad_i W = w x_ij`. At r = 0: the limit, and zero for
-    /// the spiky kernel, which has none.
+    /// Pair weight `w = |dW/dr| / r >= 0` (1/m^(d+2)), so that `grad_i W = w x_ij`. At r = 0: the limit, and
+    /// zero for the spiky kernel, which has none.
     pub fn pair_weight(&self, r: f64, smoothing_length: f64) -> f64 {
         struct Weight(f64, f64);
         impl KernelVisitor for Weight {
@@ -114,7 +114,8 @@ pub struct ProfiledKernel<K: KernelProfile> {
 }
 
 impl<K: KernelProfile> ProfiledKernel<K> {
-    /// The kernel of one smoothing length (m). Costs two divisions: outside the loop where h is the same for all.
+    /// The kernel of one smoothing length (m). Costs two divisions: outside the loop where h is the same for
+    /// all.
     #[inline]
     pub fn scaled(&self, smoothing_length: f64) -> ScaledKernel<K> {
         let inverse_h = 1.0 / smoothing_length;

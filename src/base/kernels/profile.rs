@@ -2,8 +2,8 @@
 
 /// Shape of a kernel, `f(q)` with `q = r / h >= 0`, and its constants.
 ///
-/// Every function of q is exactly zero for `q >= SUPPORT` and has no branch that keeps a loop over neighbours from
-/// being vectorised.
+/// Every function of q is exactly zero for `q >= SUPPORT` and has no branch that keeps a loop over neighbours
+/// from being vectorised.
 pub trait KernelProfile: Copy + Default + Send + Sync + 'static {
     /// Name in scenes, in snake case.
     const NAME: &'static str;
@@ -23,8 +23,8 @@ pub trait KernelProfile: Copy + Default + Send + Sync + 'static {
     /// `f''(q)`.
     fn second_derivative(q: f64) -> f64;
 
-    /// `-f'(q) / q >= 0`: the limit where it exists at q = 0, else zero there (coincident particles have no direction
-    /// to push each other in). Kernels with a closed form save the division.
+    /// `-f'(q) / q >= 0`: the limit where it exists at q = 0, else zero there (coincident particles have no
+    /// direction to push each other in). Kernels with a closed form save the division.
     #[inline]
     fn weight(q: f64) -> f64 {
         if q > 0.0 { -Self::derivative(q) / q } else { 0.0 }

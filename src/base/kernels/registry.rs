@@ -5,7 +5,8 @@ use super::profile::KernelProfile;
 use super::{CubicSpline, QuarticSpline, QuinticSpline, Spiky, WendlandC2, WendlandC4, WendlandC6};
 use std::fmt;
 
-/// Code that is compiled once for every kernel, so that the kernel is inlined in its loops; see [`Kernel::dispatch`].
+/// Code that is compiled once for every kernel, so that the kernel is inlined in its loops; see
+/// [`Kernel::dispatch`].
 pub trait KernelVisitor {
     /// What the code returns.
     type Output;

@@ -1,10 +1,11 @@
-//! Desbrun's spiky kernel: a gradient that does not vanish at the centre; the kernel of total-Lagrangian solids.
+//! Desbrun's spiky kernel: a gradient that does not vanish at the centre; the kernel of total-Lagrangian
+//! solids.
 
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;
 
-/// `f = (2 - q)^3`; support H = 2 h by convention here, so that `W = 10 / (pi H^5) (H - r)^3` in two dimensions and
-/// `15 / (pi H^6) (H - r)^3` in three.
+/// `f = (2 - q)^3`; support H = 2 h by convention here, so that `W = 10 / (pi H^5) (H - r)^3` in two
+/// dimensions and `15 / (pi H^6) (H - r)^3` in three.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Spiky;
 

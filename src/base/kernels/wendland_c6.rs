@@ -3,7 +3,8 @@
 use super::profile::{KernelProfile, below};
 use std::f64::consts::PI;
 
-/// `f = (1 - q/2)^8 (1 + 4 q + 25/4 q^2 + 4 q^3)`, the member of the two- and three-dimensional family; support 2 h.
+/// `f = (1 - q/2)^8 (1 + 4 q + 25/4 q^2 + 4 q^3)`, the member of the two- and three-dimensional family;
+/// support 2 h.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct WendlandC6;
 

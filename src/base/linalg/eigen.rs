@@ -13,8 +13,8 @@ pub struct Eigen {
 }
 
 impl Eigen {
-    /// Decomposes a matrix: accurate to rounding relative to the largest eigenvalue, repeated eigenvalues included
-    /// (Golub & Van Loan, Matrix Computations, section 8.5). NaN and infinities come out as NaN.
+    /// Decomposes a matrix: accurate to rounding relative to the largest eigenvalue, repeated eigenvalues
+    /// included (Golub & Van Loan, Matrix Computations, section 8.5). NaN and infinities come out as NaN.
     pub fn new(a: &Sym3) -> Self {
         let mut m = a.to_matrix().to_cols_array_2d();
         let mut v = DMat3::IDENTITY.to_cols_array_2d();
@@ -29,7 +29,8 @@ impl Eigen {
                     continue;
                 }
                 let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-                // No `hypot`, a call of the library: where the square is too large for a number, the angle is zero to rounding.
+                // No `hypot`, a call of the library: where the square is too large for a number, the angle is
+                // zero to rounding.
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;

@@ -1,7 +1,7 @@
 //! Logarithm and exponential of symmetric matrices near the identity, such as elastic strains of metals.
 //!
-//! Closed forms with eigenvectors lose their digits where eigenvalues nearly coincide; series are most accurate there. Far from
-//! the identity the spectral decomposition takes over.
+//! Closed forms with eigenvectors lose their digits where eigenvalues nearly coincide; series are most
+//! accurate there. Far from the identity the spectral decomposition takes over.
 
 use super::{Eigen, Sym3};
 

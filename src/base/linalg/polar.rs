@@ -3,9 +3,9 @@
 use super::Sym3;
 use glam::DMat3;
 
-/// Rotation R and right stretch U of `F = R U`, by Newton's iteration with scaling (Higham 1986, SIAM Journal on
-/// Scientific and Statistical Computing 7, 1160-1174). `None` where F does not keep orientation (`det F <= 0`), is
-/// singular to working precision, or is not finite.
+/// Rotation R and right stretch U of `F = R U`, by Newton's iteration with scaling (Higham 1986, SIAM Journal
+/// on Scientific and Statistical Computing 7, 1160-1174). `None` where F does not keep orientation (`det F <=
+/// 0`), is singular to working precision, or is not finite.
 pub fn polar(f: DMat3) -> Option<(DMat3, Sym3)> {
     let norm = |a: &DMat3| {
         (a.x_axis.length_squared() + a.y_axis.length_squared() + a.z_axis.length_squared()).sqrt()

@@ -4,13 +4,15 @@ use super::Sym3;
 
 /// Limit of the iterations; it only ends those on NaN.
 const MOST: usize = 20;
-/// Squared change of the result, over its square, after which the next one is exact to round-off: convergence is quadratic.
+/// Squared change of the result, over its square, after which the next one is exact to round-off: convergence
+/// is quadratic.
 const SMALL: f64 = 1e-18;
 
 impl Sym3 {
-    /// A^(-1/2) of a positive definite matrix, by the coupled iteration of Denman and Beavers (1976, Applied Mathematics and Computation 2, 63-94), whose
-    /// iterates are symmetric because all of them have the principal directions of A. Four iterations near the identity, eight where the eigenvalues are
-    /// a thousand times apart.
+    /// A^(-1/2) of a positive definite matrix, by the coupled iteration of Denman and Beavers (1976, Applied
+    /// Mathematics and Computation 2, 63-94), whose iterates are symmetric because all of them have the
+    /// principal directions of A. Four iterations near the identity, eight where the eigenvalues are a
+    /// thousand times apart.
     pub fn inverse_root(&self) -> Self {
         let (mut root, mut inverse) = (*self, Self::IDENTITY);
         for _ in 0..MOST {

@@ -13,9 +13,10 @@ pub struct ExtremeValues {
     pub largest: f64,
 }
 
-/// Smallest and largest eigenvalue of a symmetric matrix, by the trigonometric solution of the cubic (Smith 1961, Communications of the ACM 4, 168). Without a
-/// loop, and accurate to about 1e-7 of the largest one, which is where two nearly equal ones bring it; where vectors or all digits are needed,
-/// [`super::Eigen`] has them. NaN gives NaN.
+/// Smallest and largest eigenvalue of a symmetric matrix, by the trigonometric solution of the cubic (Smith
+/// 1961, Communications of the ACM 4, 168). Without a loop, and accurate to about 1e-7 of the largest one,
+/// which is where two nearly equal ones bring it; where vectors or all digits are needed, [`super::Eigen`]
+/// has them. NaN gives NaN.
 #[inline]
 pub fn extreme_eigenvalues(a: &Sym3) -> ExtremeValues {
     let mean = a.trace() / 3.0;
@@ -30,8 +31,8 @@ pub fn extreme_eigenvalues(a: &Sym3) -> ExtremeValues {
     }
 }
 
-/// Smallest and largest principal stretch of a deformation gradient: square roots of the extreme eigenvalues of
-/// `F^T F`, for limits of the time step; see [`extreme_eigenvalues`].
+/// Smallest and largest principal stretch of a deformation gradient: square roots of the extreme eigenvalues
+/// of `F^T F`, for limits of the time step; see [`extreme_eigenvalues`].
 #[inline]
 pub fn extreme_stretches(f: DMat3) -> ExtremeValues {
     let ExtremeValues { smallest, largest } = extreme_eigenvalues(&Sym3::gram(f));

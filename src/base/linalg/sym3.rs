@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DMat3, DVec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
-/// Symmetric 3 x 3 matrix: stress, strain, moment and correction matrices in three quarters of the memory traffic of
-/// a `DMat3`.
+/// Symmetric 3 x 3 matrix: stress, strain, moment and correction matrices in three quarters of the memory
+/// traffic of a `DMat3`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable, serde::Serialize, serde::Deserialize)]
 #[repr(C)]
 pub struct Sym3 {

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::periodic::SHIFT;
 
-/// Share by which a cell is longer than half of the radius: more than round-off where positions are below 10^8 radii, so that the length of a cell hangs on the radius alone.
+/// Share by which a cell is longer than half of the radius: more than round-off where positions are below
+/// 10^8 radii, so that the length of a cell hangs on the radius alone.
 const ROOM: f64 = 1e-6;
 
 /// A range of coordinates, m.
@@ -21,8 +22,8 @@ pub(super) struct AxisPeriod {
     pub length: f64,
 }
 
-/// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which particles share a cell, and the order of cells, do not hang on
-/// which particles there are.
+/// Cells along one axis. Their corners are whole multiples of their length, or whole parts of a period: which
+/// particles share a cell, and the order of cells, do not hang on which particles there are.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct CellAxis {
     /// Start of a period, m; zero where there is none.
@@ -55,7 +56,8 @@ impl CellAxis {
     pub fn new(range: AxisRange, radius: f64, period: Option<AxisPeriod>, round_off: f64) -> Self {
         let AxisRange { min, max } = range;
         let mut cell = 0.5 * radius * (1.0 + ROOM);
-        // Rounding of the cell number must not put two particles within the radius farther apart than cells are looked at.
+        // Rounding of the cell number must not put two particles within the radius farther apart than cells
+        // are looked at.
         while cell < 0.5 * (radius + round_off) {
             cell *= 2.0;
         }
@@ -147,8 +149,8 @@ impl CellAxis {
     }
 }
 
-/// The nearest of whole numbers from zero to 2^31. Halves may go to either side: what that takes away is beyond the reach, which is longer than
-/// asked for.
+/// The nearest of whole numbers from zero to 2^31. Halves may go to either side: what that takes away is
+/// beyond the reach, which is longer than asked for.
 #[inline(always)]
 fn rounded(x: f64) -> u32 {
     (x + SHIFT).to_bits() as u32
@@ -161,7 +163,8 @@ fn whole(x: f64) -> i64 {
     whole - i64::from(x < whole as f64)
 }
 
-/// Numbers of buckets: the cells themselves, or fewer so that their product stays in proportion to the particles.
+/// Numbers of buckets: the cells themselves, or fewer so that their product stays in proportion to the
+/// particles.
 pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
     let mut room = (4 * particles + 64).min(u32::MAX as usize - 2) as i64;
     let mut order = [0, 1, 2];
@@ -171,7 +174,8 @@ pub(super) fn fold_into_buckets(axes: &mut [CellAxis; 3], particles: usize) {
         let share = (room as f64).powf(1.0 / (3 - done) as f64) as i64;
         let mut buckets = axes[a].cells.min(share.max(1));
         if buckets < axes[a].cells {
-            // Without a common divisor, a diagonal line of cells meets every bucket before it meets one again.
+            // Without a common divisor, a diagonal line of cells meets every bucket before it meets one
+            // again.
             while folded.iter().any(|&other| greatest_common_divisor(other, buckets) > 1) {
                 buckets -= 1;
             }
@@ -197,8 +201,8 @@ mod tests {
             fold_into_buckets(&mut axes, particles);
             let buckets = axes.map(|axis| axis.buckets);
             let product: i64 = buckets.iter().product();
-            // The diagonal returns to its first bucket after the least common multiple: no number up to the largest
-            // divides two of them.
+            // The diagonal returns to its first bucket after the least common multiple: no number up to the
+            // largest divides two of them.
             for divisor in 2..=buckets[0].max(buckets[1]).max(buckets[2]) {
                 assert!(buckets.iter().filter(|&b| b % divisor == 0).count() <= 1, "{buckets:?}");
             }

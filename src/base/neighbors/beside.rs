@@ -5,7 +5,8 @@ use rayon::prelude::*;
 /// Cells that a task takes.
 const CELLS_OF_TASK: usize = 256;
 
-/// The cells of a grid: how many there are along each axis, and which axes have their last cell beside the first.
+/// The cells of a grid: how many there are along each axis, and which axes have their last cell beside the
+/// first.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellBlock {
     /// Number of cells along each axis; the first axis is the fastest.
@@ -15,7 +16,8 @@ pub struct CellBlock {
 }
 
 impl CellBlock {
-    /// Joins the value of every cell with those of the cells beside it, across corners too. `window` is memory that is kept.
+    /// Joins the value of every cell with those of the cells beside it, across corners too. `window` is
+    /// memory that is kept.
     pub fn join_beside<T: Copy + Send + Sync>(
         &self,
         values: &mut Vec<T>,

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 /// Particles that a thread sorts alone.
 const FEW: usize = 8192;
 
-/// Particles bucket by bucket; those of a bucket in the order of their rows. Memory is kept from one sorting to the next.
+/// Particles bucket by bucket; those of a bucket in the order of their rows. Memory is kept from one sorting
+/// to the next.
 #[derive(Debug, Default)]
 pub struct Buckets {
     keys: Vec<u32>,
@@ -74,7 +75,8 @@ fn count_keys(keys: &[u32], first: u32, counts: &mut [u32], tasks: usize) {
     }
 }
 
-/// Writes rows to the places of their keys, those from `first` on; tasks have as many rows each, as far as buckets allow.
+/// Writes rows to the places of their keys, those from `first` on; tasks have as many rows each, as far as
+/// buckets allow.
 fn place(keys: &[u32], first: u32, places: &mut [u32], rows: &mut [u32], tasks: usize) {
     let Some(&start) = places.first() else { return };
     if tasks > 1 && places.len() > 1 {

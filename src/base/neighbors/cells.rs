@@ -12,8 +12,9 @@ pub struct Cells {
     pub length: f64,
 }
 
-/// Sorts positions into cells of at least that length, m, or of twice, four times that, so that there are not more cells than particles: drops that fly far apart have larger ones. A cell has its middle
-/// at the origin, whatever its length; whole numbers of cells fill periodic axes.
+/// Sorts positions into cells of at least that length, m, or of twice, four times that, so that there are not
+/// more cells than particles: drops that fly far apart have larger ones. A cell has its middle at the origin,
+/// whatever its length; whole numbers of cells fill periodic axes.
 pub fn sort_into_cells(
     cells: &mut Buckets,
     positions: &[DVec3],

@@ -9,8 +9,8 @@ use rayon::prelude::*;
 pub enum SupportRadii<'a> {
     /// One support radius (m) for all: the faster case.
     Uniform(f64),
-    /// One support radius (m) a particle. Cells are as large as the largest: the cost grows with the cube of the ratio
-    /// of largest to usual support.
+    /// One support radius (m) a particle. Cells are as large as the largest: the cost grows with the cube of
+    /// the ratio of largest to usual support.
     PerParticle(&'a [f64]),
 }
 

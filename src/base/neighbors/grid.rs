@@ -1,8 +1,9 @@
 //! Uniform grid of cells, particles sorted into them by counting.
 //!
-//! A cell is half as long as the largest pair radius. Cells map to buckets, at most about four times as many as particles: one to one where
-//! the grid is small enough, and folded onto themselves like a torus where a few particles span a huge box. Folding brings candidates
-//! that the distance test rejects, never loses one, and leaves the order of neighbours as it is.
+//! A cell is half as long as the largest pair radius. Cells map to buckets, at most about four times as many
+//! as particles: one to one where the grid is small enough, and folded onto themselves like a torus where a
+//! few particles span a huge box. Folding brings candidates that the distance test rejects, never loses one,
+//! and leaves the order of neighbours as it is.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -57,8 +58,8 @@ pub(super) struct GridBounds<'a> {
 }
 
 impl Grid {
-    /// Sorts `sources` into cells of half of `radius`. `bounds` holds targets too on periodic axes; cells are in proportion to
-    /// `particles`.
+    /// Sorts `sources` into cells of half of `radius`. `bounds` holds targets too on periodic axes; cells are
+    /// in proportion to `particles`.
     pub fn build(
         &mut self,
         sources: Cloud<'_>,
@@ -119,7 +120,8 @@ impl Grid {
         [x, y, z]
     }
 
-    /// Puts sources that were found into the order of cells and, in a cell, of rows, which they have already unless buckets hold several cells.
+    /// Puts sources that were found into the order of cells and, in a cell, of rows, which they have already
+    /// unless buckets hold several cells.
     #[inline(never)]
     pub fn order(&self, found: &mut [u32]) {
         if !self.cells.is_empty() {

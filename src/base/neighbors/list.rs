@@ -50,8 +50,9 @@ impl NeighborList {
         self.indices.truncate(kept);
     }
 
-    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a set has for a neighbour, ascending; nothing for sets whose number is not
-    /// wanted. `last` is memory that is kept.
+    /// Becomes the list of sets of rows of `other`, the first of which has the number `first`: what any of a
+    /// set has for a neighbour, ascending; nothing for sets whose number is not wanted. `last` is memory that
+    /// is kept.
     pub fn join<const N: usize>(
         &mut self,
         (sets, is_wanted): (&[[u32; N]], impl Fn(usize) -> bool),
@@ -61,7 +62,8 @@ impl NeighborList {
         self.offsets.clear();
         self.offsets.push(0);
         self.indices.clear();
-        // For every neighbour the number, from one on, of the last set that has it: most are in several lists of a set.
+        // For every neighbour the number, from one on, of the last set that has it: most are in several lists
+        // of a set.
         last.clear();
         last.resize(other.indices.iter().max().map_or(0, |&most| most as usize + 1), 0);
         for (set, number) in sets.iter().zip(1_u32..) {
@@ -88,7 +90,8 @@ impl NeighborList {
         self.indices.iter_mut().for_each(|j| *j = number(*j));
     }
 
-    /// The same pairs from the other side: row k of `other` has the rows of this list, ascending, that hold the k-th of `rows`.
+    /// The same pairs from the other side: row k of `other` has the rows of this list, ascending, that hold
+    /// the k-th of `rows`.
     pub fn turn(&self, rows: Range<usize>, other: &mut Self) {
         let Self { offsets, indices } = other;
         offsets.clear();

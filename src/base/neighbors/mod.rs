@@ -1,12 +1,13 @@
 //! Neighbour lists.
 //!
-//! Particle j is in row i when `|x_ij| < (H_i + H_j) / 2 + skin`, with `x_ij = x_j - x_i` to the nearest periodic
-//! image and H the support radius. Lists are full (a pair is in both rows), rows are in ascending order and a
-//! particle is never its own neighbour. A list depends on positions, supports and skin alone: not on the number of
-//! threads, nor on what the buffers held before.
+//! Particle j is in row i when `|x_ij| < (H_i + H_j) / 2 + skin`, with `x_ij = x_j - x_i` to the nearest
+//! periodic image and H the support radius. Lists are full (a pair is in both rows), rows are in ascending
+//! order and a particle is never its own neighbour. A list depends on positions, supports and skin alone: not
+//! on the number of threads, nor on what the buffers held before.
 //!
-//! Two uses: [`NeighborList::reference`], built once (total Lagrangian), and [`VerletList`], rebuilt when something
-//! has moved more than half the skin, within one set of particles or from one set to another (fluid and solid).
+//! Two uses: [`NeighborList::reference`], built once (total Lagrangian), and [`VerletList`], rebuilt when
+//! something has moved more than half the skin, within one set of particles or from one set to another (fluid
+//! and solid).
 
 mod axis;
 mod beside;

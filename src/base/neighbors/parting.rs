@@ -1,9 +1,11 @@
 //! How far particles near each other have moved against each other since a list of neighbours was built.
 //!
-//! A list with a skin misses no pair as long as no two particles that were apart have come closer by more than the skin. That is a matter of how particles near each other move
-//! against each other, not of how far they go: what flies as a whole carries its list along. Space is cut into cells; the displacements of the particles of a cell lie in a box,
-//! and the box around those of a cell and the cells beside it bounds how much particles in them have moved against each other. Particles of cells that do not touch were
-//! the length of a cell apart.
+//! A list with a skin misses no pair as long as no two particles that were apart have come closer by more
+//! than the skin. That is a matter of how particles near each other move against each other, not of how far
+//! they go: what flies as a whole carries its list along. Space is cut into cells; the displacements of the
+//! particles of a cell lie in a box, and the box around those of a cell and the cells beside it bounds how
+//! much particles in them have moved against each other. Particles of cells that do not touch were the length
+//! of a cell apart.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -77,7 +79,8 @@ impl Parting {
         self.length
     }
 
-    /// How far the particles have moved against each other since they were noted; without end where none were.
+    /// How far the particles have moved against each other since they were noted; without end where none
+    /// were.
     pub fn parted(&mut self, positions: &[DVec3]) -> Parted {
         if self.then.len() != positions.len() {
             return Parted { near: f64::INFINITY, all: f64::INFINITY };

@@ -20,7 +20,8 @@ impl Periodic {
     pub const NONE: Self =
         Self { min: DVec3::ZERO, axes: [false; 3], length: DVec3::ZERO, inverse_length: DVec3::ZERO };
 
-    /// A box from `min` to `max` (m), periodic along the `axes` that are true; bounds of other axes are not used.
+    /// A box from `min` to `max` (m), periodic along the `axes` that are true; bounds of other axes are not
+    /// used.
     ///
     /// # Errors
     /// [`NeighborError::PeriodicBounds`] where a periodic axis has no positive finite length.
@@ -82,7 +83,8 @@ impl Periodic {
     }
 }
 
-/// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer without a call.
+/// Between 2^52 and 2^53 the spacing of doubles is one: adding and taking away rounds to the nearest integer
+/// without a call.
 pub const SHIFT: f64 = 6755399441055744.0;
 
 #[inline(always)]

@@ -1,7 +1,8 @@
 //! Rows of a list from a grid, in parallel.
 //!
-//! Rows are found in waves that bound the memory beside the list, block by block, and copied to their places. Particles that are
-//! neighbours in the order of rows share candidates: set-up and sorting see to it that they mostly are near each other.
+//! Rows are found in waves that bound the memory beside the list, block by block, and copied to their places.
+//! Particles that are neighbours in the order of rows share candidates: set-up and sorting see to it that
+//! they mostly are near each other.
 
 use super::grid::{Grid, Ranges};
 use super::periodic::SHIFT;
@@ -44,7 +45,8 @@ pub(super) struct Query<'a> {
     /// Whether particles differ along z.
     pub solid: bool,
     pub order: Order<'a>,
-    /// Half the edges of the boxes around the targets, m, where targets are boxes: a source within the radius of the box is a neighbour.
+    /// Half the edges of the boxes around the targets, m, where targets are boxes: a source within the radius
+    /// of the box is a neighbour.
     pub halves: Option<&'a [DVec3]>,
     /// The targets whose neighbours are wanted, ascending; none where those of all are.
     pub only: Option<&'a [Range<usize>]>,
@@ -110,7 +112,8 @@ impl Query<'_> {
             }
             if list.indices.len() < total {
                 if list.indices.capacity() < total {
-                    // A list that has outgrown its room once gets more to spare: growing on, it then seldom asks for memory.
+                    // A list that has outgrown its room once gets more to spare: growing on, it then seldom
+                    // asks for memory.
                     let spare = if list.indices.capacity() == 0 { 1.02 } else { 1.25 };
                     let expected = (total as f64 / last as f64 * rows as f64 * spare) as usize;
                     list.indices.reserve_exact(expected.max(total) - list.indices.len());

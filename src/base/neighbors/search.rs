@@ -62,8 +62,8 @@ pub struct Boxes<'a> {
 }
 
 impl NeighborSearch {
-    /// Lists the neighbours of every particle of `cloud` in `cloud`, itself excluded, within the mean of their
-    /// support radii plus `skin` (m). What `list` held is replaced.
+    /// Lists the neighbours of every particle of `cloud` in `cloud`, itself excluded, within the mean of
+    /// their support radii plus `skin` (m). What `list` held is replaced.
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -78,8 +78,9 @@ impl NeighborSearch {
         self.build(cloud, cloud, wanted, list)
     }
 
-    /// Lists the neighbours of the first particles of a cloud in all of it. A row is ordered by the groups of particles
-    /// that end at `groups`, and within a group by cells: cheaper than ascending rows. Otherwise as [`NeighborSearch::within`].
+    /// Lists the neighbours of the first particles of a cloud in all of it. A row is ordered by the groups of
+    /// particles that end at `groups`, and within a group by cells: cheaper than ascending rows. Otherwise as
+    /// [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -96,8 +97,8 @@ impl NeighborSearch {
         self.build(first.cloud.first(first.targets), first.cloud, wanted, list)
     }
 
-    /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are not
-    /// the same particle. Otherwise as [`NeighborSearch::within`].
+    /// Lists the neighbours of every target among `sources`, another set of particles: equal row numbers are
+    /// not the same particle. Otherwise as [`NeighborSearch::within`].
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -113,9 +114,9 @@ impl NeighborSearch {
         self.build(targets, sources, wanted, list)
     }
 
-    /// Lists the neighbours of other particles among the sources of the search before, without sorting these again. Those have one support
-    /// radius, and so do the others; rows are ordered as by [`NeighborSearch::of_first`]. A skin much larger than that of the search
-    /// before is slow.
+    /// Lists the neighbours of other particles among the sources of the search before, without sorting these
+    /// again. Those have one support radius, and so do the others; rows are ordered as by
+    /// [`NeighborSearch::of_first`]. A skin much larger than that of the search before is slow.
     ///
     /// # Errors
     /// See [`NeighborError`]; `list` is then unchanged.
@@ -145,7 +146,8 @@ impl NeighborSearch {
         self.grid_of(sources.first(0), sources, wanted).map(|_| ())
     }
 
-    /// Lists the sources of the search before that are within the support radius and the skin of each of some boxes. Otherwise as [`NeighborSearch::of_others`].
+    /// Lists the sources of the search before that are within the support radius and the skin of each of some
+    /// boxes. Otherwise as [`NeighborSearch::of_others`].
     ///
     /// # Errors
     /// See [`NeighborError`].

@@ -183,7 +183,8 @@ fn same_bits_on_any_number_of_threads() {
     assert!(lists[0] == lists[1] && lists[0] == lists[2]);
 }
 
-/// The corners of cells are whole multiples of their length, and neighbours are in the order of cells also where these share buckets.
+/// The corners of cells are whole multiples of their length, and neighbours are in the order of cells also
+/// where these share buckets.
 #[test]
 fn the_order_of_neighbours_does_not_hang_on_who_else_is_there() {
     let near = random_cloud(5, 400, 3);

@@ -4,8 +4,8 @@ use super::{Cloud, NeighborError, NeighborList, NeighborSearch, Periodic};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Neighbour list with a skin: it holds every pair within the mean support as long as no particle has moved more
-/// than half the skin since it was built, and some pairs beyond, where the kernel is zero.
+/// Neighbour list with a skin: it holds every pair within the mean support as long as no particle has moved
+/// more than half the skin since it was built, and some pairs beyond, where the kernel is zero.
 ///
 /// Targets and sources are one set (`sources: None`) or two. Support radii must not grow between builds: call
 /// [`VerletList::invalidate`] where they do, and after rows were removed or sorted.
@@ -51,8 +51,8 @@ impl VerletList {
         Ok(stale)
     }
 
-    /// Builds the list from these positions. From [`VerletList::built_targets`] and [`VerletList::built_sources`] of
-    /// an earlier run it comes out the same.
+    /// Builds the list from these positions. From [`VerletList::built_targets`] and
+    /// [`VerletList::built_sources`] of an earlier run it comes out the same.
     ///
     /// # Errors
     /// See [`NeighborError`]; the list is then stale.
@@ -78,8 +78,8 @@ impl VerletList {
         Ok(())
     }
 
-    /// True when a particle is farther than half the skin from where it was, when their number is another, or when
-    /// the list was never built. A position that is NaN counts as far, so that the rebuild reports it.
+    /// True when a particle is farther than half the skin from where it was, when their number is another, or
+    /// when the list was never built. A position that is NaN counts as far, so that the rebuild reports it.
     pub fn is_stale(&self, targets: &[DVec3], sources: Option<&[DVec3]>, periodic: &Periodic) -> bool {
         !self.valid
             || moved(&self.targets, targets, self.skin, periodic)

@@ -1,14 +1,17 @@
 //! The arithmetic of an instruction path: numbers, and vectors of four lanes.
 //!
-//! A loop that is written with [`Lanes4`] and these operations keeps its vectors in registers of four lanes. Left to
-//! itself, the compiler takes rows of four apart and puts the pieces together in pairs: twice the instructions.
+//! A loop that is written with [`Lanes4`] and these operations keeps its vectors in registers of four lanes.
+//! Left to itself, the compiler takes rows of four apart and puts the pieces together in pairs: twice the
+//! instructions.
 
 use super::eight::{Eight, EightLanes};
 use super::lanes::Lanes4;
 
-/// Operations on numbers of several lanes: what pair functions are written in. A hot loop gets the arithmetic of the instruction path that it is compiled for.
+/// Operations on numbers of several lanes: what pair functions are written in. A hot loop gets the arithmetic
+/// of the instruction path that it is compiled for.
 pub trait Arithmetic: Copy + Send + Sync {
-    /// Number of axes of vectors; the components of those beyond it are zero, and no instruction is spent on them.
+    /// Number of axes of vectors; the components of those beyond it are zero, and no instruction is spent on
+    /// them.
     const AXES: usize = 3;
 
     /// A number for each lane.
@@ -66,7 +69,8 @@ pub trait Arithmetic: Copy + Send + Sync {
     }
 }
 
-/// The arithmetic of four lanes of double precision, in which a lane is a neighbour or a component: what hot loops over rows are written in.
+/// The arithmetic of four lanes of double precision, in which a lane is a neighbour or a component: what hot
+/// loops over rows are written in.
 pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     /// The same path with eight lanes of single precision.
     type Eight: EightLanes;
@@ -77,7 +81,8 @@ pub trait FourLanes: Arithmetic<Lanes = Lanes4> {
     /// `a b + c`.
     fn mul_add(self, a: f64, b: f64, c: f64) -> f64;
 
-    /// Asks the processor to bring a row into its cache, because it is going to be read or written; one beyond the end is asked for in vain.
+    /// Asks the processor to bring a row into its cache, because it is going to be read or written; one
+    /// beyond the end is asked for in vain.
     fn prefetch<T>(self, rows: &[T], row: usize);
 
     /// The values whose bits are set, in their order; what follows them has no meaning.

@@ -1,5 +1,5 @@
-//! Loops over blocks of rows: a block is always the same rows, whichever thread runs it, and sums are taken in block
-//! order, so that every result is independent of the number of threads.
+//! Loops over blocks of rows: a block is always the same rows, whichever thread runs it, and sums are taken
+//! in block order, so that every result is independent of the number of threads.
 
 use glam::DVec3;
 
@@ -72,8 +72,8 @@ impl<S: Split> Split for Option<S> {
     }
 }
 
-/// Makes a struct of slices over the same rows a [`Split`]: `split_by_rows!(Rows { a, b } and { c })` cuts the fields a and b, each of which may also be empty, and
-/// hands c to both halves.
+/// Makes a struct of slices over the same rows a [`Split`]: `split_by_rows!(Rows { a, b } and { c })` cuts
+/// the fields a and b, each of which may also be empty, and hands c to both halves.
 #[macro_export]
 macro_rules! split_by_rows {
     ($name:ident { $($field:ident),+ } $(and { $($same:ident),+ })?) => {
@@ -103,8 +103,9 @@ pub trait BlockSum: Copy + Default + Send {
     fn add(&mut self, next: &Self);
 }
 
-/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what the blocks
-/// return, taken pairwise along a tree that depends on the number of rows alone. `sums` is scratch memory, kept by the caller so that a step does not allocate.
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what
+/// the blocks return, taken pairwise along a tree that depends on the number of rows alone. `sums` is scratch
+/// memory, kept by the caller so that a step does not allocate.
 pub fn for_each_block<S: Split, R: BlockSum>(
     rows: S,
     sums: &mut Vec<R>,
@@ -122,7 +123,8 @@ pub fn for_each_heavy_block<S: Split, R: BlockSum>(
     for_each_block_in_tasks(1, rows, sums, body)
 }
 
-/// [`for_each_block`] with that many blocks in a task: some twenty microseconds are worth handing over to another thread.
+/// [`for_each_block`] with that many blocks in a task: some twenty microseconds are worth handing over to
+/// another thread.
 pub fn for_each_block_in_tasks<S: Split, R: BlockSum>(
     per_task: usize,
     rows: S,
@@ -152,9 +154,9 @@ fn total<R: BlockSum>(sums: &[R]) -> R {
     }
 }
 
-/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what the blocks
-/// return: [`for_each_block`] for loops that keep no scratch memory. The sum is taken pairwise along a tree that depends
-/// on the number of rows alone.
+/// Runs `body(first_row, rows)` on every block of [`BLOCK`] rows, in parallel, and returns the sum of what
+/// the blocks return: [`for_each_block`] for loops that keep no scratch memory. The sum is taken pairwise
+/// along a tree that depends on the number of rows alone.
 pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S) -> R + Sync)) -> R {
     match block_count(rows.rows()) {
         0 => R::default(),
@@ -162,7 +164,8 @@ pub fn sum_over_blocks<S: Split, R: BlockSum>(rows: S, body: &(impl Fn(usize, S)
     }
 }
 
-/// Blocks that a task runs in sequence: all of them where there is one thread, which need not be woken, as the caller does it.
+/// Blocks that a task runs in sequence: all of them where there is one thread, which need not be woken, as
+/// the caller does it.
 pub(super) fn blocks_of_task(usual: usize, count: usize) -> usize {
     if rayon::current_num_threads() == 1 { count } else { usual }
 }
@@ -201,12 +204,14 @@ pub(super) fn divide_and_sum<S: Split, R: BlockSum>(
     sum
 }
 
-/// `left` and `right`, on a thread each if there are two. rayon's join has a copy for every loop that calls it, a tenth of the program; this one is compiled once.
+/// `left` and `right`, on a thread each if there are two. rayon's join has a copy for every loop that calls
+/// it, a tenth of the program; this one is compiled once.
 fn join(left: &mut (dyn FnMut() + Send), right: &mut (dyn FnMut() + Send)) {
     rayon::join(left, right);
 }
 
-/// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the hand-over.
+/// Blocks that one task runs in sequence: small enough to balance threads, large enough to hide the
+/// hand-over.
 pub(super) const BLOCKS_PER_TASK: usize = 16;
 
 fn divide<S: Split, R: BlockSum>(

@@ -43,7 +43,8 @@ pub trait EightLanes: Arithmetic<Lanes = Lanes8> {
     fn apart(self, j: i32, i: [i32; EIGHT]) -> Lanes8;
 }
 
-/// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for it.
+/// A loop over blocks that is compiled once for every instruction path; what is said of [`HotLoop`] holds for
+/// it.
 pub trait BlockLoop {
     /// What the loop returns.
     type Output;

@@ -1,7 +1,7 @@
 //! Vectors of four lanes: three components and one more number, so that a row is one aligned load.
 //!
-//! Hot loops calculate with them by the operations of [`Arithmetic`](super::Arithmetic). The lanes are written out: a
-//! closure would not be compiled for the instruction path of the loop it is used in.
+//! Hot loops calculate with them by the operations of [`Arithmetic`](super::Arithmetic). The lanes are
+//! written out: a closure would not be compiled for the instruction path of the loop it is used in.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

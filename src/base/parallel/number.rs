@@ -1,7 +1,7 @@
 //! Numbers and vectors of several pairs at once, with operators: what pair functions are written in.
 //!
-//! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in the plane and in space. Mark
-//! it `#[inline(always)]`: a call would leave the instruction path.
+//! A pair function is generic over [`Arithmetic`], and is compiled for every instruction path, in the plane
+//! and in space. Mark it `#[inline(always)]`: a call would leave the instruction path.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 

@@ -1,7 +1,7 @@
 //! Loops over the blocks of this rank; of a program that runs alone, these are all blocks.
 //!
-//! What such a loop writes is there for the rows of this rank alone, until it is exchanged: [`share_rows`], or the columns of the world by themselves when
-//! they are read. Sums are those over the blocks of all ranks.
+//! What such a loop writes is there for the rows of this rank alone, until it is exchanged: [`share_rows`],
+//! or the columns of the world by themselves when they are read. Sums are those over the blocks of all ranks.
 
 use std::ops::Range;
 

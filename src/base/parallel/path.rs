@@ -1,7 +1,10 @@
-//! The instruction path: one binary runs on any x86-64 machine, and uses AVX2 and FMA, or AVX-512, where the processor has them.
+//! The instruction path: one binary runs on any x86-64 machine, and uses AVX2 and FMA, or AVX-512, where the
+//! processor has them.
 //!
-//! A hot loop is written once, generic over [`FourLanes`], and compiled for every path. With FMA a multiply-add rounds once, so that the last bits differ from those of the
-//! baseline. AVX-512 adds registers (thirty-two in the place of sixteen) and masks, but vectors stay as long and sums keep their order: its bits are those of AVX2.
+//! A hot loop is written once, generic over [`FourLanes`], and compiled for every path. With FMA a
+//! multiply-add rounds once, so that the last bits differ from those of the baseline. AVX-512 adds registers
+//! (thirty-two in the place of sixteen) and masks, but vectors stay as long and sums keep their order: its
+//! bits are those of AVX2.
 
 use std::sync::OnceLock;
 
@@ -11,7 +14,8 @@ use super::arithmetic::{FourLanes, Portable};
 
 /// A loop that is compiled once for every instruction path.
 ///
-/// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it stays behind on the portable path.
+/// Everything that [`HotLoop::run`] calls must be `#[inline(always)]`, or it stays behind on the portable
+/// path.
 pub trait HotLoop {
     /// What the loop returns.
     type Output;
@@ -40,7 +44,8 @@ mod paths {
 
     use super::{HotLoop, Portable};
 
-    // Inlined, a loop is compiled beside its caller: without that the compiler puts all hot loops of a crate into one unit, which one core then compiles alone.
+    // Inlined, a loop is compiled beside its caller: without that the compiler puts all hot loops of a crate
+    // into one unit, which one core then compiles alone.
 
     /// A path that this processor has.
     #[derive(Clone, Copy)]
@@ -140,7 +145,8 @@ fn names() -> String {
     Path::all().map(Path::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is left out: what gathers and transposes is no faster with it.
+/// Runs a hot loop over rows on the instruction path of this program. AVX-512 is left out: what gathers and
+/// transposes is no faster with it.
 #[inline]
 pub fn run_hot<L: HotLoop>(hot: L) -> L::Output {
     path().run(hot)
@@ -152,7 +158,8 @@ pub(super) fn run_wide<L: HotLoop>(hot: L) -> L::Output {
     path().run_wide(hot)
 }
 
-/// Name of the instruction path in use, such as `x86-64-v3`: the best that this processor has, unless another one was taken.
+/// Name of the instruction path in use, such as `x86-64-v3`: the best that this processor has, unless another
+/// one was taken.
 pub fn instruction_path() -> &'static str {
     PATH.get().copied().unwrap_or_else(best).name()
 }

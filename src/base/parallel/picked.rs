@@ -2,8 +2,8 @@
 
 use super::Split;
 
-/// The rows of a column that an ascending list of numbers names, open for changes. Where it is cut, the column is cut between two of them: threads
-/// write to what is theirs, and none scatters for all.
+/// The rows of a column that an ascending list of numbers names, open for changes. Where it is cut, the
+/// column is cut between two of them: threads write to what is theirs, and none scatters for all.
 pub struct Picked<'a, T> {
     numbers: &'a [u32],
     column: &'a mut [T],

@@ -10,7 +10,8 @@ const LEAST: f64 = 1e-3;
 /// Load of a rank over the mean above which blocks that differ are divided by their weights.
 const UNEVEN_WEIGHTS: f64 = 1.1;
 
-/// Shares of the ranks in every loop: rank r computes the part from `bounds[r]` to `bounds[r + 1]`. Results do not depend on it.
+/// Shares of the ranks in every loop: rank r computes the part from `bounds[r]` to `bounds[r + 1]`. Results
+/// do not depend on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
     bounds: Vec<f64>,
@@ -24,7 +25,8 @@ impl Cut {
         Self::by_weights(&vec![1.0; size])
     }
 
-    /// Shares in proportion to the weights of the ranks, which are not negative; equal ones where all are zero.
+    /// Shares in proportion to the weights of the ranks, which are not negative; equal ones where all are
+    /// zero.
     pub fn by_weights(weights: &[f64]) -> Self {
         let sum: f64 = weights.iter().sum();
         if sum <= 0.0 {
@@ -42,7 +44,8 @@ impl Cut {
         Self { bounds, weighed: Vec::new() }
     }
 
-    /// A cut by which ranks that have worked for so long, s, on their shares are ready together; none where they nearly are, or where nothing was measured.
+    /// A cut by which ranks that have worked for so long, s, on their shares are ready together; none where
+    /// they nearly are, or where nothing was measured.
     pub fn balanced(&self, seconds: &[f64]) -> Option<Self> {
         let (longest, sum) = (seconds.iter().copied().fold(0.0, f64::max), seconds.iter().sum::<f64>());
         if sum <= 0.0 || longest * seconds.len() as f64 <= UNEVEN * sum {
@@ -66,7 +69,8 @@ impl Cut {
         bound(rank)..bound(rank + 1)
     }
 
-    /// The cut that gives ranks their shares of the weights of blocks, in loops over as many; none where they have them, or where nothing weighs.
+    /// The cut that gives ranks their shares of the weights of blocks, in loops over as many; none where they
+    /// have them, or where nothing weighs.
     pub fn weighed(&self, weights: &[f64]) -> Option<Self> {
         let (count, sum) = (weights.len(), weights.iter().sum::<f64>());
         let share = |rank: usize| self.bounds[rank + 1] - self.bounds[rank];

@@ -15,7 +15,8 @@ pub fn share<T: Pod>(rows: &mut [T], block: usize) {
     share_bodies(bytemuck::cast_slice_mut(rows), size_of::<T>(), block, std::iter::once(0..len));
 }
 
-/// Exchanges the rows of several bodies, of `size` bytes each, of which every rank has computed its blocks: those of all bodies in one exchange.
+/// Exchanges the rows of several bodies, of `size` bytes each, of which every rank has computed its blocks:
+/// those of all bodies in one exchange.
 pub fn share_bodies(
     bytes: &mut [u8],
     size: usize,
@@ -33,8 +34,8 @@ pub fn share_bodies(
     });
 }
 
-/// Exchanges values of some rows of a body of `len` rows, of which every rank has computed those in its blocks: `end` gives the number of values before a
-/// row of the body.
+/// Exchanges values of some rows of a body of `len` rows, of which every rank has computed those in its
+/// blocks: `end` gives the number of values before a row of the body.
 pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl Fn(usize) -> usize) {
     group::with(|group| {
         let mut cuts = std::mem::take(&mut group.cuts);
@@ -48,7 +49,8 @@ pub fn share_some<T: Pod>(values: &mut [T], len: usize, block: usize, end: impl 
     });
 }
 
-/// Makes the rows of other ranks unusable, where that is wanted ([`super::spoil_old_rows`]): all bits are set, which is NaN.
+/// Makes the rows of other ranks unusable, where that is wanted ([`super::spoil_old_rows`]): all bits are
+/// set, which is NaN.
 pub fn spoil_others(bytes: &mut [u8], size: usize, block: usize, bodies: impl Iterator<Item = Range<usize>>) {
     group::with(|group| {
         let own = group.ranks.rank();

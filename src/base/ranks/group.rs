@@ -95,7 +95,8 @@ pub fn has_several() -> bool {
     GROUP.with_borrow(Option::is_some)
 }
 
-/// Makes rows of other ranks unusable from now on once they are old, as debug builds do: a pass that reads one computes with NaN.
+/// Makes rows of other ranks unusable from now on once they are old, as debug builds do: a pass that reads
+/// one computes with NaN.
 pub fn spoil_old_rows() {
     with(|group| group.spoils = true);
 }
@@ -118,8 +119,8 @@ pub(crate) fn work<T>(f: impl FnOnce() -> T) -> T {
     done
 }
 
-/// A cut by which all ranks would be ready together, from the time that each has spent in divided loops since this was asked last; none where they nearly are.
-/// It is the same on all ranks.
+/// A cut by which all ranks would be ready together, from the time that each has spent in divided loops since
+/// this was asked last; none where they nearly are. It is the same on all ranks.
 pub fn balanced_cut() -> Option<Cut> {
     let busy = with(|group| std::mem::take(&mut group.busy))?;
     let seconds: Vec<f64> = gather(busy.to_bits()).into_iter().map(f64::from_bits).collect();
@@ -142,7 +143,8 @@ pub fn set_cut(cut: Cut) {
     });
 }
 
-/// Ends all ranks at once, as this one cannot go on and the others do not know; does nothing in a program that runs alone.
+/// Ends all ranks at once, as this one cannot go on and the others do not know; does nothing in a program
+/// that runs alone.
 pub fn abort(code: i32) {
     let ranks = with(|group| Rc::clone(&group.ranks));
     if let Some(ranks) = ranks {

@@ -8,7 +8,8 @@ use super::Cut;
 use super::exchange::SPOILED;
 use super::group::{self, RankGroup};
 
-/// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs alone.
+/// The rows that neighbours of the own rows are in, and who sends them to whom; empty in a program that runs
+/// alone.
 #[derive(Debug, Default)]
 pub struct Halo {
     /// The cut that it belongs to.
@@ -24,8 +25,8 @@ pub struct Halo {
 }
 
 impl Halo {
-    /// The halo of a rank that reads `wanted` rows of these bodies, whose loops go in blocks of `block` rows; its own rows may be among them. All ranks make
-    /// theirs together.
+    /// The halo of a rank that reads `wanted` rows of these bodies, whose loops go in blocks of `block` rows;
+    /// its own rows may be among them. All ranks make theirs together.
     pub fn of(bodies: &[Range<usize>], block: usize, wanted: &[bool]) -> Self {
         group::with(|group| Self::in_group(group, bodies, block, wanted)).unwrap_or_default()
     }
@@ -90,7 +91,8 @@ impl Halo {
             .for_each(|&row| bytes[row as usize * size..(row as usize + 1) * size].fill(SPOILED));
     }
 
-    /// Gives the rows of the halo what their ranks take out of `rows`: `take` gives it for a row, `put` gets it for a row of the halo.
+    /// Gives the rows of the halo what their ranks take out of `rows`: `take` gives it for a row, `put` gets
+    /// it for a row of the halo.
     pub fn fill_with<S: ?Sized, T: Pod>(
         &self,
         rows: &mut S,

@@ -4,8 +4,8 @@ use bytemuck::Pod;
 
 use super::group;
 
-/// Joins the values that the ranks have for each place: every rank joins those of a part of the places, and gives it to all. `join` must come to the same bits in any order, as a
-/// least and a largest value do.
+/// Joins the values that the ranks have for each place: every rank joins those of a part of the places, and
+/// gives it to all. `join` must come to the same bits in any order, as a least and a largest value do.
 pub fn join<T: Pod>(values: &mut [T], join: impl Fn(T, T) -> T) {
     group::with(|group| {
         let (rank, size, count) = (group.ranks.rank(), group.ranks.size(), values.len());

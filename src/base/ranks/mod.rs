@@ -1,11 +1,13 @@
 //! Ranks: processes that carry out one run together.
 //!
-//! Every rank runs the same program on the same scene and holds all rows of all columns. Passes over pairs are divided: of each body a rank computes
-//! a range of whole blocks of rows ([`own_blocks`]) and exchanges the results with the others. Everything else is computed by every rank from equal
-//! values, in the order in which one rank would: the bits of a run do not depend on the number of ranks.
+//! Every rank runs the same program on the same scene and holds all rows of all columns. Passes over pairs
+//! are divided: of each body a rank computes a range of whole blocks of rows ([`own_blocks`]) and exchanges
+//! the results with the others. Everything else is computed by every rank from equal values, in the order in
+//! which one rank would: the bits of a run do not depend on the number of ranks.
 //!
-//! The engine knows the trait [`Ranks`] alone; a program without several processes has none. As the thread pool of a parallel loop is that of the thread that
-//! begins it, the ranks of an exchange are those that the thread has entered ([`enter`]).
+//! The engine knows the trait [`Ranks`] alone; a program without several processes has none. As the thread
+//! pool of a parallel loop is that of the thread that begins it, the ranks of an exchange are those that the
+//! thread has entered ([`enter`]).
 
 mod collective;
 mod cut;

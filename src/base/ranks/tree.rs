@@ -1,7 +1,7 @@
 //! Sums over the blocks of all ranks, along the tree along which one rank takes them.
 //!
-//! The tree halves the number of blocks. A rank takes the sums of the largest subtrees that lie in its range, at most two of each size; these are exchanged,
-//! and every rank completes the tree.
+//! The tree halves the number of blocks. A rank takes the sums of the largest subtrees that lie in its range,
+//! at most two of each size; these are exchanged, and every rank completes the tree.
 
 use std::ops::Range;
 
@@ -9,7 +9,8 @@ use bytemuck::Pod;
 
 use super::group;
 
-/// Calls `f` with the blocks of each of the largest subtrees of a tree over the blocks `node` that lie in the range `own`, ascending.
+/// Calls `f` with the blocks of each of the largest subtrees of a tree over the blocks `node` that lie in the
+/// range `own`, ascending.
 pub(crate) fn maximal_subtrees(node: Range<usize>, own: &Range<usize>, f: &mut impl FnMut(Range<usize>)) {
     if own.is_empty() || node.end <= own.start || node.start >= own.end {
         return;

@@ -146,7 +146,8 @@ fn check_contacts(scene: &Scene, problems: &mut Vec<Problem>) {
 }
 
 impl Select {
-    /// What is wrong with the selection in this scene: for each the field, the message and what would be right.
+    /// What is wrong with the selection in this scene: for each the field, the message and what would be
+    /// right.
     pub fn problems(&self, scene: &Scene) -> Vec<(&'static str, String, Vec<String>)> {
         let mut problems = Vec::new();
         if let Some((message, help)) = self.body.as_deref().and_then(|name| unknown_bodies(scene, name)) {

@@ -9,8 +9,9 @@ use super::{BodyDescription, Item};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// The names of the two bodies; twice the same name is contact of a body with itself. `"grain*"` stands for all bodies whose names begin
-    /// with `grain`: `("grain*", "floor")` is each of them with the floor, `("grain*", "grain*")` each with each other.
+    /// The names of the two bodies; twice the same name is contact of a body with itself. `"grain*"` stands
+    /// for all bodies whose names begin with `grain`: `("grain*", "floor")` is each of them with the floor,
+    /// `("grain*", "grain*")` each with each other.
     pub between: (String, String),
     /// How the force follows from the overlap of the surfaces: `Penalty`, `Hertz`.
     #[serde(default = "penalty")]
@@ -18,13 +19,14 @@ pub struct Contact {
     /// Coulomb's coefficient of friction \[-\].
     #[serde(default)]
     pub friction: f64,
-    /// Ratio of the normal velocities after and before an impact of rigid bodies \[-\]; at 1 the contact has no
-    /// dashpot. Between deformable bodies the dashpot is that of the two particles that touch, beside what waves in the bodies
-    /// take along.
+    /// Ratio of the normal velocities after and before an impact of rigid bodies \[-\]; at 1 the contact has
+    /// no dashpot. Between deformable bodies the dashpot is that of the two particles that touch, beside what
+    /// waves in the bodies take along.
     #[serde(default = "elastic")]
     pub restitution: f64,
-    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into the second. It warms the particles that touch or carry the surface
-    /// that does, of bodies whose material has a specific heat. Without it friction warms nothing.
+    /// Share of the heat of friction that goes into the first of the two bodies, 0 to 1; the rest goes into
+    /// the second. It warms the particles that touch or carry the surface that does, of bodies whose material
+    /// has a specific heat. Without it friction warms nothing.
     #[serde(default)]
     pub friction_heat: Option<f64>,
     /// With what deformable bodies touch.
@@ -35,8 +37,9 @@ pub struct Contact {
 /// With what deformable bodies touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum ContactSurface {
-    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets, contact of a body with itself and with a `Wall` fall back to
-    /// `Particles`; so do bodies that can fail as soon as a particle of that surface has failed.
+    /// The surface of the shape, carried along by the particles. Bodies of which it is not known in facets,
+    /// contact of a body with itself and with a `Wall` fall back to `Particles`; so do bodies that can fail
+    /// as soon as a particle of that surface has failed.
     #[default]
     Skin,
     /// Each particle, as the ellipsoid that its deformation makes of a sphere of half a spacing.

@@ -1,5 +1,6 @@
-//! Tree of a scene text -> typed values, by serde. Every error knows its place, and as many are found as can be: an
-//! unknown field is left out, a bad entry of a list is left out, a bad field is left out and the rest read again.
+//! Tree of a scene text -> typed values, by serde. Every error knows its place, and as many are found as can
+//! be: an unknown field is left out, a bad entry of a list is left out, a bad field is left out and the rest
+//! read again.
 
 mod access;
 mod error;
@@ -68,8 +69,8 @@ pub(super) struct Decoded<T> {
     pub problems: Vec<Problem>,
 }
 
-/// Reads `node`, whose text starts at byte `offset` of the file, as a `T`. With `unnamed`, the name before its brackets
-/// is not looked at. Numbers may be expressions in `symbols`.
+/// Reads `node`, whose text starts at byte `offset` of the file, as a `T`. With `unnamed`, the name before
+/// its brackets is not looked at. Numbers may be expressions in `symbols`.
 pub(super) fn decode<T: DeserializeOwned>(
     node: &Node,
     text: &str,

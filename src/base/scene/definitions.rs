@@ -45,7 +45,8 @@ pub(super) fn define(root: &Node, text: &str, folder: &Path) -> Result<Arc<Symbo
 
 type Entry<'a> = (&'a str, &'a Node, &'a Node);
 
-/// Name, key and value of the entries of a block of the scene; that it is a map is checked where the scene is read.
+/// Name, key and value of the entries of a block of the scene; that it is a map is checked where the scene is
+/// read.
 fn entries<'a>(root: &'a Node, block: &str, problems: &mut Vec<Problem>) -> Vec<Entry<'a>> {
     let Some(NodeKind::Map(entries)) = root.field(block).map(|field| &field.value.kind) else {
         return Vec::new();

@@ -18,11 +18,13 @@ pub struct Scene {
     /// What the experiment is, in one line; shown in recordings and summaries.
     #[serde(default)]
     pub title: String,
-    /// Numbers by name, each a number or an expression in others: `{ "dx": 0.005, "h": "10*dx" }`. Every expression may use them, and
-    /// an expression in double quotes may stand wherever the scene has a number: `spacing: "dx"`.
+    /// Numbers by name, each a number or an expression in others: `{ "dx": 0.005, "h": "10*dx" }`. Every
+    /// expression may use them, and an expression in double quotes may stand wherever the scene has a number:
+    /// `spacing: "dx"`.
     #[serde(default)]
     pub parameters: BTreeMap<String, Expression>,
-    /// Functions by name, given by points: `{ "pull": (file: "pull.csv") }`, called in expressions as `"1e5*pull(t)"`.
+    /// Functions by name, given by points: `{ "pull": (file: "pull.csv") }`, called in expressions as
+    /// `"1e5*pull(t)"`.
     #[serde(default)]
     pub tables: BTreeMap<String, Table>,
     /// Whether the scene is plane strain in x-y or three-dimensional.
@@ -33,7 +35,8 @@ pub struct Scene {
     /// Acceleration of gravity on all bodies \[m/s²\].
     #[serde(default)]
     pub gravity: Vec3,
-    /// Arithmetic of the sums over neighbours of fluids. Without it, `Mixed` for spacings of 1e-6 to 1e6 m, `Double` for others.
+    /// Arithmetic of the sums over neighbours of fluids. Without it, `Mixed` for spacings of 1e-6 to 1e6 m,
+    /// `Double` for others.
     #[serde(default)]
     pub precision: Option<Precision>,
     /// Materials by the names that bodies refer to.
@@ -90,7 +93,8 @@ impl Scene {
         self.record.every.unwrap_or(self.time.end / 100.0)
     }
 
-    /// Time between two samples of `probe` \[s\]: `every` of the probe, or a tenth of the interval of the recording.
+    /// Time between two samples of `probe` \[s\]: `every` of the probe, or a tenth of the interval of the
+    /// recording.
     pub fn probe_interval(&self, probe: &Probe) -> f64 {
         probe.every.unwrap_or(self.record_interval() / 10.0)
     }

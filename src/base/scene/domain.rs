@@ -45,8 +45,8 @@ pub enum Outside {
     /// The run stops and names the particle.
     #[default]
     Error,
-    /// The particle is taken out of the run: nothing moves it or feels it any more, recordings leave it out, and the
-    /// summary counts it. The energy that leaves with it has an account of its own, `removed`. A rigid body leaves as a
-    /// whole, once all of its particles are outside.
+    /// The particle is taken out of the run: nothing moves it or feels it any more, recordings leave it out,
+    /// and the summary counts it. The energy that leaves with it has an account of its own, `removed`. A
+    /// rigid body leaves as a whole, once all of its particles are outside.
     Remove,
 }

@@ -3,12 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where the part of a Lagrangian body that a condition holds or moves ends: along all axes if it is selected by `within`, along any if by `face`.
+/// Where the part of a Lagrangian body that a condition holds or moves ends: along all axes if it is selected
+/// by `within`, along any if by `face`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Edge {
-    /// On the surface of the stated shape, or on the stated side: the outermost held particles stand there, nothing sees what is held behind them,
-    /// and the particles beside the edge carry the share of their stress that their cells have before it.
+    /// On the surface of the stated shape, or on the stated side: the outermost held particles stand there,
+    /// nothing sees what is held behind them, and the particles beside the edge carry the share of their
+    /// stress that their cells have before it.
     #[default]
     Stated,
     /// At the outermost held particles, mostly half a spacing inside: particles stay in their lattice.

@@ -27,11 +27,12 @@ pub fn expression_names() -> &'static [(&'static str, &'static str)] {
 
 /// A function of x, y, z \[m\] and t \[s\], compiled once and evaluated without allocation.
 ///
-/// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt exp ln log10 sin cos tan
-/// asin acos atan sinh cosh tanh floor sign step ramp smoothstep` of one and `min max pow atan2 mod` of two arguments.
-/// `step` is 0 below 0 and 1 from there on; `ramp` and `smoothstep` go from 0 at 0 to 1 at 1 and stay there,
-/// linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2` is `-(x^2)`, and `a^b^c` is `a^(b^c)`. The parameters of the
-/// scene are constants, its tables are functions of one argument.
+/// It is written with numbers, `+ - * / ^`, brackets, the constants `pi` and `e` and the functions `abs sqrt
+/// exp ln log10 sin cos tan asin acos atan sinh cosh tanh floor sign step ramp smoothstep` of one and `min
+/// max pow atan2 mod` of two arguments. `step` is 0 below 0 and 1 from there on; `ramp` and `smoothstep` go
+/// from 0 at 0 to 1 at 1 and stay there, linearly and as 3 s² - 2 s³. Powers bind tighter than signs: `-x^2`
+/// is `-(x^2)`, and `a^b^c` is `a^(b^c)`. The parameters of the scene are constants, its tables are functions
+/// of one argument.
 #[derive(Clone, Debug)]
 pub struct Expression {
     text: String,

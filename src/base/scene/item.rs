@@ -16,8 +16,8 @@ use super::symbols::Symbols;
 use super::tree::{Node, NodeKind};
 use super::{Problem, path, syntax};
 
-/// A name with or without parameters, `NeoHookean(density: 1.0)` or `hourglass_control`, whose type is found by the
-/// name in a registry. It keeps its text and place in the file until then.
+/// A name with or without parameters, `NeoHookean(density: 1.0)` or `hourglass_control`, whose type is found
+/// by the name in a registry. It keeps its text and place in the file until then.
 #[derive(Clone, Debug)]
 pub struct Item {
     name: String,
@@ -76,8 +76,8 @@ impl Item {
         Problem::at_span(self.start..self.start + self.name.len(), message)
     }
 
-    /// A problem with a parameter, such as `poisson` or `hardening.modulus`; where it is not written, with the item.
-    /// `help` says what would be right; it may be empty.
+    /// A problem with a parameter, such as `poisson` or `hardening.modulus`; where it is not written, with
+    /// the item. `help` says what would be right; it may be empty.
     pub fn problem(&self, parameter: &str, message: impl Into<String>, help: impl Into<String>) -> Problem {
         let at = self.tree().ok().and_then(|node| path::exact(&node, parameter));
         let at = at.unwrap_or(self.start..self.start + self.name.len());

@@ -12,7 +12,8 @@ use crate::files;
 /// `("time.end", "0.5")`.
 ///
 /// # Errors
-/// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at once.
+/// The file cannot be read, an override leads nowhere, or the text is not a valid scene; all that is wrong at
+/// once.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<(Scene, Source), SceneError> {
     let name = path.display().to_string();
     let read = files::read(path, files::LARGEST_TEXT).map_err(|error| {
@@ -64,8 +65,8 @@ pub fn parse(source: Source) -> Result<(Scene, Source), SceneError> {
 }
 
 impl Scene {
-    /// The scene as RON text that [`parse`] reads back: how a scene that a program puts together becomes one with
-    /// places for errors, and travels in checkpoints.
+    /// The scene as RON text that [`parse`] reads back: how a scene that a program puts together becomes one
+    /// with places for errors, and travels in checkpoints.
     ///
     /// # Errors
     /// A value has no RON form.

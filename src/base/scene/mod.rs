@@ -1,4 +1,5 @@
-//! The scene: the description of an experiment as a RON text, read into typed values with errors that point at the text.
+//! The scene: the description of an experiment as a RON text, read into typed values with errors that point
+//! at the text.
 //!
 //! The stages are [`Source`] -> tree of values with their positions -> typed [`Scene`] -> checks beyond the
 //! types. A value that a registry knows by name remains an [`Item`] until its type is found.

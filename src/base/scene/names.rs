@@ -5,8 +5,8 @@ use super::slips::synonym;
 /// Signs of a name that errors show.
 const LONGEST_NAME: usize = 80;
 
-/// Message and help lines for a name that is not known: what was found, the nearest known name, all known names.
-/// `kind` says what is named, in the singular: `plugin`, `material`.
+/// Message and help lines for a name that is not known: what was found, the nearest known name, all known
+/// names. `kind` says what is named, in the singular: `plugin`, `material`.
 pub fn unknown<S: AsRef<str>>(kind: &str, name: &str, known: &[S]) -> (String, Vec<String>) {
     let mut help = Vec::new();
     if let Some(near) = synonym(name, known).or_else(|| nearest(name, known)) {
@@ -51,7 +51,8 @@ pub fn nearest<'a, S: AsRef<str>>(name: &str, known: &'a [S]) -> Option<&'a str>
     best.map(|(_, candidate)| candidate).or_else(longer).or_else(|| of_like_words(&wanted, known))
 }
 
-/// The known name all of whose words of three letters and more are in the wanted one, in any order: that with the most of them.
+/// The known name all of whose words of three letters and more are in the wanted one, in any order: that with
+/// the most of them.
 fn of_like_words<'a, S: AsRef<str>>(wanted: &str, known: &'a [S]) -> Option<&'a str> {
     let words: Vec<&str> = wanted.split('_').collect();
     let of = |candidate: &'a str| candidate.split('_').filter(|word| word.len() > 2);

@@ -1,4 +1,5 @@
-//! Single values of a scene replaced from outside: `time.end=0.5`, `bodies.plate.plugins.hourglass_control.alpha=10`.
+//! Single values of a scene replaced from outside: `time.end=0.5`,
+//! `bodies.plate.plugins.hourglass_control.alpha=10`.
 
 use super::expression::{constant, words};
 use super::names::nearest;
@@ -11,8 +12,8 @@ use super::{Problem, Source, syntax};
 const OPTIONAL_BLOCKS: [&str; 2] = ["domain", "record"];
 
 impl Source {
-    /// The text with the value at `path` replaced by `value`, or added where the struct around it lacks the field.
-    /// Lines stay where they are. The value of a text may be given without quotes.
+    /// The text with the value at `path` replaced by `value`, or added where the struct around it lacks the
+    /// field. Lines stay where they are. The value of a text may be given without quotes.
     ///
     /// # Errors
     /// The text or `value` is not RON, or `path` leads nowhere.

@@ -1,7 +1,8 @@
 //! Places in a scene by path: `bodies[1].shape.min`, `bodies.plate.plugins.hourglass_control.alpha`.
 //!
-//! A step is the name of a field, the key of a map, or an index in brackets. In a list a step by name finds the entry
-//! whose field `name` is that text, or the entry that is itself called so, as plugins and conditions are; a number there is an index.
+//! A step is the name of a field, the key of a map, or an index in brackets. In a list a step by name finds
+//! the entry whose field `name` is that text, or the entry that is itself called so, as plugins and
+//! conditions are; a number there is an index.
 
 use std::ops::Range;
 

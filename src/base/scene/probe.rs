@@ -12,22 +12,25 @@ use crate::shapes::Shape;
 pub struct Probe {
     /// Name of the probe and of its file.
     pub name: String,
-    /// The particles that it averages over (for forces and torques: sums over), or the `surface` of a body. Either this, `at` or `line`.
+    /// The particles that it averages over (for forces and torques: sums over), or the `surface` of a body.
+    /// Either this, `at` or `line`.
     #[serde(default)]
     pub on: Option<Select>,
-    /// The point in space at which it measures \[m\]. Either this or `on`. A field there is interpolated from the bodies that have
-    /// it, walls left out: their particles stand for the fluid beside them. Of fluids, solids and rigid bodies only those count to which the
-    /// particle nearest to the point belongs.
+    /// The point in space at which it measures \[m\]. Either this or `on`. A field there is interpolated from
+    /// the bodies that have it, walls left out: their particles stand for the fluid beside them. Of fluids,
+    /// solids and rigid bodies only those count to which the particle nearest to the point belongs.
     #[serde(default)]
     pub at: Option<Vec3>,
     /// A line along which it measures, a column for each of its places. Instead of `on` or `at`.
     #[serde(default)]
     pub line: Option<Line>,
-    /// With `at` or `line`: the solid or rigid body whose points these are, given in their places at the start. They move with the body, and
-    /// at its surface they show the values at the surface. Without it they are points of space.
+    /// With `at` or `line`: the solid or rigid body whose points these are, given in their places at the
+    /// start. They move with the body, and at its surface they show the values at the surface. Without it
+    /// they are points of space.
     #[serde(default)]
     pub follows: Option<String>,
-    /// What is taken over the particles of `on`, or over its `surface`: without it the mean, of forces the sum.
+    /// What is taken over the particles of `on`, or over its `surface`: without it the mean, of forces the
+    /// sum.
     #[serde(default)]
     pub take: Option<Take>,
     /// A second place: the same there is subtracted.
@@ -36,14 +39,15 @@ pub struct Probe {
     /// No error where nothing is at the point at the start: the probe shows NaN until something is.
     #[serde(default)]
     pub may_be_empty: bool,
-    /// Whether each sample is the mean over the time since the last one, in the place of the value at its end: measured in every step. Forces of fluids ring with their sound, which samples
-    /// at intervals catch by chance. `stop_when` compares the values all the same.
+    /// Whether each sample is the mean over the time since the last one, in the place of the value at its
+    /// end: measured in every step. Forces of fluids ring with their sound, which samples at intervals catch
+    /// by chance. `stop_when` compares the values all the same.
     #[serde(default)]
     pub mean: bool,
     /// What is measured.
     pub quantity: Quantity,
-    /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken at the end of the first
-    /// step at or after the stated time, and the file has the time of that step.
+    /// Time between two samples \[s\]; without it a tenth of the interval of the recording. A sample is taken
+    /// at the end of the first step at or after the stated time, and the file has the time of that step.
     #[serde(default)]
     pub every: Option<f64>,
 }
@@ -97,9 +101,9 @@ pub enum Quantity {
     Position,
     /// Velocity \[m/s\].
     Velocity,
-    /// Sum over the selection of all forces on its particles except that of what holds them \[N\]: where a condition
-    /// holds or drives the selection, the force that the body exerts on the condition. A body that hangs from its
-    /// support by its weight pulls it down.
+    /// Sum over the selection of all forces on its particles except that of what holds them \[N\]: where a
+    /// condition holds or drives the selection, the force that the body exerts on the condition. A body that
+    /// hangs from its support by its weight pulls it down.
     Force,
     /// Torque of the same forces about the centre of mass of the selection \[N m\].
     Torque,
@@ -112,17 +116,19 @@ pub enum Quantity {
     Distance,
     /// A field of the particles by name, such as `"pressure"`, `"velocity.x"` or `"stress.xy"`.
     Field(String),
-    /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given \[J\].
+    /// Kinetic, strain and all other energies of the selected bodies, or of everything where none is given
+    /// \[J\].
     Energy,
-    /// Height of the surface of the fluids above the point `at`, and the length of the line up from that point which is wet, as
-    /// a wire gauge shows it \[m\]. Where a wave breaks over the point, the height is that of its highest surface.
+    /// Height of the surface of the fluids above the point `at`, and the length of the line up from that
+    /// point which is wet, as a wire gauge shows it \[m\]. Where a wave breaks over the point, the height is
+    /// that of its highest surface.
     WaterLevel {
         /// Direction of the line; without it against gravity.
         #[serde(default)]
         along: Option<Vec3>,
     },
-    /// Pressure that a sensor in the surface of a wall shows \[Pa\]: the mean over its area of the pressure of the fluids in front of it,
-    /// zero where there are none. `at` is the centre of its face.
+    /// Pressure that a sensor in the surface of a wall shows \[Pa\]: the mean over its area of the pressure
+    /// of the fluids in front of it, zero where there are none. `at` is the centre of its face.
     PressureSensor {
         /// Diameter of its round face; in two dimensions the length of its face \[m\]. Zero: at the point.
         #[serde(default)]
@@ -130,7 +136,8 @@ pub enum Quantity {
         /// Direction out of its face, into the fluid.
         normal: Vec3,
     },
-    /// Volume of fluid that passes a plane through `at` in a second \[m3/s\], in two dimensions for each metre of width.
+    /// Volume of fluid that passes a plane through `at` in a second \[m3/s\], in two dimensions for each
+    /// metre of width.
     Flux {
         /// The direction in which it counts as positive.
         normal: Vec3,
@@ -145,11 +152,12 @@ pub enum Quantity {
         /// The point about which the force turns \[m\].
         about: Vec3,
     },
-    /// Volume of the particles of the selection that have been taken out of the run, in the reference configuration: what has been worn off or cut off
-    /// \[m3; m2 in two dimensions\].
+    /// Volume of the particles of the selection that have been taken out of the run, in the reference
+    /// configuration: what has been worn off or cut off \[m3; m2 in two dimensions\].
     RemovedVolume,
-    /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every column that is a spacing wide \[m\]: the
-    /// arithmetic mean deviation `Ra` from the mean height, the difference `Rz` of the highest and the lowest height, and the mean height.
+    /// Roughness of the surface of the selection, seen against its normal, from the highest particle of every
+    /// column that is a spacing wide \[m\]: the arithmetic mean deviation `Ra` from the mean height, the
+    /// difference `Rz` of the highest and the lowest height, and the mean height.
     Roughness {
         /// Direction out of the surface.
         normal: Vec3,

@@ -26,8 +26,8 @@ pub enum SourcePlace {
     Scene,
     /// Bytes of the text.
     Span(Range<usize>),
-    /// A value by its path, such as `bodies[1].shape.min` or `bodies.plate.spacing`; where the text does not contain
-    /// it, the nearest value above it that it does contain.
+    /// A value by its path, such as `bodies[1].shape.min` or `bodies.plate.spacing`; where the text does not
+    /// contain it, the nearest value above it that it does contain.
     Path(String),
 }
 

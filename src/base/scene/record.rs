@@ -13,14 +13,16 @@ pub struct RecordDescription {
     /// Fields that are recorded beside the positions, such as `"pressure"`, `"von_mises"` or `"velocity.x"`.
     #[serde(default)]
     pub fields: Vec<String>,
-    /// Time between two checkpoints \[s\]; without it the run leaves one at its end, or where it is interrupted.
+    /// Time between two checkpoints \[s\]; without it the run leaves one at its end, or where it is
+    /// interrupted.
     #[serde(default)]
     pub checkpoint_every: Option<f64>,
-    /// Whether a run that is complete leaves a checkpoint, from which `meshless resume --until` goes further. An
-    /// interrupted run leaves one in any case.
+    /// Whether a run that is complete leaves a checkpoint, from which `meshless resume --until` goes further.
+    /// An interrupted run leaves one in any case.
     #[serde(default = "yes")]
     pub checkpoint_at_end: bool,
-    /// Whether each frame is also written as ParaView files, `<scene>_<body>_<frame>.vtu`, with `<scene>.pvd` for their times.
+    /// Whether each frame is also written as ParaView files, `<scene>_<body>_<frame>.vtu`, with `<scene>.pvd`
+    /// for their times.
     #[serde(default)]
     pub vtk: bool,
 }

@@ -27,7 +27,8 @@ pub fn parameters<T: JsonSchema>() -> Vec<Parameter> {
     Described::of::<T>().parameters()
 }
 
-/// A type with its schema, from which both its parameters and its documentation follow: what is generic is compiled once a type.
+/// A type with its schema, from which both its parameters and its documentation follow: what is generic is
+/// compiled once a type.
 pub struct Described {
     name: String,
     schema: Value,

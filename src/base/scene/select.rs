@@ -7,7 +7,8 @@ use super::Vec3;
 use super::contact::is_meant;
 use crate::shapes::Shape;
 
-/// The particles that meet all criteria that are given, in their places at the start. Without any criterion: all.
+/// The particles that meet all criteria that are given, in their places at the start. Without any criterion:
+/// all.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Select {

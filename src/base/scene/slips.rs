@@ -1,4 +1,5 @@
-//! Frequent slips of those who write a scene for the first time: units, expressions without quotes, decimal commas, everyday names of shapes.
+//! Frequent slips of those who write a scene for the first time: units, expressions without quotes, decimal
+//! commas, everyday names of shapes.
 
 /// Units that people write after numbers, with the power of ten of the SI unit.
 const UNITS: [(&str, i32); 33] = [

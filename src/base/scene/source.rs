@@ -36,7 +36,8 @@ impl Source {
         Path::new(&self.name).parent().unwrap_or(Path::new(""))
     }
 
-    /// The files that the scene names, as it writes them: the values of all fields `file`. None where the text is not RON.
+    /// The files that the scene names, as it writes them: the values of all fields `file`. None where the
+    /// text is not RON.
     pub fn files(&self) -> Vec<String> {
         let mut files = Vec::new();
         if let Ok(root) = self.tree() {

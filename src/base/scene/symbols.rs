@@ -1,4 +1,5 @@
-//! The names that a scene defines for its expressions: parameters, which are numbers, and tables, which are functions.
+//! The names that a scene defines for its expressions: parameters, which are numbers, and tables, which are
+//! functions.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

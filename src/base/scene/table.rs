@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Problem;
 
-/// A function of one variable by points, interpolated linearly between them and constant beyond the first and the last. Expressions
-/// call it by its name: `"1e5*pull(t)"`.
+/// A function of one variable by points, interpolated linearly between them and constant beyond the first and
+/// the last. Expressions call it by its name: `"1e5*pull(t)"`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {

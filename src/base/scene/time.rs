@@ -12,8 +12,8 @@ pub struct Time {
     /// How the time step is chosen.
     #[serde(default)]
     pub step: StepRule,
-    /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid; they take as many
-    /// as their own stability limit asks for. 1: all share one step.
+    /// Largest number of sub-steps that solids and rigid bodies beside a fluid take in one step of the fluid;
+    /// they take as many as their own stability limit asks for. 1: all share one step.
     #[serde(default = "default_sub_steps")]
     pub sub_steps: u32,
     /// The run ends before `end` when a probe passes a value: the first of these that is met.
@@ -21,8 +21,8 @@ pub struct Time {
     pub stop_when: Vec<StopWhen>,
 }
 
-/// A value of a probe at which the run ends: at its first sample beyond the value after one that is not beyond it. A run that is resumed
-/// goes on to the next passage.
+/// A value of a probe at which the run ends: at its first sample beyond the value after one that is not
+/// beyond it. A run that is resumed goes on to the next passage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StopWhen {
@@ -49,7 +49,8 @@ fn default_sub_steps() -> u32 {
 pub enum StepRule {
     /// The smallest of all stability limits, times a factor.
     Adaptive {
-        /// Factor on the stability limit \[-\]; above 1 leaves the range in which the limits are known to be safe.
+        /// Factor on the stability limit \[-\]; above 1 leaves the range in which the limits are known to be
+        /// safe.
         #[serde(default = "one")]
         factor: f64,
     },

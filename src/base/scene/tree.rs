@@ -32,7 +32,8 @@ pub(super) enum NodeKind {
     Tuple(Vec<Node>),
     List(Vec<Node>),
     Map(Vec<(Node, Node)>),
-    /// `content` is where the characters between the quotes start; it is `None` where escapes shift the places.
+    /// `content` is where the characters between the quotes start; it is `None` where escapes shift the
+    /// places.
     Text {
         value: String,
         content: Option<usize>,
@@ -52,7 +53,8 @@ pub(super) struct StructField {
 }
 
 impl Node {
-    /// The part that stands for the value in a message: its name, or its opening bracket, or all of a simple value.
+    /// The part that stands for the value in a message: its name, or its opening bracket, or all of a simple
+    /// value.
     pub fn head(&self) -> Range<usize> {
         match (&self.name, &self.kind) {
             (Some(name), _) => name.span.clone(),

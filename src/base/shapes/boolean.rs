@@ -175,7 +175,8 @@ impl<R: Surface + ?Sized> Surface for Union<R> {
     }
 }
 
-/// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no boundary.
+/// For a hole that is all inside only: otherwise the nearest point of either surface could be one of no
+/// boundary.
 impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     fn closest(&self, point: DVec3) -> SurfacePoint {
         let (outer, inner) = (self.whole.closest(point), self.hole.closest(point));
@@ -195,7 +196,8 @@ impl<R: Surface + ?Sized> Surface for DifferenceRegion<R> {
     }
 }
 
-/// Whether `region` is known to hold all of `part`: it is a single box that does, or a ball about `part` is inside.
+/// Whether `region` is known to hold all of `part`: it is a single box that does, or a ball about `part` is
+/// inside.
 fn holds<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if region.box_faces(&mut faces) && faces[0].len() == 2 {
@@ -204,7 +206,8 @@ fn holds<R: Region + ?Sized>(region: &R, part: &Aabb, axes: usize) -> bool {
     region.distance(part.center()) <= -0.5 * part.extent().length()
 }
 
-/// Volume of a region made of boxes along the axes: all their faces cut space into cells that are in or out as a whole.
+/// Volume of a region made of boxes along the axes: all their faces cut space into cells that are in or out
+/// as a whole.
 fn volume_of_boxes<R: Region + ?Sized>(region: &R, axes: usize) -> Option<f64> {
     let mut faces = [Vec::new(), Vec::new(), Vec::new()];
     if !region.box_faces(&mut faces) {

@@ -12,11 +12,12 @@ use super::transform::{Rotated, Scaled, Translated};
 use crate::space::Dimension;
 
 impl Shape {
-    /// The set of points of this shape. Files are looked for in `folder`; `path` is the field that holds the shape, for error
-    /// messages: `shape`, `within`.
+    /// The set of points of this shape. Files are looked for in `folder`; `path` is the field that holds the
+    /// shape, for error messages: `shape`, `within`.
     ///
     /// # Errors
-    /// A number that cannot be, a shape that does not exist in this dimension, a polygon that crosses itself, a particle file.
+    /// A number that cannot be, a shape that does not exist in this dimension, a polygon that crosses itself,
+    /// a particle file.
     pub fn region(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Region>> {
         let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();
@@ -48,11 +49,13 @@ impl Shape {
         })
     }
 
-    /// The surface of this shape, for tools: all single shapes have one, moved, turned, equally scaled ones, combinations of parts
-    /// whose surfaces are apart. Files are looked for in `folder`; `path` is the field that holds the shape, for error messages.
+    /// The surface of this shape, for tools: all single shapes have one, moved, turned, equally scaled ones,
+    /// combinations of parts whose surfaces are apart. Files are looked for in `folder`; `path` is the field
+    /// that holds the shape, for error messages.
     ///
     /// # Errors
-    /// As for [`region`](Self::region); a combination or stretched shape whose nearest points have no closed form.
+    /// As for [`region`](Self::region); a combination or stretched shape whose nearest points have no closed
+    /// form.
     pub fn surface(&self, dimension: Dimension, folder: &Path, path: &str) -> Checked<Box<dyn Surface>> {
         let check = ShapeCheck { dimension, folder, path };
         let axes = dimension.count();

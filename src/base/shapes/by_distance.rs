@@ -1,6 +1,7 @@
 //! The surface of a shape whose nearest points have no closed form, along the gradient of its distance.
 //!
-//! Where the distance is less than the true one, so is that of the points. It serves where nothing touches the surface.
+//! Where the distance is less than the true one, so is that of the points. It serves where nothing touches
+//! the surface.
 
 use glam::DVec3;
 

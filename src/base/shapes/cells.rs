@@ -7,7 +7,8 @@ use super::error::FillErrorKind;
 use super::region::{Aabb, Region};
 use super::tiling::{CellBox, Tiling};
 
-/// Part of the particles that may sit in walls of one layer: tips and edges of round and sharp bodies have some.
+/// Part of the particles that may sit in walls of one layer: tips and edges of round and sharp bodies have
+/// some.
 const MAX_THIN_PART: f64 = 0.1;
 
 /// Where in its cell a particle sits.
@@ -38,8 +39,9 @@ impl Packing {
         spacing * DVec3::from_array(sides)
     }
 
-    /// Position of the particle as parts of the sides of its cell. Rows alternate by half a cell along x; in three dimensions layer B sits
-    /// over the gaps of layer A, half a cell along x and a third along y away. Placed so that the whole is centred in the box.
+    /// Position of the particle as parts of the sides of its cell. Rows alternate by half a cell along x; in
+    /// three dimensions layer B sits over the gaps of layer A, half a cell along x and a third along y away.
+    /// Placed so that the whole is centred in the box.
     fn part(self, tiling: &Tiling, index: [usize; 3]) -> DVec3 {
         if self == Self::Centered {
             return DVec3::splat(0.5);
@@ -56,8 +58,8 @@ impl Packing {
 /// The lattice points of `packing` in `region` with cells that divide `frame`, near ones after each other.
 ///
 /// # Errors
-/// No point is inside, or the body is thinner than two particles: its frame is, or more than a tenth of the points are in walls of a
-/// single layer.
+/// No point is inside, or the body is thinner than two particles: its frame is, or more than a tenth of the
+/// points are in walls of a single layer.
 pub(super) fn points(
     region: &dyn Region,
     frame: &Aabb,
@@ -112,8 +114,8 @@ pub(super) fn points(
     Ok(points)
 }
 
-/// Whether both neighbours of `point` along axis `k` are outside, and those of its two neighbours along another axis as well: one layer
-/// that goes on, not the tip of something round.
+/// Whether both neighbours of `point` along axis `k` are outside, and those of its two neighbours along
+/// another axis as well: one layer that goes on, not the tip of something round.
 fn is_sheet(region: &dyn Region, point: DVec3, cell: DVec3, k: usize, axes: usize) -> bool {
     let step = |k: usize| cell[k] * DVec3::AXES[k];
     let single = |point: DVec3| !region.contains(point + step(k)) && !region.contains(point - step(k));
@@ -121,7 +123,8 @@ fn is_sheet(region: &dyn Region, point: DVec3, cell: DVec3, k: usize, axes: usiz
     single(point) && (0..axes).any(|m| m != k && layer(point + step(m)) && layer(point - step(m)))
 }
 
-/// Length inside the region along axis `k` through a point whose neighbours along that axis are outside \[m\].
+/// Length inside the region along axis `k` through a point whose neighbours along that axis are outside
+/// \[m\].
 fn chord(region: &dyn Region, point: DVec3, cell: DVec3, k: usize) -> f64 {
     let reach = |direction: f64| {
         let (mut inside, mut outside) = (0.0, cell[k]);

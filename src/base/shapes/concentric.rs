@@ -53,7 +53,8 @@ impl Rings {
         }
     }
 
-    /// What is left of it without `hole`, if that is a solid one about the same centre or axis, and goes through from end to end.
+    /// What is left of it without `hole`, if that is a solid one about the same centre or axis, and goes
+    /// through from end to end.
     pub(super) fn bored(self, hole: Self) -> Option<Self> {
         match (self, hole) {
             (
@@ -99,7 +100,8 @@ fn bored_radius(inner: f64, outer: f64, bore: f64) -> Option<f64> {
     (bore < outer).then_some(inner.max(bore))
 }
 
-/// Particles of about the volume of a cube (square) of side `spacing`, each with the exact volume of its sector or part.
+/// Particles of about the volume of a cube (square) of side `spacing`, each with the exact volume of its
+/// sector or part.
 ///
 /// # Errors
 /// A wall, radius or length of less than two particles.
@@ -175,9 +177,9 @@ fn sectors(inner: f64, outer: f64, spacing: f64) -> Result<Vec<(f64, f64, f64)>,
     Ok(sectors)
 }
 
-/// Points of a Fibonacci spiral on the sphere of the mean radius of a shell, each with an equal part of its volume. (Swinbank and
-/// Purser, Q. J. R. Meteorol. Soc. 132, 2006: z at the middles of zones of equal area, the longitude turned by the golden angle
-/// from point to point.)
+/// Points of a Fibonacci spiral on the sphere of the mean radius of a shell, each with an equal part of its
+/// volume. (Swinbank and Purser, Q. J. R. Meteorol. Soc. 132, 2006: z at the middles of zones of equal area,
+/// the longitude turned by the golden angle from point to point.)
 fn shell_parts(r0: f64, r1: f64, spacing: f64, shell: usize) -> impl Iterator<Item = (DVec3, f64)> {
     let volume = 4.0 / 3.0 * PI * (r1.powi(3) - r0.powi(3));
     let count = (volume / spacing.powi(3)).round().max(4.0);

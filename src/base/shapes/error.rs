@@ -10,8 +10,8 @@ use crate::notation::{digits, number};
 #[derive(Debug, Error)]
 #[error("{path}: {kind}{}", .kind.help().map_or(String::new(), |help| format!("; {help}")))]
 pub struct FillError {
-    /// The field that is wrong, from the body on: `spacing`, `shape.max`, `shape[0].radius` (an argument without a name), `shape[0][2]`
-    /// (an element of a list).
+    /// The field that is wrong, from the body on: `spacing`, `shape.max`, `shape[0].radius` (an argument
+    /// without a name), `shape[0][2]` (an element of a list).
     pub path: String,
     /// What is wrong with it.
     pub kind: FillErrorKind,

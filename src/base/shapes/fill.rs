@@ -41,7 +41,8 @@ pub struct Filling<'a> {
     pub folder: &'a Path,
     /// Largest number of particles.
     pub limit: usize,
-    /// Whether the shape is the wall of a flow: where a box is cut out of it, cells end at the cavity, and volumes are those of cells.
+    /// Whether the shape is the wall of a flow: where a box is cut out of it, cells end at the cavity, and
+    /// volumes are those of cells.
     pub is_wall: bool,
 }
 
@@ -58,13 +59,15 @@ pub(super) struct Content<'a> {
 
 /// The particles that fill `shape`, in the order of a Morton curve.
 ///
-/// The volumes add up to that of the shape: the closed form, or for combinations without one a numerical value good to 0.1 %. A regular
-/// or hexagonal lattice divides the box about the shape evenly (that about the first shape of a combination): a side that is no
-/// multiple of the spacing gets the nearest number of particles. Translations and rotations take the lattice with them.
+/// The volumes add up to that of the shape: the closed form, or for combinations without one a numerical
+/// value good to 0.1 %. A regular or hexagonal lattice divides the box about the shape evenly (that about the
+/// first shape of a combination): a side that is no multiple of the spacing gets the nearest number of
+/// particles. Translations and rotations take the lattice with them.
 ///
 /// # Errors
-/// The spacing is not positive; the shape is not valid in this dimension, is empty, is thinner than two particles, or does not fit the
-/// lattice; it takes more particles than the limit; the particle file is missing or wrong.
+/// The spacing is not positive; the shape is not valid in this dimension, is empty, is thinner than two
+/// particles, or does not fit the lattice; it takes more particles than the limit; the particle file is
+/// missing or wrong.
 pub fn fill(shape: &Shape, filling: Filling<'_>) -> Result<Vec<Site>, FillError> {
     let spacing = filling.spacing;
     if !spacing.is_finite() {
@@ -208,7 +211,8 @@ impl Filling<'_> {
     }
 }
 
-/// Whether a scaled shape is filled before it is scaled: particle files always, others if the factors are equal.
+/// Whether a scaled shape is filled before it is scaled: particle files always, others if the factors are
+/// equal.
 fn is_uniform(shape: &Shape, by: DVec3, dimension: Dimension) -> bool {
     matches!(shape, Shape::Points { .. }) || (by.x == by.y && (dimension == Dimension::Two || by.y == by.z))
 }

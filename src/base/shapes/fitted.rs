@@ -1,5 +1,5 @@
-//! Body-fitted packings: a regular lattice inside, and layers that follow the boundary near it, made uniform by Lloyd's method with the outermost layer
-//! held at half a spacing from the boundary.
+//! Body-fitted packings: a regular lattice inside, and layers that follow the boundary near it, made uniform
+//! by Lloyd's method with the outermost layer held at half a spacing from the boundary.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,7 +15,8 @@ const MOVING: f64 = 3.5;
 const MEASURED: f64 = 6.0;
 /// Depth up to which particles belong to the outermost layer: at the start, and then, in spacings.
 const FIRST_LAYER: [f64; 2] = [1.0, 0.75];
-/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the volumes.
+/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the
+/// volumes.
 const STEP_SAMPLES: [usize; 2] = [6, 3];
 const VOLUME_SAMPLES: [usize; 2] = [12, 6];
 /// Step of the differences that give the direction to the boundary, in spacings.
@@ -42,9 +43,9 @@ impl Region for Band<'_> {
     }
 }
 
-/// The lattice points in `region` with those near its boundary moved: after `iterations` steps of Lloyd's method they have about even
-/// cells, and the outermost ones are half a spacing from the boundary. Inside, particles have the volume of a cell of the lattice; all
-/// together have `volume`.
+/// The lattice points in `region` with those near its boundary moved: after `iterations` steps of Lloyd's
+/// method they have about even cells, and the outermost ones are half a spacing from the boundary. Inside,
+/// particles have the volume of a cell of the lattice; all together have `volume`.
 pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u32) -> Vec<Site> {
     let Content { region, volume, spacing, axes } = content;
     let frame = region.frame();
@@ -91,7 +92,8 @@ pub(super) fn sites(content: Content<'_>, mut points: Vec<DVec3>, iterations: u3
 fn in_first_layer(region: &dyn Region, point: DVec3, spacing: f64, axes: usize) -> DVec3 {
     let step = STEP * spacing;
     let mut place = point;
-    // Distances of combinations are not exact away from the boundary: the second step mends what the first one leaves.
+    // Distances of combinations are not exact away from the boundary: the second step mends what the first
+    // one leaves.
     for _ in 0..2 {
         let slope = |k: usize| {
             let ahead = region.distance(place + step * DVec3::AXES[k]);

@@ -3,31 +3,33 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions) or
-/// spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
+/// How particles are laid out inside a shape. With every layout a particle takes spacing^2 (two dimensions)
+/// or spacing^3 (three) of the shape on average, and the volumes add up to that of the shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Lattice {
-    /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the shape.
-    /// `Square` and `Cubic` are other names for it.
+    /// Cell centres of a square (two dimensions) or cubic (three) lattice that tiles the bounding box of the
+    /// shape. `Square` and `Cubic` are other names for it.
     #[default]
     #[serde(alias = "Square", alias = "Cubic")]
     Regular,
-    /// Densest packing: rows of triangles along x in two dimensions, hexagonal close packing (hcp, layers ABAB along
-    /// z) in three. Nearest neighbours are 1.075 (two dimensions) or 1.122 (three) spacings apart.
+    /// Densest packing: rows of triangles along x in two dimensions, hexagonal close packing (hcp, layers
+    /// ABAB along z) in three. Nearest neighbours are 1.075 (two dimensions) or 1.122 (three) spacings apart.
     Hexagonal,
-    /// Rings about the axis of a disc, ring, cylinder or tube, shells about the centre of a solid or hollow sphere; each ring or shell
-    /// is divided into parts of equal volume. A `Difference` of two such shapes about one centre or axis is one of them.
+    /// Rings about the axis of a disc, ring, cylinder or tube, shells about the centre of a solid or hollow
+    /// sphere; each ring or shell is divided into parts of equal volume. A `Difference` of two such shapes
+    /// about one centre or axis is one of them.
     Concentric,
-    /// Regular inside, and layers that follow the boundary of any shape: the outermost particles are half a spacing from it, along holes and
-    /// inclined sides as well. Stresses there are smooth, where those of other lattices have steps. Every particle has the volume of its own cell.
+    /// Regular inside, and layers that follow the boundary of any shape: the outermost particles are half a
+    /// spacing from it, along holes and inclined sides as well. Stresses there are smooth, where those of
+    /// other lattices have steps. Every particle has the volume of its own cell.
     BodyFitted {
         /// Steps of Lloyd's method: the more, the more even the particles near the boundary.
         #[serde(default = "default_fitting")]
         iterations: u32,
     },
-    /// Irregular: random points that keep a least distance, moved to the centroids of their Voronoi cells (Lloyd's method). Every
-    /// particle has the volume of its own cell.
+    /// Irregular: random points that keep a least distance, moved to the centroids of their Voronoi cells
+    /// (Lloyd's method). Every particle has the volume of its own cell.
     Relaxed {
         /// Number from which the random points are drawn: the same seed gives the same particles.
         #[serde(default)]

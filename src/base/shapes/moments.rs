@@ -4,7 +4,8 @@ use glam::{DQuat, DVec3};
 
 use crate::linalg::Sym3;
 
-/// Moments of a shape. In two dimensions the volume is an area \[m²\], and moments are per metre of thickness.
+/// Moments of a shape. In two dimensions the volume is an area \[m²\], and moments are per metre of
+/// thickness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
     /// Volume \[m³\].
@@ -16,10 +17,11 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// From corners of triangles or tetrahedra that share the corner `origin` and have these signed volumes; `corners` are relative to
-    /// it. `axes` is 2 for triangles, 3 for tetrahedra.
+    /// From corners of triangles or tetrahedra that share the corner `origin` and have these signed volumes;
+    /// `corners` are relative to it. `axes` is 2 for triangles, 3 for tetrahedra.
     ///
-    /// Over a simplex in d dimensions with a corner at the origin, x x^T integrates to V / ((d + 1)(d + 2)) (sum v v^T + s s^T) with s = sum v.
+    /// Over a simplex in d dimensions with a corner at the origin, x x^T integrates to V / ((d + 1)(d + 2))
+    /// (sum v v^T + s s^T) with s = sum v.
     pub(super) fn of_simplices(
         origin: DVec3,
         axes: usize,

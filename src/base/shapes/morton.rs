@@ -16,8 +16,9 @@ pub struct MortonSort {
 }
 
 impl MortonSort {
-    /// The order of `points` along the curve through cells of side `cell` \[m\] that are counted from the place `around` \[m\]: element n is the index of the point that comes
-    /// n-th. Points of one cell keep their order. Where 2^20 cells on either side do not reach, their side is doubled until they do.
+    /// The order of `points` along the curve through cells of side `cell` \[m\] that are counted from the
+    /// place `around` \[m\]: element n is the index of the point that comes n-th. Points of one cell keep
+    /// their order. Where 2^20 cells on either side do not reach, their side is doubled until they do.
     pub fn order(&mut self, points: &[DVec3], around: DVec3, mut cell: f64) -> &[u32] {
         let farthest = points
             .iter()
@@ -25,7 +26,8 @@ impl MortonSort {
         while farthest / cell >= HALF - 1.0 {
             cell *= 2.0;
         }
-        // Points of a lattice that starts at `around` lie half a cell away from the walls of the cells, where round-off cannot move them across.
+        // Points of a lattice that starts at `around` lie half a cell away from the walls of the cells, where
+        // round-off cannot move them across.
         let index = |x: f64| (x / cell + (HALF + 0.5)) as u64;
         let key = |point: DVec3| {
             let from = point - around;

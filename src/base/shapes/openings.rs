@@ -1,5 +1,7 @@
-//! Distances through the openings of holes: where the face of a hole is one of the body it is cut out of, as at the ends of a pipe or where a second hole begins, nothing is
-//! between the two, but what is beside the opening, on either side, is near. From the edge of a hole the distance is that from the edge, not from the nearer one of its two faces.
+//! Distances through the openings of holes: where the face of a hole is one of the body it is cut out of, as
+//! at the ends of a pipe or where a second hole begins, nothing is between the two, but what is beside the
+//! opening, on either side, is near. From the edge of a hole the distance is that from the edge, not from the
+//! nearer one of its two faces.
 
 use glam::DVec3;
 
@@ -10,13 +12,15 @@ use super::shape::Shape;
 /// Distance of two faces up to which they are one, over the extent of the hole.
 const COMMON: f64 = 1e-9;
 
-/// Least cosine of the angle between the normals of two faces that meet in an edge: opposite ones are those of a thin part.
+/// Least cosine of the angle between the normals of two faces that meet in an edge: opposite ones are those
+/// of a thin part.
 const SHARP: f64 = -0.9;
 
 /// Step away from a face that is seen as on its other side, over the extent of the hole.
 const BESIDE: f64 = 1e-6;
 
-/// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and `of_hole` are its distances from the whole and from the hole \[m\].
+/// Distance of a `point` from what is left of the whole, if the nearest face is an opening; `of_whole` and
+/// `of_hole` are its distances from the whole and from the hole \[m\].
 pub(super) fn through<R: Region + ?Sized>(
     cut: &DifferenceRegion<R>,
     point: DVec3,
@@ -44,7 +48,8 @@ pub(super) fn through<R: Region + ?Sized>(
     Some(of_sides.min(depth.hypot(beyond)))
 }
 
-/// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where the nearest is the edge between the two faces; none where it is one of the faces.
+/// Distance of a `point` outside of the whole by `of_whole` and inside of the hole by `in_hole` \[m\], where
+/// the nearest is the edge between the two faces; none where it is one of the faces.
 pub(super) fn from_edge<R: Region + ?Sized>(
     cut: &DifferenceRegion<R>,
     point: DVec3,
@@ -68,7 +73,8 @@ fn normal(distance: impl Fn(DVec3) -> f64, point: DVec3, step: f64, axes: usize)
     DVec3::AXES[..axes].iter().map(|&axis| slope(axis) * axis).sum::<DVec3>().normalize_or_zero()
 }
 
-/// Distance from what is beside the way from `start` along `out`, away from an opening `behind` it: that at which the distance no longer grows as that from the opening \[m\].
+/// Distance from what is beside the way from `start` along `out`, away from an opening `behind` it: that at
+/// which the distance no longer grows as that from the opening \[m\].
 fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f64, reach: f64) -> f64 {
     let (mut step, mut farthest) = (f64::max(behind, 1e-3 * reach), f64::MIN_POSITIVE);
     loop {
@@ -82,7 +88,8 @@ fn sideways(distance: impl Fn(DVec3) -> f64, start: DVec3, out: DVec3, behind: f
 }
 
 impl Shape {
-    /// The same set of points, every hole that is a union cut out part by part: where the parts touch, they open into each other.
+    /// The same set of points, every hole that is a union cut out part by part: where the parts touch, they
+    /// open into each other.
     #[must_use]
     pub fn cut_part_by_part(&self) -> Self {
         let inner = |shape: &Self| Box::new(shape.cut_part_by_part());

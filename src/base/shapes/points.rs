@@ -11,12 +11,13 @@ use crate::files;
 use crate::notation::{number, place};
 use crate::space::Dimension;
 
-/// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may follow a name (`x[m]`); empty
-/// lines and those that begin with `#` are passed over, other columns are ignored.
+/// Reads the columns x, y, z (three dimensions), volume of the file, in any order. A unit in brackets may
+/// follow a name (`x[m]`); empty lines and those that begin with `#` are passed over, other columns are
+/// ignored.
 ///
 /// # Errors
-/// The file cannot be read or has no particle, a column is missing, a value is not a finite number, a volume is not positive, z is
-/// not 0 in two dimensions, there are more particles than `limit`.
+/// The file cannot be read or has no particle, a column is missing, a value is not a finite number, a volume
+/// is not positive, z is not 0 in two dimensions, there are more particles than `limit`.
 pub(super) fn read(
     folder: &Path,
     file: &str,

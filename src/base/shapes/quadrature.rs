@@ -8,9 +8,10 @@ use super::tiling::Tiling;
 /// Cells along the longest side in two and in three dimensions.
 const CELLS: [f64; 2] = [4096.0, 512.0];
 
-/// Volume of `region` \[m³\], in two dimensions area \[m²\]: the closed form where there is one. Otherwise cells much smaller
-/// than the region, at most half a `spacing`, are counted; one cut by the boundary counts by the part that a plane at its distance
-/// cuts off, so that the error falls with the square of the cell size.
+/// Volume of `region` \[m³\], in two dimensions area \[m²\]: the closed form where there is one. Otherwise
+/// cells much smaller than the region, at most half a `spacing`, are counted; one cut by the boundary counts
+/// by the part that a plane at its distance cuts off, so that the error falls with the square of the cell
+/// size.
 pub(super) fn volume(region: &dyn Region, spacing: f64, axes: usize) -> f64 {
     if let Some(volume) = region.volume() {
         return volume;

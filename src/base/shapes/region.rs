@@ -77,14 +77,15 @@ impl Aabb {
     }
 }
 
-/// A set of points with its boundary. In two dimensions the points lie in z = 0 and a volume is an area \[m²\].
+/// A set of points with its boundary. In two dimensions the points lie in z = 0 and a volume is an area
+/// \[m²\].
 pub trait Region: Send + Sync {
-    /// Signed distance from `point` to the boundary \[m\], negative inside. The sign is exact, the magnitude never more
-    /// than the true distance (boolean combinations may give less).
+    /// Signed distance from `point` to the boundary \[m\], negative inside. The sign is exact, the magnitude
+    /// never more than the true distance (boolean combinations may give less).
     fn distance(&self, point: DVec3) -> f64;
 
-    /// The same of a point before an opening, where a face of a hole coincides with one of the body it is cut out of: from what is beside the opening, as there is no lid. Elsewhere
-    /// the distance.
+    /// The same of a point before an opening, where a face of a hole coincides with one of the body it is cut
+    /// out of: from what is beside the opening, as there is no lid. Elsewhere the distance.
     fn clearance(&self, point: DVec3) -> f64 {
         self.distance(point)
     }
@@ -95,8 +96,9 @@ pub trait Region: Send + Sync {
     /// Volume \[m³\], in two dimensions area \[m²\], where it is known in closed form.
     fn volume(&self) -> Option<f64>;
 
-    /// Whether `point` is inside or on the boundary. Points closer to the boundary than 1e-9 of the diagonal of the bounding box
-    /// (without one, of the distance from the origin) are on it, so that round-off decides nothing.
+    /// Whether `point` is inside or on the boundary. Points closer to the boundary than 1e-9 of the diagonal
+    /// of the bounding box (without one, of the distance from the origin) are on it, so that round-off
+    /// decides nothing.
     fn contains(&self, point: DVec3) -> bool {
         let tolerance = self.tolerance();
         self.distance(point) <= if tolerance.is_finite() { tolerance } else { 1e-9 * point.length() }
@@ -112,7 +114,8 @@ pub trait Region: Send + Sync {
         self.bounds()
     }
 
-    /// The box that the cells of a wall of this region divide evenly, if boxes are cut out of it and [`Region::frame`] does not fit that.
+    /// The box that the cells of a wall of this region divide evenly, if boxes are cut out of it and
+    /// [`Region::frame`] does not fit that.
     fn wall_frame(&self, _spacing: f64) -> Option<Aabb> {
         None
     }
@@ -122,12 +125,14 @@ pub trait Region: Send + Sync {
         Vec::new()
     }
 
-    /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes alone.
+    /// Appends the coordinates of the faces and returns true if the region is made of boxes along the axes
+    /// alone.
     fn box_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
         false
     }
 
-    /// Appends the coordinates of the faces of what is cut out of this region, and returns true if all of it is made of boxes along the axes.
+    /// Appends the coordinates of the faces of what is cut out of this region, and returns true if all of it
+    /// is made of boxes along the axes.
     fn cavity_faces(&self, _faces: &mut [Vec<f64>; 3]) -> bool {
         true
     }
@@ -138,8 +143,8 @@ pub trait Region: Send + Sync {
     }
 }
 
-/// Signed distance to what is both within a prism and between its ends, from the distance to the side of the prism and that to the
-/// ends \[m\].
+/// Signed distance to what is both within a prism and between its ends, from the distance to the side of the
+/// prism and that to the ends \[m\].
 pub(super) fn capped(side: f64, ends: f64) -> f64 {
     side.max(ends).min(0.0) + side.max(0.0).hypot(ends.max(0.0))
 }

@@ -13,13 +13,15 @@ use super::voronoi::{self, CellMoments};
 const SEPARATION: f64 = 0.6;
 /// Failed draws for each wanted point, after which the least distance is lowered.
 const PATIENCE: usize = 200;
-/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the volumes.
+/// Samples along each side of a cell, in two and three dimensions: for a step of Lloyd's method and for the
+/// volumes.
 const STEP_SAMPLES: [usize; 2] = [6, 3];
 const VOLUME_SAMPLES: [usize; 2] = [12, 6];
 
-/// About `volume / spacing^d` irregular particles in `region`: random points with a least distance, moved `iterations` times to the centroids of their
-/// Voronoi cells (Lloyd, IEEE Trans. Inf. Theory 28, 1982). Each has the volume of its cell; together they have `volume`. The cost is
-/// proportional to the number of particles.
+/// About `volume / spacing^d` irregular particles in `region`: random points with a least distance, moved
+/// `iterations` times to the centroids of their Voronoi cells (Lloyd, IEEE Trans. Inf. Theory 28, 1982). Each
+/// has the volume of its cell; together they have `volume`. The cost is proportional to the number of
+/// particles.
 pub(super) fn sites(content: Content<'_>, seed: u64, iterations: u32) -> Vec<Site> {
     let Content { region, volume, spacing, axes } = content;
     let bounds = region.bounds();

@@ -26,8 +26,9 @@ pub enum Shape {
         /// Radius \[m\].
         radius: f64,
     },
-    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes, selects, is a tool (a
-    /// `Rigid` body whose motion is prescribed), but fills no body, and fluids do not see it.
+    /// All that lies behind a plane; behind a line in two dimensions. It has no end: it cuts other shapes,
+    /// selects, is a tool (a `Rigid` body whose motion is prescribed), but fills no body, and fluids do not
+    /// see it.
     HalfSpace {
         /// A point of the plane \[m\].
         point: Vec3,
@@ -132,8 +133,8 @@ pub enum Shape {
     },
     /// Particles from a file, in place of a lattice.
     Points {
-        /// CSV file with the header `x,y,volume` or `x,y,z,volume`, in m and m^3 (two dimensions: m^2); further columns are
-        /// ignored. Relative to the scene's folder.
+        /// CSV file with the header `x,y,volume` or `x,y,z,volume`, in m and m^3 (two dimensions: m^2);
+        /// further columns are ignored. Relative to the scene's folder.
         file: String,
     },
 }

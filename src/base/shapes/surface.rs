@@ -12,8 +12,9 @@ use super::region::Region;
 pub struct SurfacePoint {
     /// The nearest point of the surface \[m\].
     pub point: DVec3,
-    /// n, unit normal of the surface there, outward \[-\]. At edges and corners it is along the line from `point` to the point asked for (against
-    /// it from inside); for a point on them, the mean of the normals that meet there.
+    /// n, unit normal of the surface there, outward \[-\]. At edges and corners it is along the line from
+    /// `point` to the point asked for (against it from inside); for a point on them, the mean of the normals
+    /// that meet there.
     pub normal: DVec3,
     /// Distance from the point asked for, negative inside \[m\].
     pub signed_distance: f64,
@@ -21,12 +22,12 @@ pub struct SurfacePoint {
 
 /// A region that knows the nearest point of its surface exactly. In two dimensions everything lies in z = 0.
 pub trait Surface: Region {
-    /// The point of the surface that is nearest to `point`. Of several equally near ones the choice is fixed: the same `point` always has
-    /// the same answer.
+    /// The point of the surface that is nearest to `point`. Of several equally near ones the choice is fixed:
+    /// the same `point` always has the same answer.
     fn closest(&self, point: DVec3) -> SurfacePoint;
 
-    /// Sharp edges, straight ones by their two ends, round ones in pieces not much longer than `piece` \[m\]; corners of two
-    /// dimensions and tips are pieces without length. Smooth surfaces have none.
+    /// Sharp edges, straight ones by their two ends, round ones in pieces not much longer than `piece` \[m\];
+    /// corners of two dimensions and tips are pieces without length. Smooth surfaces have none.
     fn edges(&self, _piece: f64) -> Vec<[DVec3; 2]> {
         Vec::new()
     }
@@ -81,8 +82,8 @@ impl Facing {
     }
 }
 
-/// The nearest point of what lies behind all `faces`, whose normals are at right angles to each other: inside that of the nearest face, outside
-/// that of the edge or corner of all faces that the point is in front of.
+/// The nearest point of what lies behind all `faces`, whose normals are at right angles to each other: inside
+/// that of the nearest face, outside that of the edge or corner of all faces that the point is in front of.
 #[inline]
 pub(super) fn behind_all(point: DVec3, faces: &[Facing]) -> SurfacePoint {
     let in_front = faces.iter().filter(|face| face.distance > 0.0);

@@ -70,8 +70,9 @@ impl Tiling {
         })
     }
 
-    /// Blocks of at most `leaf` cells a side that together hold all cells which touch the region. Blocks inside may be
-    /// as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each other.
+    /// Blocks of at most `leaf` cells a side that together hold all cells which touch the region. Blocks
+    /// inside may be as large as `inside_leaf` cells a side. They come in a fixed order, near ones after each
+    /// other.
     pub fn blocks(&self, region: &dyn Region, leaf: usize, inside_leaf: usize) -> Vec<CellBox> {
         let side = self.counts.iter().copied().max().unwrap_or(1).next_power_of_two();
         let mut splitting = Splitting { tiling: self, region, leaf, inside_leaf, blocks: Vec::new() };

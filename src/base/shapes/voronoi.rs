@@ -45,8 +45,8 @@ impl<'a> TileBuckets<'a> {
     }
 }
 
-/// Moments of the Voronoi cells of `points`, cut off at the boundary of `region`; each cell of `tiling` is sampled `samples` times along each
-/// axis.
+/// Moments of the Voronoi cells of `points`, cut off at the boundary of `region`; each cell of `tiling` is
+/// sampled `samples` times along each axis.
 pub(super) fn moments(
     region: &dyn Region,
     tiling: &Tiling,
@@ -102,8 +102,9 @@ impl Nearest {
         found
     }
 
-    /// The part of a sample of this width that belongs to the nearest point. One that the plane between the two points cuts is shared, as if the plane
-    /// were along a face of it: the error falls with the square of the sample's size.
+    /// The part of a sample of this width that belongs to the nearest point. One that the plane between the
+    /// two points cuts is shared, as if the plane were along a face of it: the error falls with the square of
+    /// the sample's size.
     fn share(&self, near: &[(DVec3, u32)], width: f64) -> f64 {
         if !self.second.0.is_finite() {
             return 1.0;

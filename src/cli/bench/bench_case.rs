@@ -90,7 +90,8 @@ fn square(particles: f64) -> f64 {
     1.0 / particles.sqrt().round()
 }
 
-/// Spacing in the channel of abrasive flow: a whole part of that of the scene, whose bodies then leave room between them.
+/// Spacing in the channel of abrasive flow: a whole part of that of the scene, whose bodies then leave room
+/// between them.
 fn channel(particles: f64) -> f64 {
     let (usual, area) = (2.0e-6, 2.8e-8);
     usual / (usual / (area / particles).sqrt()).round().max(1.0)

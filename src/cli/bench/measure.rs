@@ -52,8 +52,8 @@ pub struct Measurement {
     pub sub_steps: Option<f64>,
     /// Their wall time, s.
     pub seconds: f64,
-    /// Share of the threads' time in which they ran: below one where other programs took processors away. None where the
-    /// system does not tell.
+    /// Share of the threads' time in which they ran: below one where other programs took processors away.
+    /// None where the system does not tell.
     pub busy: Option<f64>,
     /// Particles times steps per second.
     pub particle_steps_per_second: f64,
@@ -160,7 +160,8 @@ fn since(before: Vec<Duration>, sim: &Simulation) -> Vec<SystemTime> {
         .collect()
 }
 
-/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not counted, and rigid bodies where there are others.
+/// Number of particles of the bodies that have neighbours, and the mean number of these: walls are not
+/// counted, and rigid bodies where there are others.
 fn moving(sim: &Simulation) -> Result<(usize, f64), CommandFailure> {
     let (mut sum, mut particles) = (0.0, 0);
     for k in 0..sim.world().bodies().len() {

@@ -95,7 +95,8 @@ fn is_driven(mobility: &[Mobility], dimension: Dimension) -> bool {
     mobility.iter().all(|of| of.0.x == 0.0 && of.0.y == 0.0 && (dimension == Dimension::Two || of.0.z == 0.0))
 }
 
-/// Columns are those of all bodies of a formulation: whether the material itself has a flow stress stands in its text.
+/// Columns are those of all bodies of a formulation: whether the material itself has a flow stress stands in
+/// its text.
 fn has_plasticity(scene: &Scene, material: &str) -> bool {
     scene.materials.get(material).is_some_and(|item| {
         let text = item.text();

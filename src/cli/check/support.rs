@@ -7,7 +7,8 @@ use meshless_engine::scene::Scene;
 use meshless_engine::shapes::Lattice;
 use meshless_engine::simulation::Simulation;
 
-/// Smoothing length over spacing below which a cubic lattice at rest rearranges, in three dimensions: that of a support of 2.8 spacings.
+/// Smoothing length over spacing below which a cubic lattice at rest rearranges, in three dimensions: that of
+/// a support of 2.8 spacings.
 const OF_STILL_WATER: f64 = 1.399;
 /// Mean acceleration over gravity below which a fluid is at rest.
 const AT_REST: f64 = 0.1;

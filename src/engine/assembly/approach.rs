@@ -1,4 +1,5 @@
-//! How fast the faces of two bodies come towards each other when they touch: by what they start with, by what drives them, and by gravity.
+//! How fast the faces of two bodies come towards each other when they touch: by what they start with, by what
+//! drives them, and by gravity.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +18,8 @@ const FLAT: f64 = 0.02;
 const TIMES: u32 = 400;
 /// Gap in spacings below which bodies touch from the start.
 const TOUCHING: f64 = 0.05;
-/// Least speed of the impact over the largest one that is prescribed: a tool that begins to press slowly and then gets faster causes no front.
+/// Least speed of the impact over the largest one that is prescribed: a tool that begins to press slowly and
+/// then gets faster causes no front.
 const SUDDEN: f64 = 0.25;
 
 /// The motion of places of bodies until they touch anything.
@@ -115,7 +117,8 @@ impl Motions {
         (of_body || of_row) && self.of_particle(body, number as usize, sim, t)[axis] != 0.0
     }
 
-    /// Speed at which the faces of two bodies touch that are `gap` apart along a direction, m/s, and when, s, if they touch suddenly within the run.
+    /// Speed at which the faces of two bodies touch that are `gap` apart along a direction, m/s, and when, s,
+    /// if they touch suddenly within the run.
     pub fn speed(
         &self,
         pair: [&BodyPlan; 2],
@@ -160,7 +163,8 @@ fn first_beyond(closing: &dyn Fn(f64) -> f64, span: (f64, f64), gap: f64) -> Opt
     None
 }
 
-/// Bodies that nothing but gravity moves until they touch: no condition holds any of their particles, one other body may touch them, and no fluid is there.
+/// Bodies that nothing but gravity moves until they touch: no condition holds any of their particles, one
+/// other body may touch them, and no fluid is there.
 fn falling(sim: &SimBuilder<'_>, driven: &BTreeMap<BodyId, [Option<MotionOfPlace>; 3]>) -> BodySet {
     if sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid) {
         return BodySet::default();

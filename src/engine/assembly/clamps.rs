@@ -1,13 +1,17 @@
-//! Clamps of bodies whose kernels live in the current configuration: they must be as thick as the support radius.
+//! Clamps of bodies whose kernels live in the current configuration: they must be as thick as the support
+//! radius.
 //!
-//! The support of a particle in front of a thinner clamp reaches into the empty space behind it, as at a free surface: the clamp holds up to half a spacing from where it is said to end. Deflections, forces and plastic strains differ by up to 4 % from those of a thick one.
+//! The support of a particle in front of a thinner clamp reaches into the empty space behind it, as at a free
+//! surface: the clamp holds up to half a spacing from where it is said to end. Deflections, forces and
+//! plastic strains differ by up to 4 % from those of a thick one.
 
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::notation::quantity;
 use crate::plugin::{BodyKind, BodyPlan, Offer, Registry, SimBuilder};
 use crate::scene::{Edge, Scene};
 
-/// Warns of every body that is held and nowhere thick enough: along all axes, or by `Fix` within a shape along some.
+/// Warns of every body that is held and nowhere thick enough: along all axes, or by `Fix` within a shape
+/// along some.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     let none = || -> Vec<Vec<bool>> { sim.bodies.iter().map(|body| vec![false; body.sites.len()]).collect() };
     let (mut held, mut partly) = (none(), none());

@@ -1,4 +1,5 @@
-//! Metal whose side a condition holds or drives along its normal alone, where its stress is not in balance: some layers yield first.
+//! Metal whose side a condition holds or drives along its normal alone, where its stress is not in balance:
+//! some layers yield first.
 
 use std::collections::BTreeMap;
 

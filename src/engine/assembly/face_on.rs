@@ -1,7 +1,9 @@
 //! Bodies that hit each other face to face and stay elastic, without artificial viscosity.
 //!
-//! The whole face touches within one step, so that the front behind it is as steep as the lattice allows, however slow the impact: the velocities of particles oscillate behind it and overshoot by a
-//! fifth, with nothing that takes this energy. Round bodies touch little by little, and plastic flow takes the oscillations of harder impacts.
+//! The whole face touches within one step, so that the front behind it is as steep as the lattice allows,
+//! however slow the impact: the velocities of particles oscillate behind it and overshoot by a fifth, with
+//! nothing that takes this energy. Round bodies touch little by little, and plastic flow takes the
+//! oscillations of harder impacts.
 
 use glam::DVec3;
 
@@ -14,9 +16,11 @@ use crate::shapes::Aabb;
 
 /// The plugin that takes the oscillations.
 const REMEDY: &str = "artificial_viscosity";
-/// Part of a mean layer that the foremost one has to have to be a face: that of a disc of eight particles across has a half.
+/// Part of a mean layer that the foremost one has to have to be a face: that of a disc of eight particles
+/// across has a half.
 const FULL: f64 = 0.75;
-/// Transits of waves through the bodies for which a front counts where a condition goes on moving one of them.
+/// Transits of waves through the bodies for which a front counts where a condition goes on moving one of
+/// them.
 const LONGEST_FRONT: f64 = 20.0;
 /// Least spacings that two faces have in common along each of their axes.
 const LEAST_COMMON: f64 = 4.0;
@@ -86,7 +90,8 @@ fn has_remedy(body: &BodyPlan, scene: &Scene) -> bool {
     all.any(|item: &Item| item.name() == REMEDY)
 }
 
-/// Whether a body yields by the plane wave that the impact sends into it: its stress is that of the impedances, and the elastic limit under uniaxial strain is Y (lambda + 2 mu) / 2 mu.
+/// Whether a body yields by the plane wave that the impact sends into it: its stress is that of the
+/// impedances, and the elastic limit under uniaxial strain is Y (lambda + 2 mu) / 2 mu.
 fn yields(own: &BodyPlan, pair: [&BodyPlan; 2], speed: f64) -> bool {
     let Law::Solid(law) = &own.material.law else { return false };
     let Some(yield_stress) = law.initial_yield_stress() else { return false };
@@ -102,7 +107,8 @@ fn yields(own: &BodyPlan, pair: [&BodyPlan; 2], speed: f64) -> bool {
     speed > limit * pair.map(compliance).iter().sum::<f64>()
 }
 
-/// The foremost layers of two bodies, of which the first one comes along that direction, if they are faces that meet.
+/// The foremost layers of two bodies, of which the first one comes along that direction, if they are faces
+/// that meet.
 fn faces(a: &BodyPlan, b: &BodyPlan, along: DVec3, scene: &Scene) -> Option<[Foremost; 2]> {
     let (of_a, of_b) = (Foremost::of(a, along)?, Foremost::of(b, -along)?);
     let spacing = a.spacing.max(b.spacing);
@@ -174,7 +180,8 @@ mod tests {
     const ELASTIC: &str = "StVenantKirchhoff(density: 2700, young: 7e10, poisson: 0.33)";
     const BOX: &str = "Box(min: (0, 0), max: (0.005, 0.01))";
 
-    /// Whether a flyer of that shape, material and velocity, with a plate in front of it from x = 5.2 mm on, is warned of.
+    /// Whether a flyer of that shape, material and velocity, with a plate in front of it from x = 5.2 mm on,
+    /// is warned of.
     fn warned(flyer: &str, material: &str, velocity: &str) -> bool {
         let text = format!(
             r#"(dimension: Two, materials: {{"m": {material}}},

@@ -1,4 +1,5 @@
-//! Terms of plugins reach the bodies they are meant for, whatever the formulation, or are an error with its place.
+//! Terms of plugins reach the bodies they are meant for, whatever the formulation, or are an error with its
+//! place.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -6,15 +6,18 @@ use crate::scene::{Edge, Scene};
 
 /// Distance over the length of the body from which on it is worth a word.
 const NOTABLE: f64 = 0.01;
-/// How far inside of a side the support acts, over the spacing, where particles stay in their lattice: measured on strips of 16 and 32 spacings, whose outermost layers hardly strain.
+/// How far inside of a side the support acts, over the spacing, where particles stay in their lattice:
+/// measured on strips of 16 and 32 spacings, whose outermost layers hardly strain.
 const OF_SIDE: f64 = 1.0;
 /// The same in a lattice beside a fluid, whose particles are the surface of the body: half a spacing.
 const OF_WET_SIDE: f64 = 0.5;
 /// How far before the edge of a shape it ends.
 const OF_PART: f64 = 0.5;
 
-/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a side where the formulation or a fluid leaves particles in their lattice. Where kernels follow
-/// the present configuration, a part that is held as deep as they reach ends where its shape does: 0.3 % too soft on a strip of 25 spacings.
+/// Warns of every body that `Fix` holds within a shape along some axes only, and of those that it holds by a
+/// side where the formulation or a fluid leaves particles in their lattice. Where kernels follow the present
+/// configuration, a part that is held as deep as they reach ends where its shape does: 0.3 % too soft on a
+/// strip of 25 spacings.
 pub(super) fn warn(scene: &Scene, registry: &Registry, sim: &mut SimBuilder<'_>) {
     let mut warnings = Vec::new();
     let is_wet = sim.bodies().iter().any(|body| body.kind == BodyKind::Fluid);

@@ -49,7 +49,8 @@ fn kilobytes(table: &str, name: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The folders of the memory groups of this process and of all around them, of both versions of control groups.
+/// The folders of the memory groups of this process and of all around them, of both versions of control
+/// groups.
 fn group_folders(groups: &str) -> Vec<String> {
     let mut folders = Vec::new();
     for line in groups.lines() {

@@ -8,7 +8,8 @@ use crate::world::{
 };
 use crate::{formulations, solids};
 
-/// The fields that probes and recordings may ask for, as far as the bodies have them, by name; plugins may add more.
+/// The fields that probes and recordings may ask for, as far as the bodies have them, by name; plugins may
+/// add more.
 pub fn fields(registry: &Registry) -> Vec<Field> {
     let mut columns = ColumnSet::default();
     standard_columns(&mut columns);
@@ -23,7 +24,8 @@ pub fn fields(registry: &Registry) -> Vec<Field> {
     fields
 }
 
-/// Those that need neighbours. All scenes know them, so that the vorticity in a scene without fluid is a field that its bodies lack, and not an unknown one.
+/// Those that need neighbours. All scenes know them, so that the vorticity in a scene without fluid is a
+/// field that its bodies lack, and not an unknown one.
 pub(super) fn with_neighbours() -> impl Iterator<Item = Field> {
     solids::fields().into_iter().chain(formulations::fluid::fields())
 }

@@ -1,5 +1,5 @@
-//! The first check of a scene against a registry: every name is known, and its parameters can be read. All misspellings are reported at once, before
-//! anything is placed or estimated.
+//! The first check of a scene against a registry: every name is known, and its parameters can be read. All
+//! misspellings are reported at once, before anything is placed or estimated.
 
 use crate::plugin::{BodyKind, EntryKind, Registry};
 use crate::scene::{BodyDescription, Item, Problem, Scene, unknown};

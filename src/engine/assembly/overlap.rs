@@ -1,5 +1,7 @@
-//! Bodies that overlap. Without a contact no two particles of different bodies may start closer than half their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever
-//! their spacings: no particle of one may start in the shape of the other; where both touch with their particles the first rule stays. Two rigid bodies are left to their contact.
+//! Bodies that overlap. Without a contact no two particles of different bodies may start closer than half
+//! their spacing. Bodies with a contact touch with the surfaces of their shapes, whatever their spacings: no
+//! particle of one may start in the shape of the other; where both touch with their particles the first rule
+//! stays. Two rigid bodies are left to their contact.
 
 use std::collections::BTreeMap;
 use std::path::Path;

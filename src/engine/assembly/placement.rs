@@ -1,5 +1,5 @@
-//! Bodies against the domain and its periods, before any neighbour search: particles outside the domain, or two at one place, make that
-//! search slow and its result wrong.
+//! Bodies against the domain and its periods, before any neighbour search: particles outside the domain, or
+//! two at one place, make that search slow and its result wrong.
 
 use crate::notation::{count, digits, number};
 use crate::plugin::BodyPlan;
@@ -22,7 +22,8 @@ fn problem(body: &BodyPlan, axis: Axis, domain: &Domain) -> Option<Problem> {
     let at = format!("bodies[{}].shape", body.id.0);
     let name = &body.name;
     if domain.periodic.contains(&axis) {
-        // Particles fill their cells: a body that just fits is a spacing longer than its outermost places are apart.
+        // Particles fill their cells: a body that just fits is a spacing longer than its outermost places are
+        // apart.
         let (extent, period) = (highest - lowest + body.spacing, max - min);
         let message = format!(
             "body `{name}` must not be longer than the period of {} m along {axis:?}, found {} m",

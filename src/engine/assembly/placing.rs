@@ -143,7 +143,8 @@ fn fill(
     Ok((sites, bounds))
 }
 
-/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is a tool.
+/// The one particle, just behind the surface, that stands for a rigid body without end: a half-space that is
+/// a tool.
 fn endless_tool(
     body: &BodyDescription,
     formulation: &str,

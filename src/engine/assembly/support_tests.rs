@@ -116,7 +116,8 @@ fn a_side_is_held_where_it_is() {
     assert!(x[0] > -0.099, "{x:?}");
 }
 
-/// Without lateral contraction the energy of a uniform strain is that of the part of the strip that is not held.
+/// Without lateral contraction the energy of a uniform strain is that of the part of the strip that is not
+/// held.
 #[test]
 fn what_is_stretched_up_to_its_support_has_the_energy_of_that_length() {
     let strain = 1e-4;
@@ -226,7 +227,8 @@ fn metal_that_a_side_draws_along_its_normal_alone_is_warned_of() {
     }
 }
 
-/// A strain without lateral contraction makes a uniform stress along x: no particle is pushed along x but those that the supports hold.
+/// A strain without lateral contraction makes a uniform stress along x: no particle is pushed along x but
+/// those that the supports hold.
 #[test]
 fn a_uniform_stress_is_in_balance_beside_what_is_held() {
     let (young, strain, spacing, edge) = (1e6, 1e-4, 0.01, -0.03);
@@ -252,7 +254,8 @@ fn a_uniform_stress_is_in_balance_beside_what_is_held() {
     }
 }
 
-/// The plastic strain of every particle of a bar over their mean, least and greatest: it is drawn by two sides held along their normals.
+/// The plastic strain of every particle of a bar over their mean, least and greatest: it is drawn by two
+/// sides held along their normals.
 fn spread_of_plastic_strain(formulation: &str) -> (f64, f64) {
     let text = format!(
         r#"(dimension: Three,
@@ -274,7 +277,8 @@ fn spread_of_plastic_strain(formulation: &str) -> (f64, f64) {
     (all().fold(f64::INFINITY, f64::min) / mean, all().fold(0.0, f64::max) / mean)
 }
 
-/// Without what the shares balance, 2.3 to 2.5 at the sides and down to 0.05 in the middle, in all formulations.
+/// Without what the shares balance, 2.3 to 2.5 at the sides and down to 0.05 in the middle, in all
+/// formulations.
 #[test]
 fn metal_drawn_by_its_sides_strains_evenly() {
     // Kernels of Eulerian bodies see the layers move apart.

@@ -1,9 +1,12 @@
 //! Held particles stand at the edge that the scene states for the held part of a body.
 //!
-//! On a lattice the outermost held particles stand a distance d behind that edge, mostly half a spacing a, and the displacement field has its kink there. They are moved to
-//! the edge, and the particles held behind them become invisible, as if the body ended there. Every particle carries the share of its stress and energy that
-//! its cell has in front of the edge: 1/2 - d/a for a particle that was moved, and at most 3/2 - d/a for the one in front of it. The fit of F is then exact for linear fields up to the edge, and all cells
-//! together fill the body in front of it. A bar has the correct stiffness to 0.08 (in shear 0.03) spacings of its length, wherever the edge lies in the lattice.
+//! On a lattice the outermost held particles stand a distance d behind that edge, mostly half a spacing a,
+//! and the displacement field has its kink there. They are moved to the edge, and the particles held behind
+//! them become invisible, as if the body ended there. Every particle carries the share of its stress and
+//! energy that its cell has in front of the edge: 1/2 - d/a for a particle that was moved, and at most 3/2 -
+//! d/a for the one in front of it. The fit of F is then exact for linear fields up to the edge, and all cells
+//! together fill the body in front of it. A bar has the correct stiffness to 0.08 (in shear 0.03) spacings of
+//! its length, wherever the edge lies in the lattice.
 //!
 //! `face` is the same with the side of the body as the edge: d = -a/2, and no particles behind it.
 
@@ -15,13 +18,15 @@ use crate::plugin::{BodyPlan, Offer, Registry, SimBuilder};
 use crate::scene::{Edge, Scene};
 use crate::shapes::Region;
 
-/// Distance over the spacing up to which a held particle is beside one that is not held: along the diagonal of a square, too.
+/// Distance over the spacing up to which a held particle is beside one that is not held: along the diagonal
+/// of a square, too.
 const BESIDE: f64 = 1.5;
 /// Of those that are near, how much farther than the nearest one counts.
 const AS_NEAR: f64 = 1.05;
 /// How far a particle is moved at most, over the spacing: the next one must not come too near.
 const FARTHEST: f64 = 0.75;
-/// Share of the way to the edge: the particle stays inside of what the scene selects, clearly so for shapes that count what is nearly inside.
+/// Share of the way to the edge: the particle stays inside of what the scene selects, clearly so for shapes
+/// that count what is nearly inside.
 const INSIDE: f64 = 1.0 - 1e-4;
 /// Support radius over spacing of bodies that do not say it.
 const USUAL_SUPPORT: f64 = 2.41;
@@ -100,7 +105,8 @@ fn place_body(body: &mut BodyPlan, held: &[Option<usize>], shapes: &[Box<dyn Reg
     }
 }
 
-/// From a held particle to the edge of what is held, m; none if that has no direction. The nearest of the others is so far away, m.
+/// From a held particle to the edge of what is held, m; none if that has no direction. The nearest of the
+/// others is so far away, m.
 ///
 /// The edge is the plane through the places where the ways to the nearest of the others leave the shape.
 fn way_to_edge(
@@ -110,7 +116,8 @@ fn way_to_edge(
     region: &dyn Region,
 ) -> Option<DVec3> {
     let near = others.filter(|other| other.distance(x) < AS_NEAR * nearest);
-    // n/|n|^2 with n = sum e_k/a_k is the foot of x on the plane through x + a_k e_k, for directions e_k at right angles.
+    // n/|n|^2 with n = sum e_k/a_k is the foot of x on the plane through x + a_k e_k, for directions e_k at
+    // right angles.
     let normal: DVec3 = near.map(|other| (other - x).normalize() / distance_to_edge(x, other, region)).sum();
     let way = normal / normal.length_squared();
     (way.is_finite() && way.length() < nearest).then_some(way)

@@ -1,6 +1,6 @@
-//! The bad scenes of `tests/scenes/bad` that only building finds bad, marked `// level: build`. `// expect: text` is in their
-//! error, `// at: line:column` are the places it names. Those that need plugins are marked `// needs: plugins` and are left
-//! to the tests of the whole program.
+//! The bad scenes of `tests/scenes/bad` that only building finds bad, marked `// level: build`. `// expect:
+//! text` is in their error, `// at: line:column` are the places it names. Those that need plugins are marked
+//! `// needs: plugins` and are left to the tests of the whole program.
 
 use std::path::PathBuf;
 

@@ -13,8 +13,9 @@ use crate::scene::{Expression, PerAxis, Select};
 use crate::schedule::{Step, StepError};
 use crate::world::Mass;
 
-/// Loads particles with a force per mass, a function of their reference position and time: a shaking table, an
-/// electromagnetic force. Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid feel it as they feel gravity.
+/// Loads particles with a force per mass, a function of their reference position and time: a shaking table,
+/// an electromagnetic force. Constant gravity of all bodies is `gravity` of the scene. Walls beside a fluid
+/// feel it as they feel gravity.
 ///
 /// Gravity that grows within 0.1 s: `BodyForce(on: Select(), value: (0.0, "-9.81*smoothstep(t/0.1)"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

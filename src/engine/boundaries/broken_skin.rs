@@ -1,6 +1,8 @@
-//! Loads on bodies that can fail: on their skins ([`skin_load`](super::skin_load)) for as long as these are whole, on particles from then on.
+//! Loads on bodies that can fail: on their skins ([`skin_load`](super::skin_load)) for as long as these are
+//! whole, on particles from then on.
 //!
-//! The skin has its last forces in the first kick of the step in which it breaks, and the particles have theirs in the second one, so that the work of both is booked as for other loads.
+//! The skin has its last forces in the first kick of the step in which it breaks, and the particles have
+//! theirs in the second one, so that the work of both is booked as for other loads.
 
 use glam::DVec3;
 

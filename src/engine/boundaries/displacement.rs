@@ -8,11 +8,11 @@ use super::prescribed::{self, PrescribedKind};
 use crate::plugin::{Plugin, SetupError, SimBuilder, Support};
 use crate::scene::{Edge, Expression, PerAxis, Select};
 
-/// Moves particles to their reference position plus a displacement, a function of that position and of time: every step
-/// ends exactly there.
+/// Moves particles to their reference position plus a displacement, a function of that position and of time:
+/// every step ends exactly there.
 ///
-/// The displacement must start from zero. To 2 mm within 10 ms, at rest at both ends:
-/// `Displacement(on: Select(face: MaxX), value: ("2e-3*smoothstep(t/0.01)", 0.0))`; this also holds y. A rigid body moves as a
+/// The displacement must start from zero. To 2 mm within 10 ms, at rest at both ends: `Displacement(on:
+/// Select(face: MaxX), value: ("2e-3*smoothstep(t/0.01)", 0.0))`; this also holds y. A rigid body moves as a
 /// whole, with the same value in all of its places; `Turn` turns it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -9,13 +9,14 @@ use crate::world::BodyId;
 /// Volume of the particles over that of the bounding box, less one, up to which a body is a box.
 const FILLED: f64 = 1e-6;
 
-/// Largest distance of the feet of the particles of a side from the surface, over the spacing, up to which the side is flat.
+/// Largest distance of the feet of the particles of a side from the surface, over the spacing, up to which
+/// the side is flat.
 const FLAT: f64 = 0.2;
 
-/// Area that the selected rows of a body stand for, m2 (m in two dimensions): that of the face, where it is a whole face of a
-/// body that fills its bounding box; else their volume over the thickness of the layer. The thickness of a flat face is
-/// twice the mean distance of its particles from the face, which is the distance of the layers for any lattice; without a
-/// face it is the spacing.
+/// Area that the selected rows of a body stand for, m2 (m in two dimensions): that of the face, where it is a
+/// whole face of a body that fills its bounding box; else their volume over the thickness of the layer. The
+/// thickness of a flat face is twice the mean distance of its particles from the face, which is the distance
+/// of the layers for any lattice; without a face it is the spacing.
 pub(super) fn loaded_area(select: &Select, body: &BodyPlan, rows: &[u32]) -> f64 {
     if let Some(area) = whole_face(select, body) {
         return area;
@@ -55,9 +56,10 @@ pub(super) fn normal_of(select: &Select) -> Result<DVec3, SetupError> {
     Ok(sign * DVec3::AXES[axis])
 }
 
-/// Refuses a load on a side that is not flat: the outermost layer of a disc is a few particles at its tip. The feet of the particles on the plane of
-/// the side are on the surface of the body, where it is flat, and up to a good part of the spacing away, where it is curved. Selections by
-/// `within` say themselves what they mean.
+/// Refuses a load on a side that is not flat: the outermost layer of a disc is a few particles at its tip.
+/// The feet of the particles on the plane of the side are on the surface of the body, where it is flat, and
+/// up to a good part of the spacing away, where it is curved. Selections by `within` say themselves what they
+/// mean.
 pub(super) fn check_is_side(
     select: &Select,
     id: BodyId,

@@ -28,8 +28,8 @@ impl BlockSum for FirstBad {
 }
 
 impl VectorField {
-    /// The function that a scene gives as `value`. It is an error if no axis has one, or if it leaves the plane of a
-    /// two-dimensional scene.
+    /// The function that a scene gives as `value`. It is an error if no axis has one, or if it leaves the
+    /// plane of a two-dimensional scene.
     pub fn new(value: PerAxis<Expression>, sim: &SimBuilder<'_>) -> Result<Self, SetupError> {
         let mut components = value.0;
         if sim.dimension() == Dimension::Two

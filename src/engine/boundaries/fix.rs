@@ -50,7 +50,8 @@ impl Plugin for Fix {
     fn build(self, sim: &mut SimBuilder<'_>) -> Result<(), SetupError> {
         let selection = sim.select(&self.on, "on")?;
         let held = [Axis::X, Axis::Y, Axis::Z].map(|axis| self.axes.contains(&axis));
-        // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to run.
+        // A prescribed axis has no mobility: with zero velocity nothing ever moves it, and no system has to
+        // run.
         let (selection, rigid) = split_rigid(&selection, sim)?;
         for body in rigid {
             let motion = Prescription::rest(Self::NAME);

@@ -9,17 +9,20 @@ use super::on_rigid::arms_of;
 use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 
-/// Loads particles with a force of a given total, in equal shares; with a selection of one particle (`nearest`) it is a
-/// point force. It keeps its direction. On a rigid body it acts at the stated point itself, or on the `face`; on other bodies on the particles, half a spacing inside.
+/// Loads particles with a force of a given total, in equal shares; with a selection of one particle
+/// (`nearest`) it is a point force. It keeps its direction. On a rigid body it acts at the stated point
+/// itself, or on the `face`; on other bodies on the particles, half a spacing inside.
 ///
-/// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0, "-100*smoothstep(t/0.01)"))`.
+/// A smooth start within 10 ms: `Force(on: Select(body: "beam", face: MaxX), value: (0.0,
+/// "-100*smoothstep(t/0.01)"))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Force")]
 pub struct TotalForce {
     /// Particles.
     pub on: Select,
-    /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it depends on the
-    /// reference position, every particle takes its share of the value at its own place. `None` is zero.
+    /// Total force per axis \[N; N per metre of thickness in two dimensions\], a function of time; where it
+    /// depends on the reference position, every particle takes its share of the value at its own place.
+    /// `None` is zero.
     pub value: PerAxis<Expression>,
 }
 

@@ -113,7 +113,8 @@ fn stored(sim: &Simulation, name: &str) -> f64 {
     sim.ledger().accounts().iter().find(|account| account.name == name).map_or(0.0, |account| account.total())
 }
 
-/// Compares a part with the whole; `fold` maps a place of the part to the place in the whole that it must equal.
+/// Compares a part with the whole; `fold` maps a place of the part to the place in the whole that it must
+/// equal.
 fn assert_equal(part: &Simulation, whole: &Simulation, fold: impl Fn(DVec3) -> DVec3) {
     let all = states(whole);
     let scale = all.iter().map(|(_, u, _)| u.length()).fold(0.0, f64::max);
@@ -264,8 +265,8 @@ fn momentum_along_periodic_axes_is_kept() {
 
 #[test]
 fn a_wave_in_a_periodic_medium_has_the_longitudinal_speed_and_the_error_falls() {
-    // Standing wave of one wavelength of 1 m: cos(2 pi c t), c^2 = (lambda + 2 mu) / rho. Measured at a quarter period
-    // by the phase that is left, asin(v / v0).
+    // Standing wave of one wavelength of 1 m: cos(2 pi c t), c^2 = (lambda + 2 mu) / rho. Measured at a
+    // quarter period by the phase that is left, asin(v / v0).
     let speed = (1e6 * 0.7 / (1.3 * 0.4) / 1000.0_f64).sqrt();
     let error = |n: u32| {
         let spacing = 1.0 / f64::from(n);

@@ -9,8 +9,9 @@ use crate::plugin::{Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::Position;
 
-/// Starts particles away from their reference positions, which carry no stress, such as for a body that is released from
-/// a stretched state. It acts once, on fixed particles too; a `Displacement` moves its particles to its own places.
+/// Starts particles away from their reference positions, which carry no stress, such as for a body that is
+/// released from a stretched state. It acts once, on fixed particles too; a `Displacement` moves its
+/// particles to its own places.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialDisplacement {

@@ -14,8 +14,9 @@ use crate::plugin::{BodyKind, Plugin, SetupError, SimBuilder};
 use crate::scene::{Expression, PerAxis, Select};
 use crate::world::{BodyId, Mobility, Velocity};
 
-/// Gives particles a velocity to start with, a function of their place; it takes the place of the body's `velocity`. Axes
-/// whose motion is prescribed keep the prescribed one, and walls their own: nothing would stop them.
+/// Gives particles a velocity to start with, a function of their place; it takes the place of the body's
+/// `velocity`. Axes whose motion is prescribed keep the prescribed one, and walls their own: nothing would
+/// stop them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialVelocity {

@@ -1,6 +1,7 @@
 //! External forces and their work.
 //!
-//! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, the kinetic energy added by the two kicks of the leapfrog.
+//! The work of a step is (f(n) + f(n+1))/2 . v(n+1/2) dt, the kinetic energy added by the two kicks of the
+//! leapfrog.
 
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ use crate::rigid::RIGID_BODIES;
 use crate::schedule::{AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, ParticleId, Removed, Velocity};
 
-/// A load that does not follow the motion: a field of the reference position and time, times a share per particle.
+/// A load that does not follow the motion: a field of the reference position and time, times a share per
+/// particle.
 pub(super) struct DeadLoad {
     /// Label, for errors.
     pub name: &'static str,

@@ -13,7 +13,8 @@ pub(super) trait LoadLaw: Send + Sync + 'static {
     /// Whether the forces are the same in every step.
     fn is_constant(&self) -> bool;
 
-    /// From the particles of part `k` of a rigid body to where the forces act, in the reference configuration, m; none where they act on the particles.
+    /// From the particles of part `k` of a rigid body to where the forces act, in the reference
+    /// configuration, m; none where they act on the particles.
     fn arms(&self, _: usize) -> &[DVec3] {
         &[]
     }

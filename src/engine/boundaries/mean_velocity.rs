@@ -1,7 +1,8 @@
 //! Flows driven at a constant mean velocity: a channel with a constant flux.
 //!
-//! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies together at the end of a step, weighted by mass,
-//! `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) - u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
+//! A uniform force per mass g acts along the controlled axes. With the mean velocity u(n) of all bodies
+//! together at the end of a step, weighted by mass, `g(n) = g(n-1) + (U - u(n)) / (k^2 dt) - 2 (u(n) -
+//! u(n-1)) / (k dt)`: deviations decay like those of a critically damped oscillator, within some k steps.
 
 use std::collections::BTreeSet;
 
@@ -18,14 +19,16 @@ use crate::scene::{PerAxis, Select};
 use crate::schedule::{Run, Shared, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Mass, Removed, Velocity};
 
-/// Keeps the mean velocity of bodies, weighted by mass, by a force per mass that is the same for all of their particles: the pressure gradient of a channel
-/// with a constant flux. Its work is in the account `mean_velocity`.
+/// Keeps the mean velocity of bodies, weighted by mass, by a force per mass that is the same for all of their
+/// particles: the pressure gradient of a channel with a constant flux. Its work is in the account
+/// `mean_velocity`.
 ///
 /// A suspension in a periodic channel: `MeanVelocity(bodies: ["water", "grain*"], value: (1.0, None))`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeanVelocity {
-    /// Fluids and rigid bodies, whose mean is taken together; `"grain*"` stands for all bodies whose names begin with `grain`.
+    /// Fluids and rigid bodies, whose mean is taken together; `"grain*"` stands for all bodies whose names
+    /// begin with `grain`.
     pub bodies: Vec<String>,
     /// Velocity along each axis \[m/s\]; `None` leaves an axis unconstrained.
     pub value: PerAxis<f64>,

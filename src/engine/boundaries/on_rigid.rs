@@ -12,8 +12,10 @@ use crate::world::BodyId;
 /// Distance from the surface, over the spacing, up to which a point is on it.
 const ON: f64 = 0.2;
 
-/// From the selected particles of every body to the points on which a load acts, in the reference configuration, m; none for bodies that deform. That is the stated point of a selection by `nearest`, and the
-/// foot of the particle on the side of one by `face`. Where the shape has no such point, a load acts on the particle itself.
+/// From the selected particles of every body to the points on which a load acts, in the reference
+/// configuration, m; none for bodies that deform. That is the stated point of a selection by `nearest`, and
+/// the foot of the particle on the side of one by `face`. Where the shape has no such point, a load acts on
+/// the particle itself.
 pub(super) fn arms_of(select: &Select, selection: &Selection, sim: &SimBuilder<'_>) -> Vec<Vec<DVec3>> {
     let of = |(id, rows): &(BodyId, Vec<u32>)| {
         let body = sim.body(*id);
@@ -43,7 +45,8 @@ fn arm(select: &Select, particle: DVec3, body: &BodyPlan, region: &dyn Region) -
     if region.distance(point) <= ON * body.spacing { point - particle } else { DVec3::ZERO }
 }
 
-/// Adds what forces do beside the particles of a rigid body: their torques about these. `forces` are those at the ends of the step, N. Returns the power of their mean, W.
+/// Adds what forces do beside the particles of a rigid body: their torques about these. `forces` are those at
+/// the ends of the step, N. Returns the power of their mean, W.
 pub(super) fn push_beside(id: BodyId, arms: &[DVec3], [last, next]: [&[DVec3]; 2], step: &Step<'_>) -> f64 {
     let resources = step.resources;
     let mut bodies = resources.get_mut::<RigidBodies>();

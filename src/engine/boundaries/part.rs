@@ -27,7 +27,8 @@ impl Part {
         self.numbers.get(n).map_or(n, |&k| k as usize)
     }
 
-    /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into their order; says whether there was anything to do.
+    /// Finds the rows again after the body has been sorted, and puts `along`, one value a row or none, into
+    /// their order; says whether there was anything to do.
     ///
     /// # Errors
     /// The phase has no particle ids.

@@ -1,7 +1,8 @@
 //! Prescribed motion: the velocity of constrained axes at mid-step and at the end of the step.
 //!
-//! The drift moves a particle by dt v(n+1/2), so that the velocity at mid-step determines its path. Outputs, damping and viscosity use the velocity at the end
-//! of the step. The change of kinetic energy by the condition is the work of the constraint.
+//! The drift moves a particle by dt v(n+1/2), so that the velocity at mid-step determines its path. Outputs,
+//! damping and viscosity use the velocity at the end of the step. The change of kinetic energy by the
+//! condition is the work of the constraint.
 
 use std::sync::Arc;
 
@@ -63,7 +64,8 @@ pub(super) fn prescribe(
     let label = name.to_lowercase();
     let at_middle = SetVelocity { motion: Arc::clone(&motion), end_of_step: false, values: Vec::new() };
     let at_end = SetVelocity { motion, end_of_step: true, values: Vec::new() };
-    // After the kick, which writes velocities. Two conditions hold one axis of one particle only where their values agree, so their order does not matter: `Adds` says so.
+    // After the kick, which writes velocities. Two conditions hold one axis of one particle only where their
+    // values agree, so their order does not matter: `Adds` says so.
     sim.add_system(
         System::new(Stage::PreStep, label.clone(), at_middle)
             .on_phases(phases.clone())
@@ -94,7 +96,8 @@ fn prescription(motion: &PrescribedMotion) -> Prescription {
     }
 }
 
-/// Gives walls their velocity before the first force is computed: friction with a wall that seems to be at rest would kick a fluid that moves with it.
+/// Gives walls their velocity before the first force is computed: friction with a wall that seems to be at
+/// rest would kick a fluid that moves with it.
 fn start_walls(motion: &Arc<PrescribedMotion>, sim: &mut SimBuilder<'_>) {
     let is_wall = |part: &&Part| sim.body(part.body).kind == BodyKind::Boundary;
     let walls: Vec<Part> = motion.parts.iter().filter(is_wall).cloned().collect();

@@ -19,13 +19,15 @@ use crate::world::DeformationGradient;
 /// Label and account.
 const LABEL: &str = "pressure";
 
-/// Presses on a surface; the force follows it as it turns and stretches. It acts on the surface itself, a `face` or `surface` of a total-Lagrangian body whose
-/// shape is known, with the area and normal of now; else on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A
-/// normal and area in the reference configuration), in equal shares of the loaded area.
+/// Presses on a surface; the force follows it as it turns and stretches. It acts on the surface itself, a
+/// `face` or `surface` of a total-Lagrangian body whose shape is known, with the area and normal of now; else
+/// on the particles of a face, by f = -p J F^-T N A (Nanson's formula, N and A normal and area in the
+/// reference configuration), in equal shares of the loaded area.
 ///
 /// The bore of a ring: `Pressure(on: Select(body: "ring", surface: Inner), value: 1e6)`.
 ///
-/// A smooth start within 10 ms: `Pressure(on: Select(body: "plate", face: MaxY), value: "1e5*smoothstep(t/0.01)")`.
+/// A smooth start within 10 ms: `Pressure(on: Select(body: "plate", face: MaxY), value:
+/// "1e5*smoothstep(t/0.01)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Pressure")]
 pub struct PressureLoad {

@@ -39,7 +39,8 @@ const PLACES: usize = 64;
 /// Difference of two values, over the larger one, up to which they are the same.
 const ROUNDING: f64 = 1e-9;
 
-/// An error where the value of the condition of that name differs between places of a rigid body: all of it moves with the value at its centre.
+/// An error where the value of the condition of that name differs between places of a rigid body: all of it
+/// moves with the value at its centre.
 pub(super) fn require_one_motion(
     name: &str,
     field: &VectorField,

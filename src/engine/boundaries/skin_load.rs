@@ -2,8 +2,9 @@
 //!
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 //!
-//! Bodies that can fail are loaded so until a first particle that carries the loaded `face` fails, and on the selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)).
-//! No particles stand for another part of the `surface`: of this the facets are left out whose particles have failed.
+//! Bodies that can fail are loaded so until a first particle that carries the loaded `face` fails, and on the
+//! selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)). No particles stand
+//! for another part of the `surface`: of this the facets are left out whose particles have failed.
 
 use std::sync::Arc;
 
@@ -38,7 +39,8 @@ struct SkinLoad {
     label: &'static str,
     kind: LoadKind,
     patch: Patch,
-    /// Facets, with their middles in the reference configuration, m, and their areas there, m2; stated areas come in as a factor.
+    /// Facets, with their middles in the reference configuration, m, and their areas there, m2; stated areas
+    /// come in as a factor.
     facets: Vec<(u32, DVec3, f64)>,
     factor: f64,
     /// Forces on the vertices at the end of the last step, N.
@@ -257,7 +259,8 @@ struct Saved {
 }
 
 impl SkinLoad {
-    /// The forces at the end of the step, and their work; that of the last forces is left where the skin breaks in this step.
+    /// The forces at the end of the step, and their work; that of the last forces is left where the skin
+    /// breaks in this step.
     fn make(&mut self, step: &mut Step<'_>) -> Result<(), StepError> {
         if self.is_broken {
             return Ok(());

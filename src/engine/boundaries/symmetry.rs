@@ -10,9 +10,10 @@ use crate::scene::{Axis, Dimension};
 use crate::symmetry::MirrorPlane;
 use crate::world::{BodyId, BodySet};
 
-/// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem is solved like
-/// the whole. Bodies farther from it than their spacing are left alone; rigid bodies may go on behind it if their motion along its axis is prescribed. For a fluid, a `Wall` with free slip behind the plane is the same; beside solids that
-/// are cut, fluids and the walls behind them may end at the plane.
+/// A symmetry plane: the bodies that end at it see their own mirror image behind it, so that half a problem
+/// is solved like the whole. Bodies farther from it than their spacing are left alone; rigid bodies may go on
+/// behind it if their motion along its axis is prescribed. For a fluid, a `Wall` with free slip behind the
+/// plane is the same; beside solids that are cut, fluids and the walls behind them may end at the plane.
 ///
 /// The lower left quarter of a punch: `Symmetry(plane: X, at: 0.0), Symmetry(plane: Y, at: 0.0)`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -104,7 +105,8 @@ impl Symmetry {
         )
     }
 
-    /// Those of the bodies that end at the plane which get an image; a fluid that a wall holds beside them needs none.
+    /// Those of the bodies that end at the plane which get an image; a fluid that a wall holds beside them
+    /// needs none.
     fn mirrored(&self, cut: &[BodyId], sim: &SimBuilder<'_>) -> Result<Vec<BodyId>, SetupError> {
         let mirrored = cut.iter().copied().filter(|id| sim.body(*id).offers(Offer::MirrorImages));
         let mirrored: Vec<BodyId> = mirrored.collect();

@@ -20,7 +20,8 @@ fn simulation(text: &str) -> Simulation {
     }
 }
 
-/// A two-dimensional scene of one block of 1 m x 0.5 m, E = 1e6 Pa, density 1000 kg/m3, with the given conditions.
+/// A two-dimensional scene of one block of 1 m x 0.5 m, E = 1e6 Pa, density 1000 kg/m3, with the given
+/// conditions.
 fn block(conditions: &str, rest: &str) -> String {
     format!(
         "Scene(dimension: Two,
@@ -272,7 +273,8 @@ fn a_pressure_on_a_confined_block_gives_the_uniaxial_strain_of_elasticity() {
     finish(&mut sim);
     let positions = column::<Position>(&sim);
     let references = column::<ReferencePosition>(&sim);
-    // St Venant-Kirchhoff: the nominal stress F S = F (lambda + 2 mu) (F^2 - 1) / 2 is the pressure, J F^-T N = N here.
+    // St Venant-Kirchhoff: the nominal stress F S = F (lambda + 2 mu) (F^2 - 1) / 2 is the pressure, J F^-T
+    // N = N here.
     let modulus = 1e6 * 0.7 / (1.3 * 0.4);
     let mut stretch: f64 = 1.0;
     for _ in 0..50 {
@@ -296,7 +298,8 @@ fn a_pressure_on_a_confined_block_gives_the_uniaxial_strain_of_elasticity() {
 
 #[test]
 fn a_pressure_turns_with_the_body() {
-    // A block that is turned by a quarter: the face that looked up looks to the left, and is pushed to the right.
+    // A block that is turned by a quarter: the face that looked up looks to the left, and is pushed to the
+    // right.
     let text = block(
         "Displacement(on: Select(), value: (\"(x*(cos(50*pi*t) - 1) - y*sin(50*pi*t))\",
              \"(x*sin(50*pi*t) + y*(cos(50*pi*t) - 1))\")),

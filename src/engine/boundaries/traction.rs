@@ -16,11 +16,12 @@ use crate::world::BodyId;
 /// Label and account.
 const LABEL: &str = "traction";
 
-/// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the surface itself, a `face` or `surface` of a
-/// Lagrangian or rigid body whose shape is known; else on the selected particles, in equal shares of the loaded area.
+/// Loads a surface with a force per reference area that keeps its direction (a dead load). It acts on the
+/// surface itself, a `face` or `surface` of a Lagrangian or rigid body whose shape is known; else on the
+/// selected particles, in equal shares of the loaded area.
 ///
-/// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as `"1e5*smoothstep(t/0.01)"`,
-/// over several periods of the slowest oscillation, or use `local_damping`.
+/// A load that jumps makes the body swing; for a static answer let it grow smoothly, such as
+/// `"1e5*smoothstep(t/0.01)"`, over several periods of the slowest oscillation, or use `local_damping`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
@@ -28,10 +29,10 @@ pub struct Traction {
     pub on: Select,
     /// Traction per axis \[Pa\], a function of the reference position and time; `None` is zero.
     pub value: PerAxis<Expression>,
-    /// Loaded area \[m2; m in two dimensions\]. Default: that of the surface. Of particles: of a whole face of a box its area. Else the volume of the selected
-    /// particles over the thickness of their layer, which is twice their mean distance from the face, or the spacing where
-    /// the selection names no face: the true area of a flat face on a lattice, some percent off on an irregular packing, so
-    /// state it there.
+    /// Loaded area \[m2; m in two dimensions\]. Default: that of the surface. Of particles: of a whole face
+    /// of a box its area. Else the volume of the selected particles over the thickness of their layer, which
+    /// is twice their mean distance from the face, or the spacing where the selection names no face: the true
+    /// area of a flat face on a lattice, some percent off on an irregular packing, so state it there.
     #[serde(default)]
     pub area: Option<f64>,
 }

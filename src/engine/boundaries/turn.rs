@@ -13,7 +13,8 @@ use crate::schedule::{Clock, StepError};
 
 /// Turns rigid bodies about an axis through their centre with a rate that is a function of time.
 ///
-/// A roller that is brought to two turns a second: `Turn(on: Select(body: "roller"), rate: "4*pi*smoothstep(t/0.1)")`.
+/// A roller that is brought to two turns a second: `Turn(on: Select(body: "roller"), rate:
+/// "4*pi*smoothstep(t/0.1)")`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Turn")]
 pub struct PrescribedRotation {

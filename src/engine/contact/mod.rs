@@ -1,11 +1,13 @@
-//! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of [`register`].
+//! Contact: bodies that touch each other, themselves, or tools. A law is one file and one line of
+//! [`register`].
 //!
 //! Folders stand in the order in which they use each other, and import only those above them.
 
 /// Normal forces as functions of the overlap.
 mod laws;
 
-/// The force of one contact with damping and friction, its history and energy, and the time step that it allows.
+/// The force of one contact with damping and friction, its history and energy, and the time step that it
+/// allows.
 mod response;
 
 /// Particles, points of rigid bodies and their surfaces in their current state.

@@ -36,7 +36,8 @@ impl ChosenField {
         if self.pick.is_some() { 1 } else { self.components.len() }
     }
 
-    /// Names of the numbers of one particle: the name of the field if there is one, else those of the components.
+    /// Names of the numbers of one particle: the name of the field if there is one, else those of the
+    /// components.
     pub fn column_names(&self) -> Vec<String> {
         if self.width() == 1 {
             vec![self.name.clone()]
@@ -100,8 +101,8 @@ impl ChosenField {
 }
 
 impl FieldTable {
-    /// The field of that name: `velocity`, or a component of one, `velocity.x`. `among` are the bodies of which at
-    /// least one, or with `all` every one, must have it. A problem has no place yet.
+    /// The field of that name: `velocity`, or a component of one, `velocity.x`. `among` are the bodies of
+    /// which at least one, or with `all` every one, must have it. A problem has no place yet.
     ///
     /// # Errors
     /// No field has the name, or the bodies do not have the field.

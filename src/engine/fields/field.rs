@@ -33,8 +33,8 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field that is a function of columns of the same particle. Name and unit are those of recordings; the value
-    /// is a number, a vector or a matrix.
+    /// A field that is a function of columns of the same particle. Name and unit are those of recordings; the
+    /// value is a number, a vector or a matrix.
     ///
     /// ```
     /// use meshless_engine::record::Field;
@@ -54,8 +54,9 @@ impl Field {
         Self::with_input(name, unit, V::COMPONENTS, Q::names(), evaluate)
     }
 
-    /// A field that depends on more than the particle's own columns: `evaluate` appends the components row by row.
-    /// `components` are their names, `[""]` for a number; `needs` names the columns without which there is no field.
+    /// A field that depends on more than the particle's own columns: `evaluate` appends the components row by
+    /// row. `components` are their names, `[""]` for a number; `needs` names the columns without which there
+    /// is no field.
     pub fn with_input(
         name: impl Into<String>,
         unit: &'static str,
@@ -143,8 +144,8 @@ impl Field {
 }
 
 impl SimBuilder<'_> {
-    /// Adds a field for recordings, ParaView files and probes. Of several fields of one name a body has the first
-    /// whose columns it has.
+    /// Adds a field for recordings, ParaView files and probes. Of several fields of one name a body has the
+    /// first whose columns it has.
     pub fn add_field(&mut self, field: Field) {
         self.extend(field);
     }

@@ -1,5 +1,6 @@
-//! Named fields of particles, for recordings, ParaView files and probes: every column by its name, and fields derived
-//! from columns. A group of derived fields is one file; a plugin adds a field with [`SimBuilder::add_field`].
+//! Named fields of particles, for recordings, ParaView files and probes: every column by its name, and fields
+//! derived from columns. A group of derived fields is one file; a plugin adds a field with
+//! [`SimBuilder::add_field`].
 //!
 //! [`SimBuilder::add_field`]: crate::plugin::SimBuilder::add_field
 

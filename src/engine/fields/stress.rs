@@ -6,7 +6,8 @@ use super::field::Field;
 use crate::linalg::{Eigen, Sym3};
 use crate::world::{DeformationGradient, PiolaStress};
 
-/// Cauchy stress sigma, von Mises stress sqrt(3/2 s : s), pressure -tr(sigma) / 3, extreme principal stresses.
+/// Cauchy stress sigma, von Mises stress sqrt(3/2 s : s), pressure -tr(sigma) / 3, extreme principal
+/// stresses.
 pub(super) fn fields() -> Vec<Field> {
     vec![
         Field::new::<(DeformationGradient, PiolaStress), DMat3>("stress", "Pa", |row| {

@@ -1,4 +1,5 @@
-//! Vectors of four particles, in three rows of lanes in their memory order: x0 y0 z0 x1, y1 z1 x2 y2, z2 x3 y3 z3.
+//! Vectors of four particles, in three rows of lanes in their memory order: x0 y0 z0 x1, y1 z1 x2 y2, z2 x3
+//! y3 z3.
 //!
 //! Operations on each component alone need no shuffle.
 

@@ -1,7 +1,7 @@
 //! The leapfrog: v(n+1/2) = v(n) + dt/2 a(n), x(n+1) = x(n) + dt v(n+1/2), v(n+1) = v(n+1/2) + dt/2 a(n+1).
 //!
-//! A force acts through the mobility, the inverse mass per axis. Where it is zero the motion is prescribed and the
-//! force acts on the constraint; its work, -f.v of the two half-steps, is booked here.
+//! A force acts through the mobility, the inverse mass per axis. Where it is zero the motion is prescribed
+//! and the force acts on the constraint; its work, -f.v of the two half-steps, is booked here.
 
 use std::any::TypeId;
 use std::ops::Range;

@@ -1,4 +1,5 @@
-//! Balances of a bar that is held or drawn by its sides along their normal, where particles carry shares of their stress.
+//! Balances of a bar that is held or drawn by its sides along their normal, where particles carry shares of
+//! their stress.
 
 use super::Momenta;
 use crate::assembly::build;
@@ -39,7 +40,8 @@ fn metal() -> String {
     )
 }
 
-/// Sums of forces along x, N, and of their powers at the speed of the ends, W, on the particles of both sides.
+/// Sums of forces along x, N, and of their powers at the speed of the ends, W, on the particles of both
+/// sides.
 fn on_sides(sim: &Simulation) -> ([f64; 2], f64) {
     let (view, rows) = sim.world().body_view(BodyId(0));
     let (x, force) = (view.read::<ReferencePosition>().unwrap(), view.read::<Force>().unwrap());
@@ -111,7 +113,8 @@ fn the_work_of_the_ends_is_what_a_drawn_bar_stores_and_dissipates() {
     }
 }
 
-/// Forces along x alone are held: momentum across and angular momentum about x are kept, whatever shares the particles carry.
+/// Forces along x alone are held: momentum across and angular momentum about x are kept, whatever shares the
+/// particles carry.
 #[test]
 fn a_bar_that_spins_while_its_sides_are_drawn_keeps_its_other_momenta() {
     let conditions = "Fix(on: Select(face: MinX), axes: [X]), Velocity(on: Select(face: MaxX), value: (\"1\", None, None)),

@@ -50,7 +50,8 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
         Self { make }
     }
 
-    /// A simulation before its start, with places and velocities that are functions of the place; `place` also gets the number of the particle.
+    /// A simulation before its start, with places and velocities that are functions of the place; `place`
+    /// also gets the number of the particle.
     ///
     /// # Errors
     /// The simulation cannot be built.
@@ -97,8 +98,8 @@ impl<'a, E: From<RunError> + From<MissingColumn>> Specimen<'a, E> {
         Ok(NetForce::of(&simulation)?)
     }
 
-    /// Compares the forces after a rough displacement, of the size of 0.4 % of a body of 1 m, with differences of fourth order of the stored energy, at
-    /// three particles.
+    /// Compares the forces after a rough displacement, of the size of 0.4 % of a body of 1 m, with
+    /// differences of fourth order of the stored energy, at three particles.
     ///
     /// # Errors
     /// The simulation cannot be built or fails.

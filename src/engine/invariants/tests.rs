@@ -1,4 +1,5 @@
-//! The invariants of every formulation of solids, without stabilizers; a new formulation is a word in the list.
+//! The invariants of every formulation of solids, without stabilizers; a new formulation is a word in the
+//! list.
 
 use std::error::Error;
 use std::f64::consts::PI;

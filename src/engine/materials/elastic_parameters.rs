@@ -1,9 +1,10 @@
 //! The parameters shared by all elastic solids, declared once.
 
-/// Declares the parameters of an elastic solid as a scene gives them: density and elastic constants, then its own fields.
+/// Declares the parameters of an elastic solid as a scene gives them: density and elastic constants, then its
+/// own fields.
 ///
-/// A macro rather than a struct of its own, so that a scene writes all parameters of a material side by side and an error names the one
-/// that is wrong.
+/// A macro rather than a struct of its own, so that a scene writes all parameters of a material side by side
+/// and an error names the one that is wrong.
 macro_rules! elastic_parameters {
     (
         $(#[$about:meta])*

@@ -1,7 +1,7 @@
 //! Equations of state of solids: pressure as a function of volume and internal energy.
 //!
-//! J is the volume over that of the reference configuration, mu = 1/J - 1 the compression, E the internal energy per
-//! reference volume. Pressure is that of the Cauchy stress, positive in compression.
+//! J is the volume over that of the reference configuration, mu = 1/J - 1 the compression, E the internal
+//! energy per reference volume. Pressure is that of the Cauchy stress, positive in compression.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,8 +16,8 @@ use super::stretches::Stretches;
 pub enum SolidEos {
     /// p = K mu with the bulk modulus of the material.
     Linear,
-    /// Mie-Grueneisen about the shock Hugoniot u_s = sound_speed + slope u_p:
-    /// p = rho_0 c^2 (1 - J) (1 - gamma (1 - J)/2) / (1 - slope (1 - J))^2 + gamma E in compression, rho_0 c^2 mu + gamma E in tension.
+    /// Mie-Grueneisen about the shock Hugoniot u_s = sound_speed + slope u_p: p = rho_0 c^2 (1 - J) (1 -
+    /// gamma (1 - J)/2) / (1 - slope (1 - J))^2 + gamma E in compression, rho_0 c^2 mu + gamma E in tension.
     MieGrueneisen {
         /// Speed of weak shocks c, m/s; without it sqrt(K / rho_0).
         #[serde(default)]
@@ -108,8 +108,8 @@ impl PressureLaw {
         }
     }
 
-    /// Pressure without its part gamma E, Pa, at the volume ratio J. Where the Hugoniot has no volume so small
-    /// (1 - J >= 1/slope) it is infinite.
+    /// Pressure without its part gamma E, Pa, at the volume ratio J. Where the Hugoniot has no volume so
+    /// small (1 - J >= 1/slope) it is infinite.
     #[inline(always)]
     pub fn cold(&self, j: f64) -> f64 {
         let compression = 1.0 / j - 1.0;
@@ -134,8 +134,8 @@ impl PressureLaw {
         }
     }
 
-    /// Work that this pressure has stored, the integral of -p dJ from 1, J/m3 of the reference configuration; `None` where
-    /// it depends on the path, because the pressure depends on the energy.
+    /// Work that this pressure has stored, the integral of -p dJ from 1, J/m3 of the reference configuration;
+    /// `None` where it depends on the path, because the pressure depends on the energy.
     #[inline(always)]
     pub fn stored(&self, j: f64) -> Option<f64> {
         match *self {
@@ -148,8 +148,8 @@ impl PressureLaw {
         }
     }
 
-    /// Stiffness against a change of volume seen from the reference configuration, -J d(J p)/dJ, over that at J = 1: by how
-    /// much waves are faster in a compressed state. Below 1 where compression softens.
+    /// Stiffness against a change of volume seen from the reference configuration, -J d(J p)/dJ, over that at
+    /// J = 1: by how much waves are faster in a compressed state. Below 1 where compression softens.
     pub fn stiffening(&self, j: f64) -> f64 {
         let kirchhoff = |j: f64| j * self.cold(j);
         let step = 1e-5;
@@ -157,14 +157,14 @@ impl PressureLaw {
         modulus(j) / modulus(1.0)
     }
 
-    /// Factor of the stable time step at the extreme stretches of a body: stiffness seen from the reference configuration
-    /// grows as 1/stretch^2, and the pressure may stiffen beside.
+    /// Factor of the stable time step at the extreme stretches of a body: stiffness seen from the reference
+    /// configuration grows as 1/stretch^2, and the pressure may stiffen beside.
     pub fn step_factor(&self, elastic: &ElasticConstants, stretches: &Stretches) -> f64 {
         stretches.smallest.min(1.0) / self.wave_factor(elastic, stretches)
     }
 
-    /// Largest speed of longitudinal waves over present lengths, over that of the undeformed material: elastic strains are small, so that plastic
-    /// flow does not change it, and the pressure may stiffen.
+    /// Largest speed of longitudinal waves over present lengths, over that of the undeformed material:
+    /// elastic strains are small, so that plastic flow does not change it, and the pressure may stiffen.
     pub fn wave_factor(&self, elastic: &ElasticConstants, stretches: &Stretches) -> f64 {
         let stiffer = elastic.bulk * (self.stiffening(stretches.least_volume) - 1.0).max(0.0);
         (1.0 + stiffer / elastic.longitudinal_modulus()).sqrt()

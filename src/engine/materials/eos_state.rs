@@ -1,5 +1,5 @@
-//! The state of an equation of state with a path-dependent pressure: the internal energy from volume change and plastic
-//! work.
+//! The state of an equation of state with a path-dependent pressure: the internal energy from volume change
+//! and plastic work.
 
 use super::eos::PressureLaw;
 use super::state::StateRows;
@@ -39,8 +39,8 @@ impl<'a> PressureRows<'a> {
         Self { law, energies: law.stored(1.0).is_none().then(columns) }
     }
 
-    /// Pressure of row `k` at the volume ratio J, Pa, and the energy stored by the change of volume, J/m3; state advances by `dt`, s,
-    /// and the plastic work of it, J/m3.
+    /// Pressure of row `k` at the volume ratio J, Pa, and the energy stored by the change of volume, J/m3;
+    /// state advances by `dt`, s, and the plastic work of it, J/m3.
     #[inline(always)]
     pub fn advance(&mut self, k: usize, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
         match &mut self.energies {
@@ -51,10 +51,11 @@ impl<'a> PressureRows<'a> {
 }
 
 impl EnergyRows<'_> {
-    /// Brings row `k` to the volume ratio J; returns the pressure, Pa, and the work stored by the change of volume, J/m3.
+    /// Brings row `k` to the volume ratio J; returns the pressure, Pa, and the work stored by the change of
+    /// volume, J/m3.
     ///
-    /// The work is the mean of the pressures before and after times the change of volume; the pressure is linear in the
-    /// energy, so that what it is after needs no iteration. All plastic work heats.
+    /// The work is the mean of the pressures before and after times the change of volume; the pressure is
+    /// linear in the energy, so that what it is after needs no iteration. All plastic work heats.
     #[inline(always)]
     fn advance(&mut self, k: usize, law: &PressureLaw, j: f64, plastic_work: f64, dt: f64) -> (f64, f64) {
         let (internal, plastic, volume) =

@@ -89,7 +89,8 @@ fn slow_compression_follows_the_isentrope_and_the_books_close() {
         eos,
     };
     let mut specimen = MaterialSpecimen::new(model.build().expect("valid parameters"));
-    // Without change of shape there is no plastic work: dE = -p dJ, integrated here with 100 times finer steps.
+    // Without change of shape there is no plastic work: dE = -p dJ, integrated here with 100 times finer
+    // steps.
     let end: f64 = 0.8;
     let side = |t: f64| (1.0 + (end - 1.0) * t).cbrt();
     specimen.follow(|t| DMat3::from_diagonal(DVec3::splat(side(t))), 1000, 1.0);

@@ -7,15 +7,15 @@ use super::error::ParameterError;
 use super::fluid_law::{EquationOfState, FluidLaw};
 use super::law::{Law, Material, MaterialModel};
 
-/// Weakly compressible Newtonian fluid: a liquid whose speed of sound is lowered to some ten times the speed of the flow,
-/// so that its density changes by about 1 %.
+/// Weakly compressible Newtonian fluid: a liquid whose speed of sound is lowered to some ten times the speed
+/// of the flow, so that its density changes by about 1 %.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename = "Fluid")]
 pub struct FluidMaterial {
     /// Density at zero pressure rho_0, kg/m3.
     pub density: f64,
-    /// Speed of sound c_0, m/s. Without it: ten times the largest of the speeds at the start and of sqrt(2 g H), the speed
-    /// of a fall through the height H of all fluid bodies.
+    /// Speed of sound c_0, m/s. Without it: ten times the largest of the speeds at the start and of sqrt(2 g
+    /// H), the speed of a fall through the height H of all fluid bodies.
     #[serde(default)]
     pub sound_speed: Option<f64>,
     /// Dynamic viscosity mu, Pa s.

@@ -9,7 +9,8 @@ pub enum EquationOfState {
     /// p = c_0^2 (rho - rho_0).
     #[default]
     Linear,
-    /// p = c_0^2 rho_0 / gamma ((rho / rho_0)^gamma - 1) (Tait; Monaghan, J. Comput. Phys. 110 (1994) 399-406).
+    /// p = c_0^2 rho_0 / gamma ((rho / rho_0)^gamma - 1) (Tait; Monaghan, J. Comput. Phys. 110 (1994)
+    /// 399-406).
     Tait {
         /// Exponent gamma above 1; 7 for water.
         gamma: f64,
@@ -60,8 +61,9 @@ impl EquationOfState {
         }
     }
 
-    /// Energy of compression per mass from one density to another, J/kg: the integral of p / rho^2 between them. A small change keeps its
-    /// digits, which a difference of two energies loses, and costs no logarithm.
+    /// Energy of compression per mass from one density to another, J/kg: the integral of p / rho^2 between
+    /// them. A small change keeps its digits, which a difference of two energies loses, and costs no
+    /// logarithm.
     #[inline(always)]
     pub fn energy_change(&self, from: f64, to: f64, rho_0: f64, c_0: f64) -> f64 {
         match *self {

@@ -94,7 +94,8 @@ impl Hardening {
         }
     }
 
-    /// Flow stress, Pa, after a plastic strain of `increment` more in `dt` seconds, and its derivative by `increment`.
+    /// Flow stress, Pa, after a plastic strain of `increment` more in `dt` seconds, and its derivative by
+    /// `increment`.
     #[inline]
     pub fn flow_stress(&self, strain: f64, increment: f64, dt: f64, temperature: f64) -> ValueAndSlope {
         let strain = strain + increment;

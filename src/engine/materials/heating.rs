@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ParameterError;
 
-/// Adiabatic heating: the temperature rises by taylor_quinney times the plastic work over density and specific heat.
+/// Adiabatic heating: the temperature rises by taylor_quinney times the plastic work over density and
+/// specific heat.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Heating {
@@ -53,7 +54,8 @@ impl Heating {
         ))
     }
 
-    /// Rise of the temperature for each joule of plastic work in a cubic metre of the reference configuration, K m3/J.
+    /// Rise of the temperature for each joule of plastic work in a cubic metre of the reference
+    /// configuration, K m3/J.
     pub fn rise(&self, density: f64) -> f64 {
         self.specific_heat.map_or(0.0, |specific_heat| self.taylor_quinney / (density * specific_heat))
     }

@@ -19,8 +19,8 @@ use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, DeviatoricStress, PlasticStrain, ReachedDeformation};
 
 elastic_parameters! {
-    /// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is given. The pressure is
-    /// K (rho/rho_0 - 1) unless `eos` says otherwise.
+    /// Hypoelasticity with the Jaumann rate of the Cauchy stress, with J2 plasticity where `hardening` is
+    /// given. The pressure is K (rho/rho_0 - 1) unless `eos` says otherwise.
     pub struct Hypoelastic {
         /// Flow stress; without it there is no plasticity.
         #[serde(default)]

@@ -1,12 +1,14 @@
 //! J2 plasticity on the multiplicative split F = Fe Fp with logarithmic strain.
 //!
-//! The trial state is be = F Cp^-1 F^T with Cp^-1 of the step before; its logarithm splits into the volume, ln J, and the
-//! deviator e. The Kirchhoff stress is tau = 2 mu e - J p I. Where its equivalent stress q = sqrt(3/2) |2 mu e| is above the
-//! flow stress, e is scaled back by the plastic increment, and Cp^-1 = F^-1 be F^-T keeps what is left (Simo and Hughes
-//! 1998, section 9.3). Everything is three-dimensional: in plane strain the plastic flow out of the plane is kept.
+//! The trial state is be = F Cp^-1 F^T with Cp^-1 of the step before; its logarithm splits into the volume,
+//! ln J, and the deviator e. The Kirchhoff stress is tau = 2 mu e - J p I. Where its equivalent stress q =
+//! sqrt(3/2) |2 mu e| is above the flow stress, e is scaled back by the plastic increment, and Cp^-1 = F^-1
+//! be F^-T keeps what is left (Simo and Hughes 1998, section 9.3). Everything is three-dimensional: in plane
+//! strain the plastic flow out of the plane is kept.
 //!
-//! Plastic work is the increment times the mean equivalent stress before and after the step: what the trapezoidal rule
-//! of the leapfrog takes out of the motion where the stress keeps its direction, to second order of the step elsewhere.
+//! Plastic work is the increment times the mean equivalent stress before and after the step: what the
+//! trapezoidal rule of the leapfrog takes out of the motion where the stress keeps its direction, to second
+//! order of the step elsewhere.
 
 use glam::DMat3;
 
@@ -27,7 +29,8 @@ use crate::parallel::{FourLanes, HotLoop, run_hot};
 use crate::world::{ColumnSet, EquivalentStress, InversePlasticCauchyGreen, PlasticStrain, YieldStress};
 
 elastic_parameters! {
-    /// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate, and temperature.
+    /// J2 plasticity (von Mises) with logarithmic strain, F = Fe Fp; hardening by plastic strain, its rate,
+    /// and temperature.
     pub struct J2 {
         /// Flow stress.
         pub hardening: Hardening,

@@ -48,8 +48,8 @@ fn close(found: f64, wanted: f64, tolerance: f64) {
 
 #[test]
 fn uniaxial_strain_loading_and_unloading() {
-    // q = 2 mu |ln s| until yield; then q = sy + H ep with ep = (2 mu e - sy)/(3 mu + H) where e = |ln s| and 2 mu e is q
-    // of the elastic state; unloading by 2 q / (2 mu) of strain brings reverse yield.
+    // q = 2 mu |ln s| until yield; then q = sy + H ep with ep = (2 mu e - sy)/(3 mu + H) where e = |ln s| and
+    // 2 mu e is q of the elastic state; unloading by 2 q / (2 mu) of strain brings reverse yield.
     let modulus = 1.0e9;
     let mut specimen = MaterialSpecimen::new(metal(Hardening::Linear { yield_stress: YIELD, modulus }));
     let along = |strain: f64| DMat3::from_diagonal(DVec3::new((-strain).exp(), 1.0, 1.0));

@@ -1,8 +1,8 @@
 //! Hypoelastic J2 plasticity with the Jaumann rate of the Cauchy stress.
 //!
-//! S' = 2 mu dev(D) + Omega S - S Omega (Mohseni-Mofidi and Bierwisch 2020, eq. 14), then the radial return. The step turns
-//! the stress by the rotation that Hughes and Winget (1980, Int. J. Numer. Methods Engrg. 15, 1862-1867) make of the spin, so
-//! that rigid rotation is exact for any step, and errors are of second order.
+//! S' = 2 mu dev(D) + Omega S - S Omega (Mohseni-Mofidi and Bierwisch 2020, eq. 14), then the radial return.
+//! The step turns the stress by the rotation that Hughes and Winget (1980, Int. J. Numer. Methods Engrg. 15,
+//! 1862-1867) make of the spin, so that rigid rotation is exact for any step, and errors are of second order.
 
 use glam::DMat3;
 
@@ -33,8 +33,8 @@ pub struct HypoelasticJ2 {
 }
 
 impl HypoelasticJ2 {
-    /// Advances the state by a step of `dt` seconds with the velocity gradient L at its middle, 1/s. Returns the plastic
-    /// work, J for each cubic metre of the current volume.
+    /// Advances the state by a step of `dt` seconds with the velocity gradient L at its middle, 1/s. Returns
+    /// the plastic work, J for each cubic metre of the current volume.
     #[inline(always)]
     pub fn advance(&self, state: &mut HypoelasticState, gradient: &DMat3, dt: f64) -> f64 {
         let before = (1.5 * state.deviator.double_dot(&state.deviator)).sqrt();
@@ -62,7 +62,8 @@ impl HypoelasticJ2 {
     #[inline(always)]
     pub(super) fn elastic(&self, deviator: &Sym3, gradient: &DMat3, dt: f64) -> Sym3 {
         let rate = Sym3::symmetric_part(*gradient).deviator();
-        // Half of the strain before the turn and half after it: all of it on one side would be of first order.
+        // Half of the strain before the turn and half after it: all of it on one side would be of first
+        // order.
         let half = rate * (self.shear * dt);
         turn(&(*deviator + half), gradient, dt) + half
     }
@@ -76,7 +77,8 @@ fn turn(s: &Sym3, gradient: &DMat3, dt: f64) -> Sym3 {
     super::j2::left_cauchy_green(&rotation, s)
 }
 
-/// Velocity gradient at the middle of a step, times its length: the change of F by the mean of F before and after.
+/// Velocity gradient at the middle of a step, times its length: the change of F by the mean of F before and
+/// after.
 #[inline(always)]
 pub fn velocity_gradient_step(before: &DMat3, after: &DMat3) -> DMat3 {
     (*after - *before) * ((*after + *before) * 0.5).inverse()

@@ -12,7 +12,8 @@ use super::law::{Material, MaterialModel};
 macro_rules! metal {
     ([$($(#[$meta:meta])* $field:ident,)*] $($own:tt)*) => {
         elastic_parameters! {
-            /// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 - T*^m), heated by plastic work.
+            /// Johnson-Cook metal: J2 plasticity with the flow stress (a + b eps_p^n)(1 + c ln rate*)(1 -
+            /// T*^m), heated by plastic work.
             pub struct JohnsonCook {
                 $($(#[$meta])* pub $field: f64,)*
                 $($own)*

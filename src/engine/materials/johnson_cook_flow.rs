@@ -12,7 +12,8 @@ pub(super) const LEAST_STRAIN: f64 = 1e-12;
 
 /// Hands the parameters of the flow stress, declared once, to another macro.
 ///
-/// A scene gives them side by side with those of a material, or as its `hardening`; structs in structs would change what it has to write.
+/// A scene gives them side by side with those of a material, or as its `hardening`; structs in structs would
+/// change what it has to write.
 macro_rules! flow_parameters {
     ($declare:ident { $($own:tt)* }) => {
         $declare! {

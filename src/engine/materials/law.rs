@@ -75,29 +75,33 @@ pub trait MaterialModel: DeserializeOwned + JsonSchema + 'static {
     fn build(self) -> Result<Material, ParameterError>;
 }
 
-/// A block of particles of one material: deformation and state in, stress and state out. All slices have one length.
+/// A block of particles of one material: deformation and state in, stress and state out. All slices have one
+/// length.
 pub struct StressRows<'a> {
-    /// Time in which the deformation came about since the last call, s. Every accepted step makes one call. With 0, in
-    /// the evaluation before the first step, state must stay as it is.
+    /// Time in which the deformation came about since the last call, s. Every accepted step makes one call.
+    /// With 0, in the evaluation before the first step, state must stay as it is.
     pub dt: f64,
     /// Deformation gradient F at the end of the step; in plane strain F_33 = 1.
     pub deformation: &'a [DMat3],
-    /// Share of what a particle makes of its stress that it carries, 1 as a rule, other beside what is held. The caller takes the outputs by that share; energy that a
-    /// law books in columns of its own has to be multiplied with it.
+    /// Share of what a particle makes of its stress that it carries, 1 as a rule, other beside what is held.
+    /// The caller takes the outputs by that share; energy that a law books in columns of its own has to be
+    /// multiplied with it.
     pub share: &'a [f64],
-    /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first. Empty for a law that does not ask for it by [`SolidLaw::reads_last_stress`].
+    /// First Piola-Kirchhoff stress P at the end of the last step, Pa; zero before the first. Empty for a law
+    /// that does not ask for it by [`SolidLaw::reads_last_stress`].
     pub stress_before: &'a [DMat3],
-    /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account, in this and in the other
-    /// outputs, unless they say so.
+    /// First Piola-Kirchhoff stress P, Pa: to be written. What stands there before the call is of no account,
+    /// in this and in the other outputs, unless they say so.
     pub stress: &'a mut [DMat3],
     /// Strain energy per reference volume, J/m3: to be written.
     pub energy: &'a mut [f64],
     /// Young's modulus as it is now, Pa: to be written. Hourglass control resists with it.
     pub modulus: &'a mut [f64],
-    /// Stress beyond which a particle that has yielded flows, Pa; infinite before the call, for all that has not.
+    /// Stress beyond which a particle that has yielded flows, Pa; infinite before the call, for all that has
+    /// not.
     pub strength: &'a mut [f64],
-    /// Plastic work done in this step per reference volume, J/m3; zero before the call. Heat that it turns into is part
-    /// of it.
+    /// Plastic work done in this step per reference volume, J/m3; zero before the call. Heat that it turns
+    /// into is part of it.
     pub plastic_work: &'a mut [f64],
     /// The columns that the law has declared in [`SolidLaw::state`].
     pub state: StateRows<'a>,
@@ -111,13 +115,14 @@ pub trait SolidLaw: Send + Sync {
     /// Whether the law has no meaning for a particle that is turned inside out (det F <= 0).
     fn needs_positive_volume(&self) -> bool;
 
-    /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a particle is cut, and its F measured
-    /// anew, the law then goes on from the F that it knows.
+    /// Whether the stress depends on the path to F, as with plastic flow: where the neighbourhood of a
+    /// particle is cut, and its F measured anew, the law then goes on from the F that it knows.
     fn remembers_path(&self) -> bool {
         false
     }
 
-    /// Whether the law reads the stress of the last step, which is then kept for it. A law around another asks for it if that one does.
+    /// Whether the law reads the stress of the last step, which is then kept for it. A law around another
+    /// asks for it if that one does.
     fn reads_last_stress(&self) -> bool {
         false
     }
@@ -132,13 +137,15 @@ pub trait SolidLaw: Send + Sync {
         None
     }
 
-    /// Factor of the stable time step at the extreme stretches of a body, as seen from the undeformed configuration.
+    /// Factor of the stable time step at the extreme stretches of a body, as seen from the undeformed
+    /// configuration.
     fn stable_step_factor(&self, stretches: &Stretches) -> f64;
 
-    /// Largest speed of longitudinal waves in the deformed material, over present lengths and with the stress that it is under, over
-    /// that of the undeformed one, at the extreme stretches of a body.
+    /// Largest speed of longitudinal waves in the deformed material, over present lengths and with the stress
+    /// that it is under, over that of the undeformed one, at the extreme stretches of a body.
     fn wave_factor(&self, stretches: &Stretches) -> f64 {
-        // Seen from the undeformed configuration it is 1 / stable_step_factor, and lengths have grown by the stretch.
+        // Seen from the undeformed configuration it is 1 / stable_step_factor, and lengths have grown by the
+        // stretch.
         stretches.largest.max(1.0) / self.stable_step_factor(stretches)
     }
 
@@ -152,7 +159,8 @@ pub trait SolidLaw: Send + Sync {
     fn stress(&self, rows: &mut StressRows<'_>);
 }
 
-/// A hyperelastic law: stress and energy are functions of the deformation gradient. Every such law is a [`SolidLaw`].
+/// A hyperelastic law: stress and energy are functions of the deformation gradient. Every such law is a
+/// [`SolidLaw`].
 pub trait Hyperelastic: Copy + Send + Sync + 'static {
     /// Whether the law has no meaning for det F <= 0.
     const NEEDS_POSITIVE_VOLUME: bool;
@@ -160,14 +168,14 @@ pub trait Hyperelastic: Copy + Send + Sync + 'static {
     /// Elastic constants at small strain.
     fn elastic(&self) -> &ElasticConstants;
 
-    /// Factor of the stable time step at the smallest and largest principal stretch of a body. Lateral contraction
-    /// raises the stiffness seen from the reference configuration as 1/stretch^2.
+    /// Factor of the stable time step at the smallest and largest principal stretch of a body. Lateral
+    /// contraction raises the stiffness seen from the reference configuration as 1/stretch^2.
     fn stable_step_factor(&self, smallest: f64, _largest: f64) -> f64 {
         smallest.min(1.0)
     }
 
-    /// Largest speed of longitudinal waves in the deformed material, over present lengths, over that of the undeformed one (see
-    /// [`SolidLaw::wave_factor`]).
+    /// Largest speed of longitudinal waves in the deformed material, over present lengths, over that of the
+    /// undeformed one (see [`SolidLaw::wave_factor`]).
     fn wave_factor(&self, stretches: &Stretches) -> f64 {
         stretches.largest.max(1.0) / self.stable_step_factor(stretches.smallest, stretches.largest)
     }

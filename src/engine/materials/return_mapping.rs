@@ -24,9 +24,9 @@ const ACCURACY: f64 = 1e-12;
 impl Trial {
     /// The increment d of the plastic strain with `stress - 3 mu d = flow stress after d`.
     ///
-    /// The difference falls with d, is positive at 0 and not positive where the stress is gone: Newton's iteration keeps
-    /// to that bracket and halves it where it would leave it, so that it ends for every law that does not soften with
-    /// strain. Input that is not a number gives NaN, which the watchdog sees.
+    /// The difference falls with d, is positive at 0 and not positive where the stress is gone: Newton's
+    /// iteration keeps to that bracket and halves it where it would leave it, so that it ends for every law
+    /// that does not soften with strain. Input that is not a number gives NaN, which the watchdog sees.
     pub fn increment(&self, hardening: &Hardening) -> f64 {
         let stiffness = 3.0 * self.shear;
         match *hardening {

@@ -36,7 +36,8 @@ impl Hyperelastic for StVenantKirchhoffLaw {
     }
 
     fn stable_step_factor(&self, _smallest: f64, largest: f64) -> f64 {
-        // The law stiffens in tension: dP/dF along a stretch s is (lambda + 2 mu)(3 s^2 - 1)/2. It softens in compression.
+        // The law stiffens in tension: dP/dF along a stretch s is (lambda + 2 mu)(3 s^2 - 1)/2. It softens in
+        // compression.
         1.0 / largest.max(1.0)
     }
 

@@ -25,8 +25,8 @@ impl StateColumns {
     }
 }
 
-/// The state of some particles of one material: a slice of each column that the law has declared, all of one length.
-/// The default has no column.
+/// The state of some particles of one material: a slice of each column that the law has declared, all of one
+/// length. The default has no column.
 #[derive(Default)]
 pub struct StateRows<'a> {
     columns: &'a [ColumnInfo],
@@ -48,8 +48,8 @@ impl<'a> StateRows<'a> {
         StateRows { columns: self.columns, bytes }
     }
 
-    /// Takes the slice of column `T` out of the rows, so that several can be held at once. Panics where the law has
-    /// not declared the column, or has taken it already: a fault of the law.
+    /// Takes the slice of column `T` out of the rows, so that several can be held at once. Panics where the
+    /// law has not declared the column, or has taken it already: a fault of the law.
     pub fn take<T: Column>(&mut self) -> &'a mut [T] {
         let place = self.columns.iter().position(|column| column.type_id == TypeId::of::<T>());
         let Some(k) = place else { panic!("the law has not declared the state column `{}`", T::NAME) };

@@ -54,7 +54,8 @@ fn assert_close(found: f64, wanted: f64, tolerance: f64) {
 
 #[test]
 fn neo_hookean_uniaxial_tension_and_compression() {
-    // E, nu, stretch, then lateral stretch, J, P, Cauchy stress in plane strain and the first three of uniaxial stress.
+    // E, nu, stretch, then lateral stretch, J, P, Cauchy stress in plane strain and the first three of
+    // uniaxial stress.
     let reference = include_str!("../../../assets/reference/neo_hookean_uniaxial.csv");
     let mut rows = 0;
     for line in reference.lines().filter(|line| !line.starts_with(['#', 'E'])) {

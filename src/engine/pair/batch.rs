@@ -18,12 +18,13 @@ pub(super) const MAX_ROWS: usize = 16;
 pub struct FourVectors {
     /// Components, m.
     pub vector: [Lanes4; 3],
-    /// Lengths, m, or their squares, m2, where pairs have reference vectors ([`Extras::reference`]); above zero.
+    /// Lengths, m, or their squares, m2, where pairs have reference vectors ([`Extras::reference`]); above
+    /// zero.
     pub length: Lanes4,
 }
 
-/// Four neighbours. Lanes without a neighbour, and neighbours beyond the support, have weight, kernel and volume zero and a
-/// length above zero.
+/// Four neighbours. Lanes without a neighbour, and neighbours beyond the support, have weight, kernel and
+/// volume zero and a length above zero.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct FourPairs {
@@ -37,14 +38,16 @@ pub struct FourPairs {
     pub kernel: Lanes4,
     /// Volumes V_j, m3.
     pub volume_j: Lanes4,
-    /// A number that the formulation keeps from one of its loops over the row to the next; terms do not see it.
+    /// A number that the formulation keeps from one of its loops over the row to the next; terms do not see
+    /// it.
     pub kept: Lanes4,
 }
 
 /// What the pairs of a body have beside x_ij and what all pairs have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
-    /// Reference vectors. The squares of the lengths are then all that is known of these: a term takes the roots that it needs.
+    /// Reference vectors. The squares of the lengths are then all that is known of these: a term takes the
+    /// roots that it needs.
     pub reference: bool,
     /// Where weights were taken, if there are reference vectors; without them it is at |x_ij|.
     pub weight_at: WeightAt,
@@ -54,7 +57,8 @@ pub struct Extras {
     pub supports: bool,
 }
 
-/// The neighbours of some particles whose rows follow each other. Kept from batch to batch, so that a step does not allocate.
+/// The neighbours of some particles whose rows follow each other. Kept from batch to batch, so that a step
+/// does not allocate.
 #[derive(Debug, Default)]
 pub struct PairBatch {
     count: usize,
@@ -146,7 +150,8 @@ impl RowSlots<'_> {
 }
 
 impl PairBatch {
-    /// Takes all rows out. `support` is the support radius of all pairs, m; it has no meaning where they differ.
+    /// Takes all rows out. `support` is the support radius of all pairs, m; it has no meaning where they
+    /// differ.
     #[inline(always)]
     pub fn begin(&mut self, extras: Extras, support: f64) {
         self.count = 0;
@@ -165,7 +170,8 @@ impl PairBatch {
         self.count
     }
 
-    /// Adds the row of the next particle, of volume V_i, m3, with room for that many neighbours, to be filled by the caller.
+    /// Adds the row of the next particle, of volume V_i, m3, with room for that many neighbours, to be filled
+    /// by the caller.
     #[inline(always)]
     pub fn add_row(&mut self, volume_i: f64, neighbors: usize) -> RowSlots<'_> {
         let start = self.starts[self.count];
@@ -240,7 +246,8 @@ impl Row<'_> {
         self.pairs.len()
     }
 
-    /// Rows of the neighbours of a four in the phase, and the signs of the axes of mirror images; `ALIKE` where there are none.
+    /// Rows of the neighbours of a four in the phase, and the signs of the axes of mirror images; `ALIKE`
+    /// where there are none.
     #[inline(always)]
     pub fn rows<const ALIKE: bool>(&self, k: usize) -> ([u32; 4], Option<&[DVec3; 4]>) {
         (self.rows[k], if ALIKE { None } else { self.mirrors.get(k) })

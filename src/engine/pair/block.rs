@@ -1,4 +1,5 @@
-//! The pairs of a block of particles with some neighbours: what a formulation whose lanes are particles fills, and pair terms read.
+//! The pairs of a block of particles with some neighbours: what a formulation whose lanes are particles
+//! fills, and pair terms read.
 
 use super::term::{Pair, Rates};
 use super::weight_at::WeightAt;
@@ -7,7 +8,8 @@ use crate::parallel::{EIGHT, EightLanes, Lanes8, Number, Vector};
 /// Most neighbours: their pairs fit the first-level cache.
 pub(crate) const CHUNK: usize = 48;
 
-/// One neighbour of all particles of a block. Where it is beyond the support, or the particle itself, its volume is zero.
+/// One neighbour of all particles of a block. Where it is beyond the support, or the particle itself, its
+/// volume is zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EightPairs {
     /// Row in the phase.
@@ -60,14 +62,16 @@ impl BlockPairs {
         pairs: [EightPairs::ZERO; CHUNK],
     };
 
-    /// Begins with a block of particles of these rows and volumes V_i, m3; `support` is the support radius, m.
+    /// Begins with a block of particles of these rows and volumes V_i, m3; `support` is the support radius,
+    /// m.
     #[inline(always)]
     pub fn begin(&mut self, rows: [u32; EIGHT], volume: Lanes8, support: f64) {
         (self.rows, self.volume, self.support) = (rows, volume, support);
         self.count = 0;
     }
 
-    /// Room for that many neighbours, up to [`CHUNK`], in the place of those that were there; to be filled by the caller.
+    /// Room for that many neighbours, up to [`CHUNK`], in the place of those that were there; to be filled by
+    /// the caller.
     #[inline(always)]
     pub fn room(&mut self, count: usize) -> &mut [EightPairs] {
         self.count = count;

@@ -13,7 +13,8 @@ use crate::world::{DensityRate, Force, MissingColumn, PhaseView};
 
 /// A term that is bound to its columns.
 pub(super) trait RowTerm: Sync {
-    /// Adds the contributions of all neighbours of the rows of a batch, the first of which is row `first` of the phase.
+    /// Adds the contributions of all neighbours of the rows of a batch, the first of which is row `first` of
+    /// the phase.
     fn rows(&self, first: usize, batch: &PairBatch, plane: bool, out: RowsOut<'_>);
 
     /// Adds the contributions of some neighbours of a block.
@@ -112,7 +113,8 @@ impl<T: PairTerm> HotLoop for BoundRows<'_, '_, T> {
 }
 
 impl<T: PairTerm> BoundRows<'_, '_, T> {
-    /// Adds up the neighbours; `PLAIN` without reference vectors, `ALIKE` where none is an image and all have one support radius.
+    /// Adds up the neighbours; `PLAIN` without reference vectors, `ALIKE` where none is an image and all have
+    /// one support radius.
     #[inline(always)]
     fn add<A: FourLanes, const PLAIN: bool, const ALIKE: bool>(self, a: A) {
         let Bound { term, of_i, of_j } = *self.bound;
@@ -180,7 +182,8 @@ type Continue<'r> = &'r mut dyn FnMut(&Chain<'_>);
 
 /// A pair term whose type is erased.
 pub(super) trait ErasedTerm: Send + Sync {
-    /// Columns it reads, those of neighbours as such; not the relative velocity, which whoever runs the term gives.
+    /// Columns it reads, those of neighbours as such; not the relative velocity, which whoever runs the term
+    /// gives.
     fn access(&self) -> Vec<Access>;
     /// What it reads of a pair.
     fn reads(&self) -> PairReads;

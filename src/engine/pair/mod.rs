@@ -1,9 +1,9 @@
-//! Pair terms: forces that third parties write as a function of one pair, run in one pass over all pairs: a pass of their own, or
-//! that of a formulation which has the geometry of the pairs in its hands.
+//! Pair terms: forces that third parties write as a function of one pair, run in one pass over all pairs: a
+//! pass of their own, or that of a formulation which has the geometry of the pairs in its hands.
 //!
-//! The pass builds the geometry of some rows once, then calls each term once for all of these through a vtable, with the pair
-//! function inlined in the loop over rows and compiled for four neighbours at a time: no dispatch per pair, one pass over memory
-//! for all terms.
+//! The pass builds the geometry of some rows once, then calls each term once for all of these through a
+//! vtable, with the pair function inlined in the loop over rows and compiled for four neighbours at a time:
+//! no dispatch per pair, one pass over memory for all terms.
 
 mod batch;
 mod block;

@@ -34,8 +34,8 @@ pub(crate) struct PhaseTerms {
 }
 
 impl PhaseTerms {
-    /// Takes the pair terms of the bodies of a phase out of the builder, and adds the booking of their work; none where there are no
-    /// terms. They are to be run in a system that declares what they touch.
+    /// Takes the pair terms of the bodies of a phase out of the builder, and adds the booking of their work;
+    /// none where there are no terms. They are to be run in a system that declares what they touch.
     pub fn take(sim: &mut SimBuilder<'_>, phase: PhaseId) -> Result<Option<Self>, SetupError> {
         let of_phase =
             BodySet::new(sim.bodies().iter().filter(|body| body.phase == phase).map(|body| body.id));
@@ -117,8 +117,9 @@ impl PhaseTerms {
         self.bodies.iter().collect()
     }
 
-    /// Binds the terms of a body and calls `run` with them, with the rows that they write, and with scratch memory for the largest rates
-    /// of all blocks of these, which it returns. Without terms nothing is called.
+    /// Binds the terms of a body and calls `run` with them, with the rows that they write, and with scratch
+    /// memory for the largest rates of all blocks of these, which it returns. Without terms nothing is
+    /// called.
     pub fn on_body(
         &mut self,
         step: &Step<'_>,
@@ -163,8 +164,8 @@ pub(crate) struct BoundTerms<'a> {
 }
 
 impl BoundTerms<'_> {
-    /// Runs all terms on the rows of a batch, of particle `first` of the phase and those after it, and writes what they make into
-    /// a block from row `k` on. Gives the largest rates.
+    /// Runs all terms on the rows of a batch, of particle `first` of the phase and those after it, and writes
+    /// what they make into a block from row `k` on. Gives the largest rates.
     pub fn run(&self, first: usize, batch: &PairBatch, k: usize, block: &mut TermRows<'_>) -> RateBounds {
         let rows = batch.rows();
         let density = if block.density.is_empty() { &mut [] } else { &mut block.density[k..k + rows] };

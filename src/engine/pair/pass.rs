@@ -26,8 +26,8 @@ pub(crate) fn with_batch<R>(f: impl FnOnce(&mut PairBatch) -> R) -> R {
 
 /// The pairs of one body.
 pub trait PairRows: Sync {
-    /// Begins a batch and puts in the neighbours of the first of these particles, and of those after it until it is full, each
-    /// in the order of its neighbour list.
+    /// Begins a batch and puts in the neighbours of the first of these particles, and of those after it until
+    /// it is full, each in the order of its neighbour list.
     fn fill(&self, rows: Range<usize>, batch: &mut PairBatch);
 }
 
@@ -48,8 +48,8 @@ pub trait PairSource: Send + 'static {
     }
 }
 
-/// Takes the pair terms of the bodies of a phase out of the builder, and adds the pass that runs them after the
-/// systems that write the force, and the booking of their work. Without terms nothing is added.
+/// Takes the pair terms of the bodies of a phase out of the builder, and adds the pass that runs them after
+/// the systems that write the force, and the booking of their work. Without terms nothing is added.
 pub fn add_pair_systems(
     sim: &mut SimBuilder<'_>,
     phase: PhaseId,

@@ -19,7 +19,8 @@ pub trait ReadSet: Copy + Send + Sync + 'static {
     type Guards<'g>;
     /// The columns as slices.
     type Slices<'s>: Copy + Send + Sync;
-    /// The values of four rows, as [`Value::Four`](crate::world::Value::Four) says: vectors, numbers, matrices.
+    /// The values of four rows, as [`Value::Four`](crate::world::Value::Four) says: vectors, numbers,
+    /// matrices.
     type Four<A: Arithmetic>: Copy;
 
     /// Names of the columns.
@@ -54,8 +55,8 @@ impl<C: Column> Read for C {
     const RELATIVE: bool = false;
 }
 
-/// A column of which a term uses only differences between i and j. In single precision its values are less a number that is the same for both: a difference then
-/// keeps the digits that it has in double precision.
+/// A column of which a term uses only differences between i and j. In single precision its values are less a
+/// number that is the same for both: a difference then keeps the digits that it has in double precision.
 #[derive(Clone, Copy)]
 pub struct Relative<C>(PhantomData<C>);
 

@@ -6,20 +6,24 @@ use super::read::{FourOf, ReadSet};
 use super::weight_at::WeightAt;
 use crate::parallel::{Arithmetic, FourLanes, Number, Vector};
 
-/// Geometry of pairs, one a lane: of particle i with four neighbours j, or of eight particles i with one neighbour j (flows in single precision). In formulations without a reference configuration the
-/// reference vector is the current one. Lanes that hold no neighbour have `volume_j` zero: what a term
-/// adds carries the volume of j, as sums over neighbours do.
+/// Geometry of pairs, one a lane: of particle i with four neighbours j, or of eight particles i with one
+/// neighbour j (flows in single precision). In formulations without a reference configuration the reference
+/// vector is the current one. Lanes that hold no neighbour have `volume_j` zero: what a term adds carries the
+/// volume of j, as sums over neighbours do.
 #[derive(Clone, Copy)]
 pub struct Pair<A: Arithmetic> {
     /// Current pair vector x_ij = x_j - x_i, m.
     pub x_ij: Vector<A>,
     /// Reference pair vector X_ij, m.
     pub reference_x_ij: Vector<A>,
-    /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, at the length that `weight_at` says: grad_i W = w_ij x_ij where it is the current one.
+    /// Pair weight w_ij = |W'(r)| / r of the formulation's kernel, at the length that `weight_at` says:
+    /// grad_i W = w_ij x_ij where it is the current one.
     pub weight: Number<A>,
-    /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the phase reads it ([`PairTerm::READS_KERNEL`]).
+    /// Kernel value W_ij, 1/m2 or 1/m3; not a number unless a term of the phase reads it
+    /// ([`PairTerm::READS_KERNEL`]).
     pub kernel: Number<A>,
-    /// Relative velocity v_ij = v_j - v_i, m/s; not a number unless a term of the phase reads it ([`PairTerm::READS_VELOCITY`]).
+    /// Relative velocity v_ij = v_j - v_i, m/s; not a number unless a term of the phase reads it
+    /// ([`PairTerm::READS_VELOCITY`]).
     pub v_ij: Vector<A>,
     /// Mean support radius of the two particles, m.
     pub support: Number<A>,
@@ -50,7 +54,8 @@ impl<A: Arithmetic> Pair<A> {
         if self.is_reference { self.length } else { self.length.sqrt() }
     }
 
-    /// Square of the length of x_ij, m2; a tiny number in place of zero. Cheaper than the length where there is a reference.
+    /// Square of the length of x_ij, m2; a tiny number in place of zero. Cheaper than the length where there
+    /// is a reference.
     #[inline(always)]
     pub fn distance_squared(&self) -> Number<A> {
         if self.is_reference { self.length.squared() } else { self.length }
@@ -93,7 +98,8 @@ impl<A: Arithmetic> Pair<A> {
 pub struct Rates<A: Arithmetic> {
     /// Force on i, N. The force on j must be its exact opposite when the roles are swapped.
     pub force: Vector<A>,
-    /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with [`PairTerm::CHANGES_DENSITY`].
+    /// Rate of change of the density of i, kg/(m3 s), in fluids; of a term with
+    /// [`PairTerm::CHANGES_DENSITY`].
     pub density: Number<A>,
     /// Rate at which the term damps the velocity of i against fixed neighbours, 1/s: limits the time step.
     pub damping: Number<A>,
@@ -132,8 +138,9 @@ impl<A: FourLanes> Rates<A> {
     }
 }
 
-/// Contribution of neighbours j to particle i, written as a function of one pair that runs for four neighbours, or eight particles, at a time: numbers
-/// and vectors have their usual operators, and a branch is [`Number::if_below`], [`Number::min`] or [`Number::max`].
+/// Contribution of neighbours j to particle i, written as a function of one pair that runs for four
+/// neighbours, or eight particles, at a time: numbers and vectors have their usual operators, and a branch is
+/// [`Number::if_below`], [`Number::min`] or [`Number::max`].
 pub trait PairTerm: Send + Sync + 'static {
     /// Columns it needs of i: a tuple of columns.
     type ReadI: ReadSet;
@@ -144,14 +151,14 @@ pub trait PairTerm: Send + Sync + 'static {
     const READS_KERNEL: bool = true;
     /// Whether it reads [`Pair::v_ij`]. A term that does not saves the velocities of every pair by saying so.
     const READS_VELOCITY: bool = true;
-    /// Whether it is for bodies with reference pair vectors alone, which solids have and fluids do not. Its loops over fluids are then not compiled, and a fluid that is given the term is an error
-    /// of the scene.
+    /// Whether it is for bodies with reference pair vectors alone, which solids have and fluids do not. Its
+    /// loops over fluids are then not compiled, and a fluid that is given the term is an error of the scene.
     const NEEDS_REFERENCE: bool = false;
     /// Whether the term gives density rates.
     const CHANGES_DENSITY: bool = false;
 
-    /// Adds the contribution of j to the rates of i. Mark it `#[inline(always)]`: it is then compiled for the instruction path of
-    /// the loop around it.
+    /// Adds the contribution of j to the rates of i. Mark it `#[inline(always)]`: it is then compiled for the
+    /// instruction path of the loop around it.
     fn pair<A: Arithmetic>(
         &self,
         pair: &Pair<A>,

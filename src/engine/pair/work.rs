@@ -1,8 +1,8 @@
 //! The work of pair terms, booked so that the ledger closes as it does without them.
 //!
-//! A force f computed at the end of a step acts in the second kick of that step and in the first kick of the next. Its work
-//! is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with the velocity v and the
-//! acceleration a between the two: two sums over the particles give both.
+//! A force f computed at the end of a step acts in the second kick of that step and in the first kick of the
+//! next. Its work is `dt/2 f.(v - a dt/4)` in the one and `dt/2 f.(v + a dt/4)` in the other, exactly, with
+//! the velocity v and the acceleration a between the two: two sums over the particles give both.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -59,8 +59,8 @@ pub(crate) fn add_work_systems(
     sim.add_system(
         System::new(Stage::FinalIntegrate, "pair_work_of_second_kick", second)
             .on_phases([phase])
-            // After the kick, which writes them. Conditions set velocities along axes that no force moves: the order does not matter, `Adds`
-            // says so.
+            // After the kick, which writes them. Conditions set velocities along axes that no force moves:
+            // the order does not matter, `Adds` says so.
             .touches(Velocity::NAME, Mode::Adds)
             .reads::<Force>()
             .reads::<Mobility>(),

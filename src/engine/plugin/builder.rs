@@ -21,7 +21,8 @@ use crate::schedule::{Shared, SharedValues, Stage, Step, System};
 use crate::shapes::{Shape, Surface};
 use crate::world::{BodyId, BodySet, Column, ColumnSet, PhaseId};
 
-/// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms, columns.
+/// A simulation under construction: bodies are placed, columns not yet spawned. Plugins add systems, terms,
+/// columns.
 pub struct SimBuilder<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) folder: &'s Path,
@@ -111,8 +112,8 @@ impl<'s> SimBuilder<'s> {
         &self.bodies[id.0]
     }
 
-    /// The bodies that the plugin being built is meant for: one body for a plugin of a body, else all bodies that do
-    /// not have a plugin of that name themselves.
+    /// The bodies that the plugin being built is meant for: one body for a plugin of a body, else all bodies
+    /// that do not have a plugin of that name themselves.
     pub fn scope(&self) -> &BodySet {
         &self.scope
     }
@@ -171,8 +172,8 @@ impl<'s> SimBuilder<'s> {
         });
     }
 
-    /// Lets these phases take sub-steps, as many as their limits ask for, in the step of all others. What acts between the two
-    /// must be frozen in the long step.
+    /// Lets these phases take sub-steps, as many as their limits ask for, in the step of all others. What
+    /// acts between the two must be frozen in the long step.
     pub fn sub_cycle(&mut self, phases: impl IntoIterator<Item = PhaseId>) {
         self.sub_cycled.extend(phases);
     }
@@ -189,7 +190,8 @@ impl<'s> SimBuilder<'s> {
         ));
     }
 
-    /// Gives a value that several systems share a place, where they find it by [`Resources::of`](crate::schedule::Resources::of).
+    /// Gives a value that several systems share a place, where they find it by
+    /// [`Resources::of`](crate::schedule::Resources::of).
     pub fn share<T: Send + 'static>(&mut self, value: T) -> Shared<T> {
         self.shared.add(value)
     }
@@ -204,8 +206,8 @@ impl<'s> SimBuilder<'s> {
         self.setup.push(Box::new(step));
     }
 
-    /// The rows that a selection means; `field` is its name among the parameters, for errors. The bodies keep the order of
-    /// their rows through the run: fluids among them are not sorted, which makes them slower.
+    /// The rows that a selection means; `field` is its name among the parameters, for errors. The bodies keep
+    /// the order of their rows through the run: fluids among them are not sorted, which makes them slower.
     pub fn select(&self, select: &Select, field: &str) -> Result<Selection, SetupError> {
         let selection = self.select_at_start(select, field)?;
         self.held.borrow_mut().extend(selection.parts.iter().map(|(body, _)| *body));
@@ -218,7 +220,8 @@ impl<'s> SimBuilder<'s> {
         selection::resolve(select, field, &self.bodies, self.scene.dimension, self.folder)
     }
 
-    /// The surface of a shape, which a tool has; `field` is the shape's name among the parameters, for errors.
+    /// The surface of a shape, which a tool has; `field` is the shape's name among the parameters, for
+    /// errors.
     pub fn surface(&self, shape: &Shape, field: &str) -> Result<Box<dyn Surface>, SetupError> {
         shape.surface(self.scene.dimension, self.folder, field).map_err(|error| {
             SetupError::parameter(error.path.clone(), error.message(), error.kind.help().unwrap_or_default())
@@ -226,8 +229,8 @@ impl<'s> SimBuilder<'s> {
     }
 
     /// Takes the motion of the selected particles along the given axes out of the hands of forces, so that a
-    /// condition can prescribe it: the name of that, or what it prescribes. Two conditions on one axis of one particle are an error unless both
-    /// say that they prescribe the same.
+    /// condition can prescribe it: the name of that, or what it prescribes. Two conditions on one axis of one
+    /// particle are an error unless both say that they prescribe the same.
     pub fn prescribe(
         &mut self,
         selection: &Selection,

@@ -12,7 +12,8 @@ pub enum SetupError {
     /// A parameter is out of its range, or asks for what is not there.
     #[error("{message}")]
     Parameter {
-        /// Path of the parameter within the item, such as `alpha` or `on.body`; empty for the item as a whole.
+        /// Path of the parameter within the item, such as `alpha` or `on.body`; empty for the item as a
+        /// whole.
         field: String,
         /// What was found.
         message: String,
@@ -35,7 +36,8 @@ impl SetupError {
         Self::parameter("", error.to_string(), "this is a fault of the program, not of the scene")
     }
 
-    /// The fault at a parameter of the formulation of one body: formulations are assembled for all of their bodies at once.
+    /// The fault at a parameter of the formulation of one body: formulations are assembled for all of their
+    /// bodies at once.
     pub fn of_formulation(self, id: BodyId) -> Self {
         let Self::Parameter { field, message, help } = self else { return self };
         let dot = if field.is_empty() { "" } else { "." };

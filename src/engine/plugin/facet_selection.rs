@@ -15,7 +15,8 @@ const EXACT: f64 = 1e-6;
 /// Steps of a ray on its way out of the box around a body.
 const STEPS: usize = 200;
 
-/// The facets of a body that a selection means: those of its `surface`, of its `face`, with their centres `within`.
+/// The facets of a body that a selection means: those of its `surface`, of its `face`, with their centres
+/// `within`.
 pub(crate) fn facets_of(
     select: &Select,
     id: BodyId,

@@ -1,5 +1,6 @@
-//! Contributions of plugins while a simulation is built: terms for the formulations of bodies, fields, recorders, rules of removal.
-//! Terms are assigned by body. A term or value that nobody has taken in the end is an error.
+//! Contributions of plugins while a simulation is built: terms for the formulations of bodies, fields,
+//! recorders, rules of removal. Terms are assigned by body. A term or value that nobody has taken in the end
+//! is an error.
 
 use std::any::{Any, TypeId, type_name};
 use std::cell::Cell;
@@ -132,12 +133,14 @@ impl HandedIn {
 }
 
 impl super::SimBuilder<'_> {
-    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type. One that nothing takes and nothing looks at is an error.
+    /// Hands a value to whatever part of the engine, or other plugin, takes values of its type. One that
+    /// nothing takes and nothing looks at is an error.
     pub fn extend<T: 'static>(&mut self, value: T) {
         self.handed.put(value, false);
     }
 
-    /// Leaves a value for whoever looks for one of its type, a later item of the same plugin for instance: it is no error if nobody does.
+    /// Leaves a value for whoever looks for one of its type, a later item of the same plugin for instance: it
+    /// is no error if nobody does.
     pub fn leave_note<T: 'static>(&mut self, value: T) {
         self.handed.put(value, true);
     }
@@ -152,8 +155,8 @@ impl super::SimBuilder<'_> {
         self.handed.all()
     }
 
-    /// Hands a value to the formulations of these bodies; `what` names it in errors: `a pair term`. A body whose formulation does not take it
-    /// is an error of the scene.
+    /// Hands a value to the formulations of these bodies; `what` names it in errors: `a pair term`. A body
+    /// whose formulation does not take it is an error of the scene.
     pub fn extend_bodies<T: Send + Sync + 'static>(&mut self, bodies: BodySet, what: &'static str, value: T) {
         self.handed.put_for(bodies, what, value);
     }

@@ -1,4 +1,5 @@
-//! The kind of bodies that a formulation moves, and the terms it accepts from plugins, conditions and contacts.
+//! The kind of bodies that a formulation moves, and the terms it accepts from plugins, conditions and
+//! contacts.
 
 /// What the bodies of a formulation are to the rest of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,9 +33,11 @@ pub enum Offer {
     PairTerms,
     /// Terms that fold into the pass of the internal force: hourglass control.
     FoldedTerms,
-    /// Stabilization by differences of second derivatives ([`HessianDifference`](crate::solids::HessianDifference)).
+    /// Stabilization by differences of second derivatives
+    /// ([`HessianDifference`](crate::solids::HessianDifference)).
     HessianDifferences,
-    /// Hourglass control along pairs, with the weights of the present places ([`PairControl`](crate::solids::PairControl)).
+    /// Hourglass control along pairs, with the weights of the present places
+    /// ([`PairControl`](crate::solids::PairControl)).
     PairControl,
     /// Mirror images across symmetry planes.
     MirrorImages,
@@ -42,9 +45,11 @@ pub enum Offer {
     Contact,
     /// Contact of a body with itself.
     SelfContact,
-    /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they stay spheres.
+    /// Particles in contact that are as large as their deformation gradient says: ellipsoids. Without it they
+    /// stay spheres.
     DeformedContact,
-    /// A deformation gradient that is a state of the particle, whose volume plugins may change by a column of the formulation.
+    /// A deformation gradient that is a state of the particle, whose volume plugins may change by a column of
+    /// the formulation.
     Dilatation,
     /// Held particles that end where a condition says, and carry but a share of their stress.
     Supports,

@@ -13,7 +13,8 @@ use crate::scene::{Problem, Vec3};
 use crate::shapes::{Aabb, Site};
 use crate::world::{BodyId, Column, ColumnSet, Damage, PhaseId};
 
-/// A plane side of a body whose particles are held along its normal, and free along another axis: they have been put onto it.
+/// A plane side of a body whose particles are held along its normal, and free along another axis: they have
+/// been put onto it.
 #[derive(Clone, Debug)]
 pub struct HeldSide {
     /// Unit normal out of the body.
@@ -25,7 +26,8 @@ pub struct HeldSide {
 }
 
 impl HeldSide {
-    /// What is said of a load or a contact that reaches the side across its normal, such as "`Pressure` on the body `b`".
+    /// What is said of a load or a contact that reaches the side across its normal, such as "`Pressure` on
+    /// the body `b`".
     pub fn reached_by(&self, what: &str) -> String {
         let (axis, at) = (["X", "Y", "Z"][self.plane.0], number(self.plane.1));
         format!(
@@ -62,7 +64,8 @@ pub struct BodyPlan {
     pub material: Material,
     /// Places and volumes of the particles, in row order.
     pub sites: Vec<Site>,
-    /// Shares of their stress that particles beside the edge of what is held carry, by their numbers; all others carry all of theirs.
+    /// Shares of their stress that particles beside the edge of what is held carry, by their numbers; all
+    /// others carry all of theirs.
     pub carried: Vec<(u32, f64)>,
     /// Held particles behind that edge, which no other one sees, by their numbers, ascending.
     pub hidden: Vec<u32>,

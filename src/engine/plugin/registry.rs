@@ -86,7 +86,8 @@ type ParseItem = fn(&Item) -> Result<(), Vec<Problem>>;
 type BuildPlugin = fn(&Item, &mut SimBuilder<'_>) -> Result<(), Vec<Problem>>;
 type ReadSupport = fn(&Item, &mut dyn FnMut(Support<'_>));
 
-/// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin crates.
+/// The names that a scene may use. The standard ones are those of [`Registry::standard`] and of the plugin
+/// crates.
 #[derive(Clone, Default)]
 pub struct Registry {
     materials: BTreeMap<&'static str, BuildMaterial>,
@@ -148,7 +149,8 @@ impl Registry {
         self.describe::<P>(EntryKind::Condition, P::NAME, P::REFERENCE)
     }
 
-    /// Registers what only another module of the engine knows how to build: it finds the builder again by [`Registry::builder`].
+    /// Registers what only another module of the engine knows how to build: it finds the builder again by
+    /// [`Registry::builder`].
     pub(crate) fn add_builder<T: schemars::JsonSchema + DeserializeOwned, B: Any + Send + Sync>(
         &mut self,
         kind: EntryKind,
@@ -176,7 +178,8 @@ impl Registry {
         self
     }
 
-    /// Gives every body that names one formulation another one, with the parameters that it has in the scene: to run scenes with another method.
+    /// Gives every body that names one formulation another one, with the parameters that it has in the scene:
+    /// to run scenes with another method.
     #[must_use]
     pub fn with_stand_in(mut self, named: &'static str, other: &'static str) -> Self {
         self.stand_ins.insert(named, other);
@@ -267,7 +270,8 @@ impl Registry {
             .map_or("", |(_, entry)| entry.reference)
     }
 
-    /// Shows what a condition holds; nothing if its parameters cannot be read, which is reported where it is built.
+    /// Shows what a condition holds; nothing if its parameters cannot be read, which is reported where it is
+    /// built.
     pub(crate) fn support(&self, item: &Item, mut look: impl FnMut(Support<'_>)) {
         if let Some(read) = self.supports.get(item.name()) {
             read(item, &mut look);

@@ -81,7 +81,8 @@ pub(super) fn resolve(
     Ok(Selection { parts })
 }
 
-/// From where to where a body extends, in words, and its particles, where these are elsewhere: the box of a combination of shapes may be larger than what is left of them.
+/// From where to where a body extends, in words, and its particles, where these are elsewhere: the box of a
+/// combination of shapes may be larger than what is left of them.
 fn extent(body: &BodyPlan, place: impl Fn(DVec3) -> String) -> String {
     let Aabb { min, max } = body.bounds;
     let positions = || body.sites.iter().map(|site| site.position);

@@ -10,8 +10,8 @@ pub struct Setup<'a> {
     pub world: &'a World,
     /// What systems share.
     pub resources: &'a mut Resources,
-    /// Bodies whose particles a selection holds by their rows (see [`SimBuilder::select`](super::SimBuilder::select)): their rows
-    /// keep their order.
+    /// Bodies whose particles a selection holds by their rows (see
+    /// [`SimBuilder::select`](super::SimBuilder::select)): their rows keep their order.
     pub held: &'a BodySet,
     /// Tells the user something; repeated at the end of the run.
     pub warnings: &'a mut Vec<String>,

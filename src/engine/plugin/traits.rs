@@ -21,7 +21,8 @@ pub struct Support<'a> {
     pub edge: Edge,
 }
 
-/// A plugin or a condition, named in scenes; its fields are its parameters, with units in their documentation.
+/// A plugin or a condition, named in scenes; its fields are its parameters, with units in their
+/// documentation.
 ///
 /// Derive `Deserialize` with `deny_unknown_fields`, and `JsonSchema`.
 pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
@@ -30,11 +31,12 @@ pub trait Plugin: DeserializeOwned + JsonSchema + 'static {
     /// Source of the method, printed in the run log.
     const REFERENCE: &'static str;
 
-    /// Whether it puts laws about those of materials. Such plugins are built before the others, which look at the laws, wherever they
-    /// stand in the scene.
+    /// Whether it puts laws about those of materials. Such plugins are built before the others, which look at
+    /// the laws, wherever they stand in the scene.
     const CHANGES_MATERIALS: bool = false;
 
-    /// What it holds: particles beside what is not held are put where the held part is to end, before anything looks at them.
+    /// What it holds: particles beside what is not held are put where the held part is to end, before
+    /// anything looks at them.
     fn support(&self) -> Option<Support<'_>> {
         None
     }
@@ -51,11 +53,12 @@ pub trait Formulation: DeserializeOwned + JsonSchema + 'static {
     const REFERENCE: &'static str;
     /// What its bodies are to the rest of a scene.
     const KIND: BodyKind;
-    /// What it takes for its bodies from plugins, conditions and contacts. All else that is asked of them is an error of the scene.
+    /// What it takes for its bodies from plugins, conditions and contacts. All else that is asked of them is
+    /// an error of the scene.
     const OFFERS: &'static [Offer];
 
-    /// Memory of a particle in columns, neighbours and packed rows while a run starts, B: more particles than fit are an error of the scene. The default is
-    /// that of a total-Lagrangian body in three dimensions.
+    /// Memory of a particle in columns, neighbours and packed rows while a run starts, B: more particles than
+    /// fit are an error of the scene. The default is that of a total-Lagrangian body in three dimensions.
     const BYTES_PER_PARTICLE: usize = 1600;
 
     /// Mean support radius of the particles of a body, m; none where these have no neighbours of their own.

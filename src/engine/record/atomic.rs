@@ -1,8 +1,8 @@
 //! Files that appear whole or not at all.
 //!
-//! The content goes to a temporary file in the same folder (a rename is atomic within one file system only), is
-//! forced to the disk, and then takes its name. A run killed at any moment leaves the earlier file or the new one,
-//! and at worst a stray `.<name>.*.tmp` beside it.
+//! The content goes to a temporary file in the same folder (a rename is atomic within one file system only),
+//! is forced to the disk, and then takes its name. A run killed at any moment leaves the earlier file or the
+//! new one, and at worst a stray `.<name>.*.tmp` beside it.
 
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -104,8 +104,8 @@ impl WriteError {
 
 /// Writes what `content` produces to `path`, whole or not at all.
 ///
-/// Of several ranks the first one alone writes. The writer handed to `content` is buffered. On any error the file that was at `path` is untouched and the
-/// temporary file is gone.
+/// Of several ranks the first one alone writes. The writer handed to `content` is buffered. On any error the
+/// file that was at `path` is untouched and the temporary file is gone.
 pub fn write_atomically(
     path: &Path,
     existing: Existing,

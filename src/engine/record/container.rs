@@ -11,9 +11,9 @@
 //! | header | postcard: program version, then for each section name, type name, element size, count, chunks, checksum |
 //! | rest   | the chunks of all sections in order, LZ4 blocks of 4 MiB of raw data each, the last one shorter |
 //!
-//! Chunks are compressed independently and in parallel; their bounds depend on the data alone, so the bytes are the
-//! same for any number of threads. Checksums are of the stored bytes: no damaged byte reaches the decompressor, and
-//! every size is held against the length of the file before anything is allocated for it.
+//! Chunks are compressed independently and in parallel; their bounds depend on the data alone, so the bytes
+//! are the same for any number of threads. Checksums are of the stored bytes: no damaged byte reaches the
+//! decompressor, and every size is held against the length of the file before anything is allocated for it.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -89,8 +89,8 @@ impl<'a> ContainerWriter<'a> {
         Self::default()
     }
 
-    /// Adds the section `name`: elements of `element_size` bytes of the type `type_name`, which is free text that a
-    /// reader compares.
+    /// Adds the section `name`: elements of `element_size` bytes of the type `type_name`, which is free text
+    /// that a reader compares.
     pub fn section(
         &mut self,
         name: &str,

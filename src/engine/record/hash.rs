@@ -17,8 +17,8 @@ impl fmt::Display for StateHash {
 
 /// Digests named sections in the order in which they come.
 ///
-/// Names and lengths are digested with the bytes, so that values which move from one section to the next, or swap
-/// names, change the result. Numbers are compared as bits: `0.0` and `-0.0` differ.
+/// Names and lengths are digested with the bytes, so that values which move from one section to the next, or
+/// swap names, change the result. Numbers are compared as bits: `0.0` and `-0.0` differ.
 #[derive(Clone, Default)]
 pub struct StateHasher {
     digest: Xxh3,

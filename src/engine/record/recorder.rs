@@ -131,15 +131,17 @@ pub enum RecordError {
 
 /// Shows or keeps a run. A plugin adds one with [`SimBuilder::add_recorder`].
 ///
-/// The calls come in this order: `start`, then frames and samples in the order of time (those of one time in any
-/// order), `flush` between them, `finish`. Without an output folder, as in a check, a recorder is never started.
+/// The calls come in this order: `start`, then frames and samples in the order of time (those of one time in
+/// any order), `flush` between them, `finish`. Without an output folder, as in a check, a recorder is never
+/// started.
 pub trait Recorder: Send {
     /// Names of the fields that it needs in frames, beside those that the scene asks for in `record.fields`.
     fn fields(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Names of the files in the output folder that it will write, so that nothing is overwritten by accident.
+    /// Names of the files in the output folder that it will write, so that nothing is overwritten by
+    /// accident.
     fn files(&self, scene_name: &str) -> Vec<String> {
         let _ = scene_name;
         Vec::new()
@@ -163,8 +165,8 @@ pub trait Recorder: Send {
     /// What it writes cannot be written.
     fn samples(&mut self, step: u64, time: f64, samples: &[Sample<'_>]) -> Result<(), RecordError>;
 
-    /// Makes what it has written so far readable even if the program is killed now; called after every frame and
-    /// before every checkpoint.
+    /// Makes what it has written so far readable even if the program is killed now; called after every frame
+    /// and before every checkpoint.
     ///
     /// # Errors
     /// What it writes cannot be written.

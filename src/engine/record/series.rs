@@ -1,8 +1,8 @@
 //! Time series as CSV: output of probes and of the energy ledger, and reference data.
 //!
-//! A header `t[s],x[m],...` of names and units, then one row per record. Numbers are written with the fewest digits
-//! that read back to the same bits. Rows reach the file whole, so that a killed run leaves a file that is
-//! readable up to its last flush.
+//! A header `t[s],x[m],...` of names and units, then one row per record. Numbers are written with the fewest
+//! digits that read back to the same bits. Rows reach the file whole, so that a killed run leaves a file that
+//! is readable up to its last flush.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -101,7 +101,8 @@ pub struct SeriesWriter {
 }
 
 impl SeriesWriter {
-    /// Begins the file `path` with a column `t[s]` and then `columns`, each a name and a unit (empty for none).
+    /// Begins the file `path` with a column `t[s]` and then `columns`, each a name and a unit (empty for
+    /// none).
     pub fn create(path: &Path, columns: &[(&str, &str)], existing: Existing) -> Result<Self, SeriesError> {
         let header = header(path, columns)?;
         let mut options = OpenOptions::new();
@@ -118,8 +119,8 @@ impl SeriesWriter {
         Ok(writer)
     }
 
-    /// Continues the file `path` of an interrupted run from its first `position` bytes, as [`Self::sync`] gave them
-    /// at the checkpoint; what follows is cut off.
+    /// Continues the file `path` of an interrupted run from its first `position` bytes, as [`Self::sync`]
+    /// gave them at the checkpoint; what follows is cut off.
     pub fn resume(path: &Path, columns: &[(&str, &str)], position: u64) -> Result<Self, SeriesError> {
         let expected = header(path, columns)?;
         let open = || Self::reopen(path, &expected, position);
@@ -163,7 +164,8 @@ impl SeriesWriter {
         if let Some(file) = &mut self.file
             && let Err(source) = file.write_all(pending.as_bytes())
         {
-            // A full disk takes part of a row: the file is cut back to what it had, as far as that is possible.
+            // A full disk takes part of a row: the file is cut back to what it had, as far as that is
+            // possible.
             let back = SeekFrom::Start(self.position);
             let _ = file.set_len(self.position).and_then(|()| file.seek(back));
             return Err(WriteError::new(&self.path, source).into());

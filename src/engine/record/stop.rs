@@ -1,7 +1,7 @@
 //! Ends a run when a probe passes a value: `time: (stop_when: [(probe: "front", above: 0.5)])`.
 //!
-//! Values are compared at the samples of the probe. A condition is met at the first sample beyond the value after one that is not:
-//! a run that is resumed there goes on to the next passage.
+//! Values are compared at the samples of the probe. A condition is met at the first sample beyond the value
+//! after one that is not: a run that is resumed there goes on to the next passage.
 
 use std::sync::Arc;
 
@@ -124,7 +124,8 @@ impl Run for Stop {
     }
 }
 
-/// Adds the system where the scene has conditions; before the one that writes, so that a run ends with a frame and a sample.
+/// Adds the system where the scene has conditions; before the one that writes, so that a run ends with a
+/// frame and a sample.
 ///
 /// # Errors
 /// A condition names no column of its probe.

@@ -1,12 +1,13 @@
 //! ParaView files: one `.vtu` per frame and body, and a `.pvd` that lists them with their times.
 //!
-//! An own writer, because the need is small and the library is not well maintained: the last stable
-//! release of vtkio (0.6.3) depends on outdated parsers, its successor is a release candidate, it requires an owned
-//! data model, and it does not write `.pvd`. Here columns go from memory to the file unchanged: each
-//! particle is a vertex cell, the XML head states the offset of each array, and the arrays follow as raw
-//! little-endian bytes ("appended, raw"), each after its length as 64-bit number.
+//! An own writer, because the need is small and the library is not well maintained: the last stable release
+//! of vtkio (0.6.3) depends on outdated parsers, its successor is a release candidate, it requires an owned
+//! data model, and it does not write `.pvd`. Here columns go from memory to the file unchanged: each particle
+//! is a vertex cell, the XML head states the offset of each array, and the arrays follow as raw little-endian
+//! bytes ("appended, raw"), each after its length as 64-bit number.
 //!
-//! Format: VTK file formats, section "XML file formats", versions 1.0 (`UnstructuredGrid`) and 0.1 (`Collection`).
+//! Format: VTK file formats, section "XML file formats", versions 1.0 (`UnstructuredGrid`) and 0.1
+//! (`Collection`).
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -113,7 +114,8 @@ impl<'a> PointArray<'a> {
     }
 }
 
-/// Writes the points \[m\] and what is known at them at the time `time` \[s\] as a `.vtu` file, whole or not at all.
+/// Writes the points \[m\] and what is known at them at the time `time` \[s\] as a `.vtu` file, whole or not
+/// at all.
 pub fn write_vtu(
     path: &Path,
     time: f64,

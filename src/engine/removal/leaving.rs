@@ -14,8 +14,9 @@ impl Shareable for Leaving {
     const ROWS: &'static [&'static str] = &[LEAVING];
 }
 
-/// Velocities at mid-step of the particles of a phase that are taken out in this step, m/s. The last kick of their motion is one of forces that are
-/// only computed after they have gone, and the system that computes such forces books what that kick would have taken from them: a formulation that puts this into its phase,
+/// Velocities at mid-step of the particles of a phase that are taken out in this step, m/s. The last kick of
+/// their motion is one of forces that are only computed after they have gone, and the system that computes
+/// such forces books what that kick would have taken from them: a formulation that puts this into its phase,
 /// and contact.
 #[derive(Debug, Default)]
 pub(crate) struct Leaving(Vec<(u32, DVec3)>);

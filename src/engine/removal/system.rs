@@ -1,8 +1,8 @@
 //! The one system that removes particles from a run.
 //!
-//! A removed particle keeps its row and its position: [`Removed`] is set, its velocity, force and mobility are zero, mass and volume stay
-//! for the energy balance. Formulations, contacts and conditions leave such rows out. Its kinetic energy
-//! goes to the account `removed`, and so does the energy of its bonds and
+//! A removed particle keeps its row and its position: [`Removed`] is set, its velocity, force and mobility
+//! are zero, mass and volume stay for the energy balance. Formulations, contacts and conditions leave such
+//! rows out. Its kinetic energy goes to the account `removed`, and so does the energy of its bonds and
 //! contacts, which formulation and contact book.
 
 use glam::DVec3;
@@ -18,15 +18,16 @@ use crate::scene::Outside;
 use crate::schedule::{Access, AccountKind, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, Force, Mass, Mobility, PhaseView, Position, Removed, Velocity, sum_by_row};
 
-/// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of neighbours are
-/// made `.after(REMOVAL)`.
+/// Label of the system of stage [`Stage::Neighbors`] that removes particles. It is always there: lists of
+/// neighbours are made `.after(REMOVAL)`.
 pub const REMOVAL: &str = "removal";
 
 /// Account of the energy that leaves with removed particles.
 pub const REMOVED_ENERGY: &str = "removed";
 
 impl SimBuilder<'_> {
-    /// Adds a rule that removes particles, looked at in every step after the drift and before lists and forces.
+    /// Adds a rule that removes particles, looked at in every step after the drift and before lists and
+    /// forces.
     pub fn add_removal_rule(&mut self, rule: impl RemovalRule) {
         self.extend::<Box<dyn RemovalRule>>(Box::new(rule));
     }
@@ -113,13 +114,14 @@ fn remove(step: &mut Step<'_>, body: BodyId, rows: &[u32]) -> Result<(), StepErr
         if let Some(leaving) = leaving.as_mut().filter(|_| due) {
             rows.iter().for_each(|&row| leaving.push(row, velocity[row as usize].0));
         }
-        // The last kick is that of forces which are only made after they have gone. The system that computes them books what it would take from the motion, if they
-        // ask who leaves.
+        // The last kick is that of forces which are only made after they have gone. The system that computes
+        // them books what it would take from the motion, if they ask who leaves.
         let kick_takes = leaving.is_none();
         let half_step = 0.5 * step.clock.dt;
         sum_by_row(own.len(), rows.len(), &|k| rows[k] as usize - own.start, &|k| {
             let row = rows[k] as usize;
-            // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies that take sub-steps are there.
+            // The velocity is that of mid-step, the account of kinetic energy is taken at its end; bodies
+            // that take sub-steps are there.
             let v = velocity[row].0;
             let kick = if due { half_step * (force[row].0 * mobility[row].0) } else { DVec3::ZERO };
             let power = if kick_takes { 2.0 * v.dot(kick) } else { 0.0 };

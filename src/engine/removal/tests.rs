@@ -167,7 +167,8 @@ fn a_rigid_body_leaves_as_a_whole_with_its_energy() {
             sim.ledger().relative_error(),
         )
     };
-    // Half of it is outside after 0.03 s, all of it after 0.05 s: with m (v^2 + (g t)^2) / 2 + I w^2 / 2 and a mass of 1.6 kg.
+    // Half of it is outside after 0.03 s, all of it after 0.05 s: with m (v^2 + (g t)^2) / 2 + I w^2 / 2 and
+    // a mass of 1.6 kg.
     let (gone, removed, kinetic, error) = at(0.035);
     assert!(gone == 0 && removed == 0.0 && error.abs() < 1e-6, "{gone} {removed} {error}");
     assert!(kinetic > 3.2, "{kinetic}");

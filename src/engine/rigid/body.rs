@@ -180,7 +180,8 @@ impl Shareable for RigidBodies {
     const ROWS: &'static [&'static str] = &[RIGID_BODIES];
 }
 
-/// The rigid bodies of a simulation, in scene order: a resource of the systems that move them and those that push them.
+/// The rigid bodies of a simulation, in scene order: a resource of the systems that move them and those that
+/// push them.
 #[derive(Default)]
 pub struct RigidBodies(pub(super) Vec<RigidBody>);
 

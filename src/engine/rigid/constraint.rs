@@ -9,8 +9,8 @@ use crate::world::BodyId;
 
 /// A velocity of the centre of a rigid body that a condition prescribes.
 pub trait Drive: Send + Sync {
-    /// Velocity, m/s, at mid-step or at the end of the step; only the axes of the drive count. `center` is where the
-    /// centre is, `reference` where it was at the start.
+    /// Velocity, m/s, at mid-step or at the end of the step; only the axes of the drive count. `center` is
+    /// where the centre is, `reference` where it was at the start.
     fn velocity(
         &self,
         end_of_step: bool,
@@ -33,7 +33,8 @@ pub struct DrivenBody {
     pub drive: Box<dyn Drive>,
 }
 
-/// A symmetry plane through a rigid body, which must not leave its place along the axis: only what touches it on one side pushes it.
+/// A symmetry plane through a rigid body, which must not leave its place along the axis: only what touches it
+/// on one side pushes it.
 pub struct HalvedBody {
     /// Body.
     pub body: BodyId,

@@ -1,6 +1,7 @@
 //! The faces of a surface that a particle beside a corner or an edge is equally near to.
 //!
-//! Which of them the nearest point of the surface belongs to, round-off decides. A body that took that one alone had points on one side of a corner or on the other, and a block that landed flat on a floor began to
+//! Which of them the nearest point of the surface belongs to, round-off decides. A body that took that one
+//! alone had points on one side of a corner or on the other, and a block that landed flat on a floor began to
 //! rock; of a plate of one layer each particle had a point above or below.
 
 use glam::{DQuat, DVec3};
@@ -16,7 +17,8 @@ const ASIDE: f64 = 1e-3;
 /// Finds the faces near particles.
 pub(super) struct NearestFaces<'a> {
     surface: &'a dyn Surface,
-    /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a corner are alike.
+    /// Ways to places beside a particle, each of which is nearest to one face: in none of them two faces of a
+    /// corner are alike.
     beside: Vec<DVec3>,
 }
 

@@ -17,14 +17,14 @@ use crate::scene::{Contact, Dimension, Vec3};
 use crate::shapes::{ByDistance, Shape, Surface};
 use crate::world::{BodyId, BodySet, ColumnSet, Mass, Mobility, Position, Velocity};
 
-/// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact surface of its
-/// shape. It moves freely, except along the axes that `Fix`, `Velocity` or `Displacement` hold or drive; these conditions must
-/// select the whole body.
+/// Rigid body: it moves as a whole, with mass and inertia of its shape, and touches others with the exact
+/// surface of its shape. It moves freely, except along the axes that `Fix`, `Velocity` or `Displacement` hold
+/// or drive; these conditions must select the whole body.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rigid {
-    /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation, along one axis or more: what
-    /// is to roll then needs `Free`.
+    /// How it may turn. Default: freely, but not at all if a condition holds or drives its translation, along
+    /// one axis or more: what is to roll then needs `Free`.
     pub rotation: Option<Rotation>,
     /// Angular velocity at the start, about its centre \[rad/s\].
     pub spin: Vec3,
@@ -84,7 +84,8 @@ impl Formulation for Rigid {
     }
 }
 
-/// Warns of a body that cannot roll because a condition holds or drives it along some of its axes, and nothing is said of its rotation.
+/// Warns of a body that cannot roll because a condition holds or drives it along some of its axes, and
+/// nothing is said of its rotation.
 fn warn_of_held_rotation(id: BodyId, constraint: &Constraint, sim: &mut SimBuilder<'_>) {
     let free = constraint.free_axes();
     let moves = (0..sim.dimension().count()).any(|axis| free[axis] > 0.0);

@@ -47,8 +47,9 @@ impl RigidNode {
         }
     }
 
-    /// Whether the surface there may touch one of that outward normal, in the reference configuration: a face does not touch what stands across it. Where the corner of another body passes a
-    /// point of a face, the nearest surface of that body is for a moment the side beside the corner.
+    /// Whether the surface there may touch one of that outward normal, in the reference configuration: a face
+    /// does not touch what stands across it. Where the corner of another body passes a point of a face, the
+    /// nearest surface of that body is for a moment the side beside the corner.
     pub fn faces(&self, normal: DVec3) -> bool {
         self.normal == DVec3::ZERO || self.normal.dot(normal) < ACROSS
     }
@@ -67,8 +68,9 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// The centre of a sphere or disc. Of other shapes circles where the outline is round, and elsewhere points on sharp edges and corners, and the outermost particles,
-    /// moved to the surface, beside corners to all their faces.
+    /// The centre of a sphere or disc. Of other shapes circles where the outline is round, and elsewhere
+    /// points on sharp edges and corners, and the outermost particles, moved to the surface, beside corners
+    /// to all their faces.
     pub(super) fn new(
         shape: &Shape,
         surface: &dyn Surface,
@@ -118,7 +120,8 @@ impl Nodes {
         }
     }
 
-    /// Whether a place on the surface, in the reference configuration, is on the round outline: there the body touches with its own circles.
+    /// Whether a place on the surface, in the reference configuration, is on the round outline: there the
+    /// body touches with its own circles.
     pub fn is_round(&self, x: DVec3) -> bool {
         self.outline.is_some_and(|outline| outline.holds(x))
     }
@@ -129,8 +132,8 @@ impl Nodes {
     }
 }
 
-/// The ends of edges and points between them. Of points in one cell of half a spacing the first is kept, so that the many short edges
-/// of a fine mesh make no more of them than a coarse one has; ends come first.
+/// The ends of edges and points between them. Of points in one cell of half a spacing the first is kept, so
+/// that the many short edges of a fine mesh make no more of them than a coarse one has; ends come first.
 fn along(edges: &[[DVec3; 2]], spacing: f64) -> Vec<DVec3> {
     let ends = edges.iter().flatten().copied();
     let between = edges.iter().flat_map(|&[a, b]| {

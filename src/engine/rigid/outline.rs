@@ -1,6 +1,7 @@
 //! Round outlines: of a disc, ring, ball or shell a sphere, of a cylinder or tube its side.
 //!
-//! A body that rolls must not roll over corners. Where its outline is round it touches with circles, whose lowest point is known exactly, in the place of points on it.
+//! A body that rolls must not roll over corners. Where its outline is round it touches with circles, whose
+//! lowest point is known exactly, in the place of points on it.
 
 use glam::{DQuat, DVec3};
 
@@ -8,7 +9,8 @@ use crate::shapes::Shape;
 
 /// Distance from an outline within which a point is on it, over its radius.
 const ON_IT: f64 = 1e-6;
-/// Sine of the angle between a plane and the plane of a rim below which the rim lies flat: no point of it is the lowest.
+/// Sine of the angle between a plane and the plane of a rim below which the rim lies flat: no point of it is
+/// the lowest.
 const FLAT: f64 = 1e-4;
 
 /// The round surface that bounds a body towards the outside.
@@ -80,7 +82,8 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// From the centre to the point that is deepest behind a plane of that outward normal; none where the rim lies flat on it.
+    /// From the centre to the point that is deepest behind a plane of that outward normal; none where the rim
+    /// lies flat on it.
     pub fn lowest(&self, normal: DVec3) -> Option<DVec3> {
         let across = normal - self.axis * normal.dot(self.axis);
         let length = across.length();

@@ -71,8 +71,8 @@ impl RigidBody {
         self.refresh();
     }
 
-    /// Pushes with a force and a torque, N and N m, for half a step, s, at its end, and changes those of the state. Returns the gain of
-    /// kinetic energy and the work that constraints supply, J.
+    /// Pushes with a force and a torque, N and N m, for half a step, s, at its end, and changes those of the
+    /// state. Returns the gain of kinetic energy and the work that constraints supply, J.
     pub(crate) fn correct(&mut self, push: [DVec3; 2], change: [DVec3; 2], half: f64) -> (f64, f64) {
         let before = (self.kinetic(), self.state.force, self.state.torque);
         [self.state.force, self.state.torque] = push;
@@ -134,7 +134,8 @@ impl RigidBody {
         self.refresh();
     }
 
-    /// Takes the body out of the run in a step of length `dt`, s, and returns the kinetic energy with which it goes, J: after a last kick by the forces of the step before.
+    /// Takes the body out of the run in a step of length `dt`, s, and returns the kinetic energy with which
+    /// it goes, J: after a last kick by the forces of the step before.
     pub fn take_out(&mut self, dt: f64) -> f64 {
         self.kick(0.5 * dt);
         let kinetic = self.kinetic();
@@ -157,7 +158,8 @@ pub(crate) fn is_rigid(step: &Step<'_>, body: BodyId) -> bool {
     bodies.is_some_and(|bodies| bodies.iter().any(|rigid| rigid.id == body))
 }
 
-/// Takes a rigid body out of the run, and returns the kinetic energy with which it goes, J; none if the body is not rigid.
+/// Takes a rigid body out of the run, and returns the kinetic energy with which it goes, J; none if the body
+/// is not rigid.
 pub(crate) fn take_out(step: &Step<'_>, body: BodyId) -> Option<f64> {
     let mut bodies = step.resources.try_get_mut::<RigidBodies>()?;
     bodies.iter_mut().find(|rigid| rigid.id == body).map(|rigid| rigid.take_out(step.clock.dt))
@@ -208,7 +210,8 @@ fn place_particles(body: &RigidBody, step: &Step<'_>) -> Result<(), StepError> {
 
 /// Share of the spacing by which an acceleration may move a body in a step.
 const MOTION_FACTOR: f64 = 0.1;
-/// Share of a radian by which a body may turn in a step: the rate of its precession is off by a seventh of the square of that.
+/// Share of a radian by which a body may turn in a step: the rate of its precession is off by a seventh of
+/// the square of that.
 const TURN_FACTOR: f64 = 0.02;
 /// Steps of a body that nothing moves, in the whole run.
 const LEAST_STEPS: f64 = 100.0;
@@ -270,7 +273,8 @@ impl Run for RigidKick {
     }
 }
 
-/// Sums the forces on the particles and those of contact into the state of the body; returns the share of contact.
+/// Sums the forces on the particles and those of contact into the state of the body; returns the share of
+/// contact.
 fn sum_of_forces(body: &mut RigidBody, step: &Step<'_>) -> Result<Wrench, StepError> {
     let contact = body.take_contact();
     let (view, rows) = step.world.body_view(body.id);
@@ -287,8 +291,8 @@ fn sum_of_forces(body: &mut RigidBody, step: &Step<'_>) -> Result<Wrench, StepEr
     Ok(contact)
 }
 
-/// Spreads force and torque of contact over the particles as a rigid acceleration, so that sums over the particles are those
-/// of the body.
+/// Spreads force and torque of contact over the particles as a rigid acceleration, so that sums over the
+/// particles are those of the body.
 fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), StepError> {
     if contact == Wrench::default() {
         return Ok(());
@@ -310,8 +314,9 @@ fn share_out(body: &RigidBody, contact: Wrench, step: &Step<'_>) -> Result<(), S
     Ok(())
 }
 
-/// Proposes the limit of the own motion of a body, whose velocity changes by `driven`, m/s2, where it is prescribed. Its velocity is no limit: against what it may touch the contacts
-/// know it, and nothing else does.
+/// Proposes the limit of the own motion of a body, whose velocity changes by `driven`, m/s2, where it is
+/// prescribed. Its velocity is no limit: against what it may touch the contacts know it, and nothing else
+/// does.
 fn propose(body: &RigidBody, driven: DVec3, end: f64, step: &mut Step<'_>) {
     let spacing = step.world.body(body.id).spacing;
     let turning = body.state.angular_velocity.length();

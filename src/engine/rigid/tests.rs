@@ -99,7 +99,8 @@ fn a_body_that_friction_cannot_make_roll_is_warned_of() {
     assert!(!warned("", 0.0, "Z") && !warned("", 0.3, "X, Y, Z"));
 }
 
-/// A bar of 0.4 x 0.1 m, 20 kg a metre, that is filled coarsely, with this load; turned by how much after 0.2 s, and the balance error over the largest energy.
+/// A bar of 0.4 x 0.1 m, 20 kg a metre, that is filled coarsely, with this load; turned by how much after 0.2
+/// s, and the balance error over the largest energy.
 fn turned(condition: &str) -> (f64, f64) {
     let text = format!(
         r#"(dimension: Two, materials: {{"wood": NeoHookean(density: 500.0, young: 1e7, poisson: 0.3)}},
@@ -136,7 +137,8 @@ fn loads_act_on_the_surface_of_a_rigid_body_however_coarsely_it_is_filled() {
 
 #[test]
 fn a_top_without_torque_precesses_as_euler_says() {
-    // A disc with a radius of 0.1 m, 0.04 m high: its axis goes round the angular momentum in 2 pi I / L, with the moment of inertia I across the axis.
+    // A disc with a radius of 0.1 m, 0.04 m high: its axis goes round the angular momentum in 2 pi I / L,
+    // with the moment of inertia I across the axis.
     let (along, across) = (0.01 / 2.0, (3.0 * 0.01 + 0.0016) / 12.0);
     let momentum = (across * 1.0f64).hypot(along * 10.0);
     let period = 2.0 * std::f64::consts::PI * across / momentum;
@@ -149,7 +151,8 @@ fn a_top_without_torque_precesses_as_euler_says() {
     let (scene, source) = parse(Source::new("top.ron", text)).unwrap_or_else(|error| panic!("{error}"));
     let mut sim = build(&scene, &source, &Registry::standard()).unwrap_or_else(|error| panic!("{error}"));
     sim.run(|_| true).expect("a run");
-    // After ten periods the axis is where it began, along z: it goes round a cone of 2 atan(I_across / (10 I_along)).
+    // After ten periods the axis is where it began, along z: it goes round a cone of 2 atan(I_across / (10
+    // I_along)).
     let bodies = sim.resources().get::<RigidBodies>();
     let axis = bodies.iter().next().expect("a body").state.rotation * glam::DVec3::Z;
     let cone = (across / (10.0 * along)).atan().sin();

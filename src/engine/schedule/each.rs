@@ -69,8 +69,8 @@ impl<C: Column> RowColumn for &mut C {
     }
 }
 
-/// Column `C` as an accumulator: the row is a `&mut C` that the system only adds to, so that it needs no stated order
-/// among the others that add to the column.
+/// Column `C` as an accumulator: the row is a `&mut C` that the system only adds to, so that it needs no
+/// stated order among the others that add to the column.
 pub struct Adds<C>(PhantomData<C>);
 
 impl<C: Column> RowColumn for Adds<C> {

@@ -15,7 +15,8 @@ pub enum AccountKind {
     Dissipated,
 }
 
-/// Account of the dissipated energy that bodies hold as heat, with a negative sign: a part of plastic work and friction that is not lost.
+/// Account of the dissipated energy that bodies hold as heat, with a negative sign: a part of plastic work
+/// and friction that is not lost.
 pub const INTO_HEAT: &str = "into_heat";
 
 /// Name and kind of the account of a system.
@@ -43,7 +44,8 @@ pub struct Account {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccountId(usize);
 
-/// All accounts, J. The balance `stored - stored at the start - supplied + dissipated` is the error of the run.
+/// All accounts, J. The balance `stored - stored at the start - supplied + dissipated` is the error of the
+/// run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     accounts: Vec<Account>,
@@ -86,8 +88,8 @@ impl Ledger {
         self.system = system as u32;
     }
 
-    /// States the energy now held, J. It replaces what the same system has stated before; what several systems state
-    /// of one account and body is added up.
+    /// States the energy now held, J. It replaces what the same system has stated before; what several
+    /// systems state of one account and body is added up.
     pub fn set(&mut self, account: AccountId, body: BodyId, energy: f64) {
         let Account { per_body, stated, .. } = &mut self.accounts[account.0];
         let own = stated.iter().position(|(system, _)| *system == self.system).unwrap_or_else(|| {
@@ -137,7 +139,8 @@ impl Ledger {
         self.stored_at_start
     }
 
-    /// Opens the energy balance: what is stored now is the energy at the start, and nothing is supplied or dissipated yet.
+    /// Opens the energy balance: what is stored now is the energy at the start, and nothing is supplied or
+    /// dissipated yet.
     pub fn open(&mut self) {
         for account in self.accounts.iter_mut().filter(|account| account.kind != AccountKind::Stored) {
             account.per_body.fill(0.0);
@@ -167,7 +170,8 @@ impl Ledger {
         self.stored() - self.stored_at_start - self.supplied() + self.total_of(AccountKind::Dissipated)
     }
 
-    /// The balance error over the largest energy that any account has held, or over the energy below which all is round-off where that is larger.
+    /// The balance error over the largest energy that any account has held, or over the energy below which
+    /// all is round-off where that is larger.
     pub fn relative_error(&self) -> f64 {
         let scale = self.largest.max(self.resolution);
         if scale > 0.0 { self.balance_error() / scale } else { 0.0 }

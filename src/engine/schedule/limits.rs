@@ -42,9 +42,9 @@ const MEMORY: u32 = 500;
 
 /// The limits proposed for the next step. The smallest one is kept; of equal ones the first.
 ///
-/// The step falls at once, but it does not grow before the limit that made it small is `MEMORY` to twice `MEMORY` steps old. The
-/// leapfrog conserves energy over long times only with a constant step; one that follows every oscillation of the
-/// limits in its rhythm feeds the oscillation.
+/// The step falls at once, but it does not grow before the limit that made it small is `MEMORY` to twice
+/// `MEMORY` steps old. The leapfrog conserves energy over long times only with a constant step; one that
+/// follows every oscillation of the limits in its rhythm feeds the oscillation.
 ///
 /// The three limits are infinite where there is none, so that their texts stay in one place of memory.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -60,8 +60,8 @@ pub struct TimeStepLimits {
 }
 
 impl TimeStepLimits {
-    /// Proposes a limit, dt in s; the text of `by`, such as [`format_args!`] gives, is written only where the limit is the
-    /// smallest so far and smaller than those not long ago.
+    /// Proposes a limit, dt in s; the text of `by`, such as [`format_args!`] gives, is written only where the
+    /// limit is the smallest so far and smaller than those not long ago.
     pub fn propose(&mut self, dt: f64, by: impl Display) {
         if self.any && self.proposed.dt <= dt {
             return;
@@ -75,8 +75,8 @@ impl TimeStepLimits {
         }
     }
 
-    /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this step. What
-    /// has been proposed is taken.
+    /// The smallest limit of this step and of those not long ago; none if nothing has been proposed for this
+    /// step. What has been proposed is taken.
     pub fn take(&mut self) -> Option<&Limit> {
         if !std::mem::take(&mut self.any) {
             return None;

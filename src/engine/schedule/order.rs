@@ -1,5 +1,5 @@
-//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity. What writes a column runs before what adds to it,
-//! unless the opposite is stated.
+//! The order of the systems: stage by stage, sorted by `before` and `after`, checked for ambiguity. What
+//! writes a column runs before what adds to it, unless the opposite is stated.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -63,8 +63,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Orders the systems; those without stated order keep the order in which they were added. Those of sub-cycled phases run in
-    /// the sub-steps.
+    /// Orders the systems; those without stated order keep the order in which they were added. Those of
+    /// sub-cycled phases run in the sub-steps.
     pub fn new(systems: Vec<System>, sub_cycled: &[PhaseId]) -> Result<Self, ScheduleError> {
         let mut slots: Vec<Option<System>> = systems.into_iter().map(Some).collect();
         let mut ordered = Vec::with_capacity(slots.len());
@@ -112,7 +112,8 @@ impl Schedule {
         self.systems.iter().zip(&self.times).map(|(s, &time)| (s.label.as_str(), s.stage, time))
     }
 
-    /// Key and state of every system that has state; the key is the label, with a number where several have it.
+    /// Key and state of every system that has state; the key is the label, with a number where several have
+    /// it.
     pub fn save(&self, resources: &Resources) -> Vec<(String, Vec<u8>)> {
         let state = |k: usize| self.systems[k].work.save_with(resources);
         let states = (0..self.systems.len()).map(|k| (self.key(k), state(k)));
@@ -171,8 +172,8 @@ impl Schedule {
         text
     }
 
-    /// Of every system: the columns and packed rows that it reads near ([`Mode::ReadsNear`]) and that have been changed since they were last read so. Several machines would
-    /// exchange them before the system.
+    /// Of every system: the columns and packed rows that it reads near ([`Mode::ReadsNear`]) and that have
+    /// been changed since they were last read so. Several machines would exchange them before the system.
     fn exchanges(&self) -> Vec<Vec<&'static str>> {
         let mut found = vec![Vec::new(); self.systems.len()];
         let near = |access: &&Access| access.mode == Mode::ReadsNear;

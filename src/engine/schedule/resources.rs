@@ -1,4 +1,5 @@
-//! Shared data that is not particle state: neighbour lists, packed rows, tables. One value per type, or per type and phase.
+//! Shared data that is not particle state: neighbour lists, packed rows, tables. One value per type, or per
+//! type and phase.
 
 use std::any::{Any, TypeId, type_name};
 use std::cell::{Ref, RefCell, RefMut};
@@ -9,8 +10,9 @@ use std::sync::Arc;
 
 use crate::world::{Mode, PhaseId, Watch};
 
-/// A type of values that systems find by their type. What its rows hold has names, and a system that borrows such a value has declared access to one of these:
-/// reading for reading, writing or adding for writing. Otherwise the run ends with an error that says what to declare.
+/// A type of values that systems find by their type. What its rows hold has names, and a system that borrows
+/// such a value has declared access to one of these: reading for reading, writing or adding for writing.
+/// Otherwise the run ends with an error that says what to declare.
 pub trait Shareable: Send + 'static {
     /// Names of what it holds, as they stand in the access of systems.
     const ROWS: &'static [&'static str];
@@ -53,8 +55,9 @@ impl SharedValues {
     }
 }
 
-/// Values by their type, or by their type and a phase, and values by their place, which only those can borrow that have been given the place. What is not derived from the scene and the columns is kept
-/// by the system that owns it ([`Run::save_with`](super::Run::save_with)).
+/// Values by their type, or by their type and a phase, and values by their place, which only those can borrow
+/// that have been given the place. What is not derived from the scene and the columns is kept by the system
+/// that owns it ([`Run::save_with`](super::Run::save_with)).
 #[derive(Default)]
 pub struct Resources {
     by_type: BTreeMap<(TypeId, Option<PhaseId>), RefCell<Box<dyn Any + Send>>>,
@@ -137,6 +140,13 @@ impl Resources {
     /// The value of type `T` for writing, if there is one.
     pub fn try_get_mut<T: Shareable>(&self) -> Option<RefMut<'_, T>> {
         self.write(None)
+    }
+
+    /// The value of type `T`, if there is one, to be completed by what other ranks have of it. It is no
+    /// access of the system in which this happens: that writes nothing.
+    pub(crate) fn to_complete<T: Shareable>(&self) -> Option<RefMut<'_, T>> {
+        let cell = self.by_type.get(&(TypeId::of::<T>(), None))?;
+        RefMut::filter_map(cell.borrow_mut(), |value| value.downcast_mut()).ok()
     }
 
     /// The value of type `T` that a phase has, for reading, if there is one.

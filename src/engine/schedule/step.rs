@@ -33,7 +33,8 @@ impl Clock {
     }
 }
 
-/// What a system sees: the columns, what systems share, the clock, the ledger, the limits of the next time step.
+/// What a system sees: the columns, what systems share, the clock, the ledger, the limits of the next time
+/// step.
 pub struct Step<'s> {
     /// Columns and bodies.
     pub world: &'s World,
@@ -47,7 +48,8 @@ pub struct Step<'s> {
     pub limits: &'s mut TimeStepLimits,
     /// What the user should look at; repeated at the end of the run.
     pub warnings: &'s mut Vec<String>,
-    /// Which part of the step this is: a system that is [`by_body`](super::System::by_body) asks it for the bodies that are due.
+    /// Which part of the step this is: a system that is [`by_body`](super::System::by_body) asks it for the
+    /// bodies that are due.
     pub part: StepPart<'s>,
     /// Set it to end the run after this step; the text says why.
     pub stop: &'s mut Option<String>,
@@ -137,7 +139,8 @@ pub fn warn_anew(warnings: &mut Vec<String>, begin: &str, text: String) {
 }
 
 impl Step<'_> {
-    /// The error of a particle that has left the range of what makes sense; `particle` is its number in the body.
+    /// The error of a particle that has left the range of what makes sense; `particle` is its number in the
+    /// body.
     pub fn unstable(&self, what: &str, body: crate::world::BodyId, particle: usize) -> StepError {
         StepError::Unstable {
             what: what.to_owned(),

@@ -5,7 +5,8 @@ use crate::world::{BodyId, BodySet, PhaseId, World};
 /// When a system runs in a step in which some phases are sub-cycled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cadence {
-    /// Once: it touches phases that are not sub-cycled, or says so by [`System::in_long_steps`](super::System::in_long_steps).
+    /// Once: it touches phases that are not sub-cycled, or says so by
+    /// [`System::in_long_steps`](super::System::in_long_steps).
     Long,
     /// In every sub-step: all phases that it touches are sub-cycled.
     Short,
@@ -33,8 +34,9 @@ impl<'s> StepPart<'s> {
         Self { short: true, part, number, sub_cycled }
     }
 
-    /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of sub-cycled phases. What a system of
-    /// sub-cycled bodies does in every so many of its steps, it counts by this.
+    /// Number of steps done before this one by the clock of this part of the step: sub-steps by that of
+    /// sub-cycled phases. What a system of sub-cycled bodies does in every so many of its steps, it counts by
+    /// this.
     pub fn number(self) -> u64 {
         self.number
     }

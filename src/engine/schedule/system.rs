@@ -1,4 +1,5 @@
-//! A system: a part of the step with a stage, a label, declared access to columns, and a position in the order.
+//! A system: a part of the step with a stage, a label, declared access to columns, and a position in the
+//! order.
 
 use super::each::EachRow;
 use super::ledger::{AccountKind, EnergyAccount};
@@ -61,7 +62,8 @@ pub struct System {
 }
 
 impl System {
-    /// A system that sees the whole step. Declare the columns it touches with [`System::reads`] and its siblings.
+    /// A system that sees the whole step. Declare the columns it touches with [`System::reads`] and its
+    /// siblings.
     pub fn new(stage: Stage, label: impl Into<String>, work: impl Run + 'static) -> Self {
         Self {
             label: label.into(),
@@ -81,8 +83,8 @@ impl System {
         }
     }
 
-    /// A system that calls `f` for every particle of the bodies, in parallel, with the columns named by `Q`: a tuple
-    /// of `&Column`, `&mut Column` and `Adds<Column>`. The access is declared by the types.
+    /// A system that calls `f` for every particle of the bodies, in parallel, with the columns named by `Q`:
+    /// a tuple of `&Column`, `&mut Column` and `Adds<Column>`. The access is declared by the types.
     pub fn each<Q: EachRow>(
         stage: Stage,
         label: impl Into<String>,
@@ -103,9 +105,9 @@ impl System {
         system.by_body()
     }
 
-    /// [`System::each`] for a system whose energy has an account: `f` also returns the energy of the particle, J. Of an
-    /// account that is [`AccountKind::Stored`] it is what the particle holds now, of the other kinds what this step has
-    /// supplied or dissipated.
+    /// [`System::each`] for a system whose energy has an account: `f` also returns the energy of the
+    /// particle, J. Of an account that is [`AccountKind::Stored`] it is what the particle holds now, of the
+    /// other kinds what this step has supplied or dissipated.
     pub fn each_with_energy<Q: EachRow>(
         stage: Stage,
         label: impl Into<String>,
@@ -140,7 +142,8 @@ impl System {
         self.touches(T::NAME, Mode::Reads)
     }
 
-    /// Declares that the system reads column `T` in rows of neighbours: on several machines or beside a GPU these are to be exchanged first.
+    /// Declares that the system reads column `T` in rows of neighbours: on several machines or beside a GPU
+    /// these are to be exchanged first.
     pub fn reads_near<T: Column>(self) -> Self {
         self.touches(T::NAME, Mode::ReadsNear)
     }
@@ -161,20 +164,23 @@ impl System {
         self
     }
 
-    /// Declares that the system may read every column, in any row, as outputs do. It runs where nothing is written, or after what it reads by a stated order.
+    /// Declares that the system may read every column, in any row, as outputs do. It runs where nothing is
+    /// written, or after what it reads by a stated order.
     pub fn reads_all(mut self) -> Self {
         self.reads_all = true;
         self
     }
 
-    /// Declares access to what systems share beside columns of one phase ([`Shareable::ROWS`](super::Shareable::ROWS)), by the name of its rows: systems that
-    /// touch them share rows whatever their phases are.
+    /// Declares access to what systems share beside columns of one phase
+    /// ([`Shareable::ROWS`](super::Shareable::ROWS)), by the name of its rows: systems that touch them share
+    /// rows whatever their phases are.
     pub fn touches_packed(mut self, rows: &'static str, mode: Mode) -> Self {
         self.packed.push(Access { column: rows, mode });
         self
     }
 
-    /// Declares that of packed rows it reads those of this rank and what is near them alone, or asks for the rest itself: no others are exchanged for it.
+    /// Declares that of packed rows it reads those of this rank and what is near them alone, or asks for the
+    /// rest itself: no others are exchanged for it.
     pub fn reads_own_packed(mut self) -> Self {
         self.is_local = true;
         self
@@ -198,15 +204,16 @@ impl System {
         self
     }
 
-    /// Declares that only rows of these bodies are touched, in every column: systems of different bodies never conflict. A plugin that several bodies have, each
-    /// for itself, adds a system for each of them.
+    /// Declares that only rows of these bodies are touched, in every column: systems of different bodies
+    /// never conflict. A plugin that several bodies have, each for itself, adds a system for each of them.
     pub fn on_bodies(mut self, bodies: BodySet) -> Self {
         self.bodies = Some(bodies);
         self
     }
 
-    /// Declares that the system acts on the bodies that are due alone ([`StepPart::due`](super::StepPart::due)): where some of its
-    /// phases are sub-cycled and others are not, it runs in the long step and in the short ones.
+    /// Declares that the system acts on the bodies that are due alone
+    /// ([`StepPart::due`](super::StepPart::due)): where some of its phases are sub-cycled and others are not,
+    /// it runs in the long step and in the short ones.
     pub fn by_body(mut self) -> Self {
         self.by_body = true;
         self
@@ -230,7 +237,8 @@ impl System {
         self
     }
 
-    /// Runs after every system of its stage with that label, if there are any: a plugin need not be in the scene.
+    /// Runs after every system of its stage with that label, if there are any: a plugin need not be in the
+    /// scene.
     pub fn after_any(mut self, label: impl Into<String>) -> Self {
         self.after_any.push(label.into());
         self
@@ -294,7 +302,8 @@ impl System {
         self.access.iter().any(|access| access.column == column && access.mode == mode)
     }
 
-    /// Whether the system writes a column that the other one adds to, and there is no column for which it is the other way round.
+    /// Whether the system writes a column that the other one adds to, and there is no column for which it is
+    /// the other way round.
     pub(super) fn writes_what_is_added_by(&self, other: &System) -> bool {
         let writes = |writer: &System, adder: &System| {
             let mut added = adder.access.iter().filter(|access| access.mode == Mode::Adds);

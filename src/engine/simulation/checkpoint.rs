@@ -84,8 +84,8 @@ impl Checkpoint {
         Ok(Self { container, header, inputs, path: path.to_path_buf() })
     }
 
-    /// The scene that the run was started with. Files that it names are relative to where the scene lies now: seen from the
-    /// checkpoint as before, or else at its former place.
+    /// The scene that the run was started with. Files that it names are relative to where the scene lies now:
+    /// seen from the checkpoint as before, or else at its former place.
     pub fn source(&self) -> Source {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let moved = self.inputs.scene_in(folder).and_then(|path| std::path::absolute(path).ok());
@@ -108,7 +108,8 @@ impl Checkpoint {
         })
     }
 
-    /// A warning where the run was carried out on another instruction path, so that the last bits will differ.
+    /// A warning where the run was carried out on another instruction path, so that the last bits will
+    /// differ.
     pub fn path_warning(&self) -> Option<String> {
         let (then, now) = (self.header.instruction_path.as_str(), instruction_path());
         (!have_same_bits(then, now)).then(|| {
@@ -122,7 +123,8 @@ fn content(message: impl Into<String>) -> RestoreError {
 }
 
 impl Simulation {
-    /// Writes a checkpoint, in one piece or not at all; `source` is the scene that the simulation was built from.
+    /// Writes a checkpoint, in one piece or not at all; `source` is the scene that the simulation was built
+    /// from.
     pub fn save(&self, path: &Path, source: &Source) -> Result<(), SaveError> {
         // The state of the output speaks of bytes that must be there.
         if let Some(mut output) = self.output() {
@@ -161,7 +163,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes any.
+    /// Takes up the state of a checkpoint of the same scene, and continues the files of the run, if it writes
+    /// any.
     pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
         let CheckpointHeader { clock, ledger, next_limit, limits, sub_steps, warnings, systems, .. } =
             &checkpoint.header;

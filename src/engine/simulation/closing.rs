@@ -17,8 +17,8 @@ impl Simulation {
         self.output.map(|place| self.resources.of_mut(place))
     }
 
-    /// Writes a checkpoint into the output folder, in place of the last one; returns its file, or none if the run
-    /// writes nothing.
+    /// Writes a checkpoint into the output folder, in place of the last one; returns its file, or none if the
+    /// run writes nothing.
     ///
     /// # Errors
     /// It cannot be written.

@@ -36,7 +36,8 @@ impl InputFile {
 }
 
 impl Inputs {
-    /// The files of the scene as they are now. Those that cannot be read are left out: the scene cannot be built without them.
+    /// The files of the scene as they are now. Those that cannot be read are left out: the scene cannot be
+    /// built without them.
     pub fn of(source: &Source, parameters: impl IntoIterator<Item = (String, f64)>) -> Self {
         let file = |name: String| InputFile::read(&source.folder().join(&name), name);
         let files = source.files().into_iter().filter_map(file).collect();
@@ -52,7 +53,8 @@ impl Inputs {
         Self { scene_from_here: path.map(|path| path.display().to_string()), ..self.clone() }
     }
 
-    /// Where the scene lies, seen from a checkpoint in `folder`: there are projects that are moved as a whole.
+    /// Where the scene lies, seen from a checkpoint in `folder`: there are projects that are moved as a
+    /// whole.
     pub fn scene_in(&self, folder: &Path) -> Option<PathBuf> {
         let path = folder.join(self.scene_from_here.as_ref()?);
         path.is_file().then_some(path)

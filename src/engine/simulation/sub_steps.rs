@@ -1,7 +1,8 @@
 //! Sub-steps of stiff bodies within the long step of the rest.
 //!
-//! A long step of length dt takes k sub-steps. Forces between both sides are frozen in it; the systems that compute them apply the
-//! difference to the next value as an impulse at the end of the long step, equal and opposite on both sides.
+//! A long step of length dt takes k sub-steps. Forces between both sides are frozen in it; the systems that
+//! compute them apply the difference to the next value as an impulse at the end of the long step, equal and
+//! opposite on both sides.
 
 use serde::{Deserialize, Serialize};
 
@@ -50,7 +51,8 @@ impl SubSteps {
         }
     }
 
-    /// Largest length of the next long step that needs no more short ones than there may be, s, and what limits it.
+    /// Largest length of the next long step that needs no more short ones than there may be, s, and what
+    /// limits it.
     pub fn limit(&self) -> Option<(f64, &Limit)> {
         let next = self.state.next.as_ref()?;
         Some((f64::from(self.largest) * next.dt, next))
@@ -74,7 +76,8 @@ impl SubSteps {
 }
 
 impl Simulation {
-    /// How many sub-steps the last step has taken, and how many there have been since time 0; none where no body is sub-cycled.
+    /// How many sub-steps the last step has taken, and how many there have been since time 0; none where no
+    /// body is sub-cycled.
     pub fn sub_steps(&self) -> Option<(u32, u64)> {
         let SubStepState { last, total, .. } = self.sub_steps.state;
         (!self.sub_steps.phases.is_empty()).then_some((last, total))

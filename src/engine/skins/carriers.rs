@@ -1,10 +1,12 @@
 //! The particles that carry the vertices of a skin.
 //!
-//! Near symmetry planes mirror images of particles are carriers as well: an image stands for the particle that carries the image of the vertex. A skin
-//! that ends at a plane is then half of the skin of the whole body. At the ends of a period images a period away are carriers.
+//! Near symmetry planes mirror images of particles are carriers as well: an image stands for the particle
+//! that carries the image of the vertex. A skin that ends at a plane is then half of the skin of the whole
+//! body. At the ends of a period images a period away are carriers.
 //!
-//! Particles that have been put onto a held side stand for the cells that they had in their lattice: shares follow from where they were. By where they are now, the first layer beside the side would
-//! carry three quarters of a load that acts on its cell, and the next one five quarters.
+//! Particles that have been put onto a held side stand for the cells that they had in their lattice: shares
+//! follow from where they were. By where they are now, the first layer beside the side would carry three
+//! quarters of a load that acts on its cell, and the next one five quarters.
 
 use glam::DVec3;
 
@@ -12,7 +14,8 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Perio
 use crate::shapes::Aabb;
 use crate::symmetry::Map;
 
-/// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least error of the traction.
+/// Reach of a vertex over the spacing: of 1.6, 2, 2.1 and 2.41, at the usual support, the one with the least
+/// error of the traction.
 pub(super) const REACH: f64 = 2.1;
 /// By how much the reach grows for vertices with fewer than [`FEWEST`] particles.
 const WIDER: f64 = 1.25;
@@ -41,8 +44,9 @@ pub(super) struct Carrier {
     pub map: u32,
 }
 
-/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles. The first of the maps changes nothing. Particles up to `farther` times the reach become
-/// carriers too, without a share at the start.
+/// The carriers of all vertices, with where those of each begin. None if a vertex is far from all particles.
+/// The first of the maps changes nothing. Particles up to `farther` times the reach become carriers too,
+/// without a share at the start.
 pub(super) fn carriers(
     vertices: &[DVec3],
     cells: &CarrierCells<'_>,

@@ -89,7 +89,8 @@ impl SkinView<'_> {
         self.skin.reach.map(|reach| Scale::of(distances, reach))
     }
 
-    /// Where a particle or its image has a vertex that is at `arm` from it in the reference configuration, m; from the middle of its cell to the vertex, there and now, as the particle sees it, m.
+    /// Where a particle or its image has a vertex that is at `arm` from it in the reference configuration, m;
+    /// from the middle of its cell to the vertex, there and now, as the particle sees it, m.
     pub fn carried_by(&self, particle: u32, map: u32, arm: DVec3) -> (DVec3, [DVec3; 2]) {
         let row = self.first_row + particle as usize;
         let gradient = self.gradient[row].0;
@@ -103,7 +104,8 @@ impl SkinView<'_> {
         self.skin.maps[map as usize].vector(vector)
     }
 
-    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two dimensions).
+    /// How much a traction moves the layer of particles at a vertex along each axis, m2/kg (m/kg in two
+    /// dimensions).
     pub fn mobility(&self, vertex: u32) -> DVec3 {
         self.mean(vertex, DVec3::ZERO, |share, carrier, row| {
             self.mobility[row].0 * (share * self.skin.layer[carrier.particle as usize])
@@ -156,7 +158,8 @@ impl SkinView<'_> {
         self.skin.map(carrier).place(self.position[row].0 + self.gradient[row].0 * carrier.arm)
     }
 
-    /// Calls `each` with the number of every vertex of a list, where it is, m, and whether none of its carriers has been removed.
+    /// Calls `each` with the number of every vertex of a list, where it is, m, and whether none of its
+    /// carriers has been removed.
     pub fn places(&self, vertices: &[u32], each: &mut impl FnMut(usize, DVec3, bool)) {
         run_hot(VertexPlaces { view: *self, vertices, each });
     }

@@ -244,7 +244,8 @@ impl Patch {
         self.couples_on_particles.resize(self.particles.len(), DMat3::ZERO);
     }
 
-    /// Computes where the vertices are and how they move, and takes forces and heat off them. `dt` is the length of the step, s.
+    /// Computes where the vertices are and how they move, and takes forces and heat off them. `dt` is the
+    /// length of the step, s.
     pub fn update(&mut self, view: &SkinView<'_>, dt: f64, wanted: Wanted) {
         self.forces.fill(DVec3::ZERO);
         if std::mem::take(&mut self.has_couples) {
@@ -306,7 +307,8 @@ impl Patch {
         self.numbers[vertex as usize]
     }
 
-    /// The numbers of the vertices of a facet among those of the patch; segments have two, and the last one twice.
+    /// The numbers of the vertices of a facet among those of the patch; segments have two, and the last one
+    /// twice.
     #[inline]
     pub fn numbers(&self, facet: u32) -> [usize; 3] {
         let [a, b, c] = self.skin.facets.corners[facet as usize];
@@ -340,7 +342,8 @@ impl Patch {
         [a.place, b.place, c.place]
     }
 
-    /// Pushes the point of a facet with these shares of its vertices by a force, N, and a couple, N m, f (x) A of the reference configuration.
+    /// Pushes the point of a facet with these shares of its vertices by a force, N, and a couple, N m, f (x)
+    /// A of the reference configuration.
     pub fn push(&mut self, facet: u32, shares: [f64; 3], force: DVec3, couple: Option<&DMat3>) {
         let corners = self.skin.facets.corners[facet as usize];
         for (&vertex, share) in corners[..self.skin.facets.axes].iter().zip(shares) {
@@ -364,7 +367,8 @@ impl Patch {
         self.forces[self.numbers[vertex as usize] as usize] += force;
     }
 
-    /// The work of the mean of the forces on the vertices at the end of the last step, N, and of those at the end of this one, J; `last` becomes the latter.
+    /// The work of the mean of the forces on the vertices at the end of the last step, N, and of those at the
+    /// end of this one, J; `last` becomes the latter.
     pub fn work(&self, last: &mut Vec<DVec3>, dt: f64) -> f64 {
         if last.len() != self.forces.len() {
             last.clone_from(&self.forces);

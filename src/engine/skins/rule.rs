@@ -7,7 +7,8 @@ pub(crate) struct QuadratureRule {
 }
 
 impl QuadratureRule {
-    /// Points that are exact for squares of linear functions: two Gauss points of a segment, three points of a triangle.
+    /// Points that are exact for squares of linear functions: two Gauss points of a segment, three points of
+    /// a triangle.
     pub fn exact(axes: usize) -> Self {
         if axes == 2 {
             let low = 0.5 - 0.5 / 3f64.sqrt();
@@ -17,7 +18,8 @@ impl QuadratureRule {
         Self { points: vec![[near, far, far], [far, near, far], [far, far, near]] }
     }
 
-    /// The middles of `parts` equal parts of a segment, or of the triangles of `parts` rows into which a triangle is cut.
+    /// The middles of `parts` equal parts of a segment, or of the triangles of `parts` rows into which a
+    /// triangle is cut.
     pub fn fine(axes: usize, parts: usize) -> Self {
         let n = parts as f64;
         if axes == 2 {

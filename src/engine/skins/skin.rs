@@ -30,7 +30,8 @@ pub(crate) struct Skin {
     pub facets: Facets,
     /// Length (area) of every facet there, m (m2).
     pub measure: Vec<f64>,
-    /// Of every vertex, how much of it is at a corner: 1 at corners and the ends of facets beside them, else 0.
+    /// Of every vertex, how much of it is at a corner: 1 at corners and the ends of facets beside them,
+    /// else 0.
     pub corner: Vec<f64>,
     /// The facets at every vertex, and where those of each begin.
     pub(super) facet_starts: Vec<u32>,
@@ -39,19 +40,23 @@ pub(crate) struct Skin {
     pub(super) carriers: Vec<Carrier>,
     /// What carriers are images by; the first map changes nothing.
     pub(super) maps: Vec<Map>,
-    /// Largest of the particles' lengths (areas) in a layer over their masses, m2/kg (m/kg in two dimensions).
+    /// Largest of the particles' lengths (areas) in a layer over their masses, m2/kg (m/kg in two
+    /// dimensions).
     pub lightness: f64,
     /// Of every particle the length (area) for which it stands in a layer, m (m2).
     pub(super) layer: Vec<f64>,
-    /// Of every particle how far it stands from the middle of its cell in the reference configuration, m; empty if all stand there, or if shares are those of the start.
+    /// Of every particle how far it stands from the middle of its cell in the reference configuration, m;
+    /// empty if all stand there, or if shares are those of the start.
     pub(super) moved: Vec<DVec3>,
-    /// Reach of a vertex, m, if the shares of its carriers follow the deformation; none if they are those of the start.
+    /// Reach of a vertex, m, if the shares of its carriers follow the deformation; none if they are those of
+    /// the start.
     pub(super) reach: Option<f64>,
 }
 
 impl Skin {
-    /// The skin of a body, which ends where the body repeats itself, at symmetry planes that cut it and at the ends of a period that it fills; none where its surface is not
-    /// known, or where it is too thin to carry one.
+    /// The skin of a body, which ends where the body repeats itself, at symmetry planes that cut it and at
+    /// the ends of a period that it fills; none where its surface is not known, or where it is too thin to
+    /// carry one.
     pub fn of(
         body: &BodyPlan,
         shape: &Shape,
@@ -124,7 +129,8 @@ impl Skin {
         &self.carriers[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
-    /// From the middle of the cell of a particle to a vertex that is at `arm` from the particle, in the reference configuration, m.
+    /// From the middle of the cell of a particle to a vertex that is at `arm` from the particle, in the
+    /// reference configuration, m.
     #[inline]
     pub(super) fn arm_from_middle(&self, particle: u32, arm: DVec3) -> DVec3 {
         self.moved.get(particle as usize).map_or(arm, |moved| arm + *moved)

@@ -22,7 +22,8 @@ fn simulation(dimension: &str, shape: &str) -> Simulation {
     build(&scene, &source, &Registry::standard()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The skin of a body of a simulation, with a spacing of 0.01 m, whose particles stand where those of the scene do.
+/// The skin of a body of a simulation, with a spacing of 0.01 m, whose particles stand where those of the
+/// scene do.
 pub(crate) fn skin(sim: &Simulation, id: BodyId, dimension: &str, shape: &str) -> Skin {
     skin_of(sim, id, (dimension, shape), &[])
 }

@@ -8,7 +8,8 @@ use crate::schedule::{Access, Mode};
 use crate::world::{Column, Damage, DeformationGradient, PiolaStress};
 
 impl SolidBodies {
-    /// The pass writes deformation gradient, stress, state and packed rows, and reads the damage and who leaves.
+    /// The pass writes deformation gradient, stress, state and packed rows, and reads the damage and who
+    /// leaves.
     pub fn access(&self) -> Vec<Access> {
         let of = |mode| move |column| Access { column, mode };
         let always =

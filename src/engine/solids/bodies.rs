@@ -109,7 +109,8 @@ impl FoldedTerm for NoTerm {
 }
 
 impl SolidBodies {
-    /// Takes what plugins have handed in for the bodies of a formulation, which are of one phase, and gives these the columns that go with it.
+    /// Takes what plugins have handed in for the bodies of a formulation, which are of one phase, and gives
+    /// these the columns that go with it.
     ///
     /// # Errors
     /// A body whose material is not a solid, or one with too many terms.
@@ -228,8 +229,9 @@ impl SolidBodies {
         self.found.clear();
     }
 
-    /// Runs the pass over a body, block by block: `block` is called with the rows of the block, those
-    /// of `own`, which the formulation writes itself, and memory for a block, which holds what the last one has left.
+    /// Runs the pass over a body, block by block: `block` is called with the rows of the block, those of
+    /// `own`, which the formulation writes itself, and memory for a block, which holds what the last one has
+    /// left.
     pub fn run<O: Split>(
         &mut self,
         pass: BodyPass<'_>,
@@ -283,7 +285,8 @@ impl SolidBodies {
         Ok(())
     }
 
-    /// Proposes the stable step of each body, s, which is that of its undeformed state times what its stretches make of it.
+    /// Proposes the stable step of each body, s, which is that of its undeformed state times what its
+    /// stretches make of it.
     ///
     /// # Errors
     /// The phase has no deformation gradient.
@@ -293,8 +296,8 @@ impl SolidBodies {
         })
     }
 
-    /// The same for stable steps, s, with the weights of the present configuration: of the stretches, only the change of volume counts, as that of all
-    /// lengths alike.
+    /// The same for stable steps, s, with the weights of the present configuration: of the stretches, only
+    /// the change of volume counts, as that of all lengths alike.
     ///
     /// # Errors
     /// The phase has no deformation gradient.
@@ -307,8 +310,9 @@ impl SolidBodies {
         })
     }
 
-    /// The same for stable steps, s, in a reference configuration that follows the body, as if it were unstressed there. `reference` gives the deformation gradients
-    /// of the rows of a body in its reference configuration, where that is not the undeformed one.
+    /// The same for stable steps, s, in a reference configuration that follows the body, as if it were
+    /// unstressed there. `reference` gives the deformation gradients of the rows of a body in its reference
+    /// configuration, where that is not the undeformed one.
     ///
     /// # Errors
     /// The phase has no deformation gradient.

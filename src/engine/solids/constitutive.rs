@@ -116,7 +116,8 @@ impl<'a> SolidColumns<'a> {
         })
     }
 
-    /// Those of a phase whose pass is divided among ranks: each computes its own rows, and the formulation exchanges what it writes beside the columns.
+    /// Those of a phase whose pass is divided among ranks: each computes its own rows, and the formulation
+    /// exchanges what it writes beside the columns.
     ///
     /// # Errors
     /// The formulation has not declared deformation gradient and stress.
@@ -180,7 +181,8 @@ pub struct SolidRows<'a> {
 
 split_by_rows!(SolidRows { deformation, stress, state, memory, damping });
 
-/// What is known of a block of particles on its way through the pass. The formulation fills gradient, residual and volume.
+/// What is known of a block of particles on its way through the pass. The formulation fills gradient,
+/// residual and volume.
 pub struct SolidBlock {
     /// Row of its first particle in the phase.
     pub first: usize,
@@ -199,12 +201,14 @@ pub struct SolidBlock {
     share: [f64; BLOCK],
     /// Plastic work of the step per reference volume, J/m3.
     plastic_work: [f64; BLOCK],
-    /// Stress at the end of the last step, Pa; after the law, the one that enters the force where there is damping.
+    /// Stress at the end of the last step, Pa; after the law, the one that enters the force where there is
+    /// damping.
     stress: [DMat3; BLOCK],
 }
 
 thread_local! {
-    /// The block that this thread works on: it stays in the first-level cache, and no block is cleared or copied.
+    /// The block that this thread works on: it stays in the first-level cache, and no block is cleared or
+    /// copied.
     static SCRATCH: RefCell<SolidBlock> = const {
         RefCell::new(SolidBlock {
             first: 0,
@@ -222,7 +226,8 @@ thread_local! {
 }
 
 impl SolidBlock {
-    /// Leaves the share of what a particle holds and resists that it carries: all else would hold it against rotation.
+    /// Leaves the share of what a particle holds and resists that it carries: all else would hold it against
+    /// rotation.
     fn carry(&mut self, k: usize) {
         let share = self.share[k];
         self.energy[k] *= share;
@@ -257,9 +262,10 @@ pub struct Constitutive<'a> {
 }
 
 impl Constitutive<'_> {
-    /// Computes the stress of a block whose deformation gradient is there, and calls `make` with the stress that enters the force: that of the law with that of damping.
-    /// Each particle makes the share of its force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no deformation
-    /// gradient for want of neighbours; other shares beside what is held.
+    /// Computes the stress of a block whose deformation gradient is there, and calls `make` with the stress
+    /// that enters the force: that of the law with that of damping. Each particle makes the share of its
+    /// force, energy and heat that it is `carried` to: 1 as a rule; none for a particle that has no
+    /// deformation gradient for want of neighbours; other shares beside what is held.
     pub fn stress(
         &self,
         rows: &mut SolidRows<'_>,

@@ -6,16 +6,19 @@ use glam::{DMat3, DVec3};
 use crate::parallel::Lanes4;
 use crate::symmetry::Map;
 
-/// The corrected first Piola-Kirchhoff stress of a particle, A_i = P_i M_i^-1, and all that its neighbours need to know of it.
+/// The corrected first Piola-Kirchhoff stress of a particle, A_i = P_i M_i^-1, and all that its neighbours
+/// need to know of it.
 ///
-/// The force on particle i is `V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]`. The stress alone gives
-/// A_i = P_i M_i^-1 and k_i = 0: then this is sum_j V_i V_j (P_i g_ij - P_j g_ji) with g_ij = M_i^-1 w_ij X_ij.
+/// The force on particle i is `V_i sum_j V_j w_ij [(A_i + A_j) X_ij + (k_i + k_j) u_ij]`. The stress alone
+/// gives A_i = P_i M_i^-1 and k_i = 0: then this is sum_j V_i V_j (P_i g_ij - P_j g_ji) with g_ij = M_i^-1
+/// w_ij X_ij.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct CorrectedStress {
     /// The columns of A_i, and the bond stiffness k_i in the last lane of the first column.
     pub columns: [Lanes4; 3],
-    /// Affine traction q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane; for formulations that sum it.
+    /// Affine traction q_i = A_i X_i + k_i u_i, and the volume V_i in the last lane; for formulations that
+    /// sum it.
     pub traction: Lanes4,
 }
 
@@ -55,7 +58,8 @@ impl CorrectedStress {
         self.traction = Lanes4::new(self.traction.xyz() + traction, self.traction.0[3]);
     }
 
-    /// Adds to A_i, and to q_i, what no frame changes, of a particle at that place in the reference configuration.
+    /// Adds to A_i, and to q_i, what no frame changes, of a particle at that place in the reference
+    /// configuration.
     #[inline(always)]
     pub fn add(&mut self, stress: &DMat3, reference: DVec3) {
         CorrectedStressRows(std::slice::from_mut(self)).add_scaled(0, 1.0, stress);

@@ -1,14 +1,17 @@
-//! Stiffness-proportional damping of sub-cycled bodies, for modes too fast for a force that is frozen in a long step.
+//! Stiffness-proportional damping of sub-cycled bodies, for modes too fast for a force that is frozen in a
+//! long step.
 //!
-//! A body with sub-steps in the long step of a fluid feels a force that lags behind its motion by up to the long step. A mode of the body whose
-//! phase advances by theta = omega dt in it gains the share `kappa / omega^2 (1 - cos theta - theta/2 sin theta)` of its energy per step, where kappa is the
-//! stiffness of the adjacent fluid over its mass; for theta above one the fluid resolves no wave that could carry this away. Slow modes
-//! gain with theta^4. Stiffness-proportional damping removes energy with theta^2 and so bounds all of them. The stress is that of the strain extrapolated by a share c of the last
-//! sub-step,
+//! A body with sub-steps in the long step of a fluid feels a force that lags behind its motion by up to the
+//! long step. A mode of the body whose phase advances by theta = omega dt in it gains the share `kappa /
+//! omega^2 (1 - cos theta - theta/2 sin theta)` of its energy per step, where kappa is the stiffness of the
+//! adjacent fluid over its mass; for theta above one the fluid resolves no wave that could carry this away.
+//! Slow modes gain with theta^4. Stiffness-proportional damping removes energy with theta^2 and so bounds all
+//! of them. The stress is that of the strain extrapolated by a share c of the last sub-step,
 //!
 //! `S_v = c (lambda tr(dE) I + 2 mu dE)`, `P = F (S + S_v)`, `dE = E_n - E_n-1`,
 //!
-//! symmetric in S, so that angular momentum is conserved. A mode of the period T loses the share `c 4 pi^2 dt_short / T` of its energy per period.
+//! symmetric in S, so that angular momentum is conserved. A mode of the period T loses the share `c 4 pi^2
+//! dt_short / T` of its energy per period.
 
 use glam::DMat3;
 
@@ -46,7 +49,8 @@ split_by_rows!(DampingRows { strain, stress });
 /// A block of particles after its law.
 pub(super) struct Damping<'a> {
     pub elastic: &'a ElasticConstants,
-    /// Length of the step, s; zero before the first and where bonds are cut: the strain is then measured anew.
+    /// Length of the step, s; zero before the first and where bonds are cut: the strain is then measured
+    /// anew.
     pub dt: f64,
     /// Whether the step is a part of a long one.
     pub is_short: bool,
@@ -59,7 +63,8 @@ pub(super) struct Damping<'a> {
 }
 
 impl Damping<'_> {
-    /// Adds the damping to the stress; returns the work that it took in the step, by the trapezoidal rule of the two kicks, J.
+    /// Adds the damping to the stress; returns the work that it took in the step, by the trapezoidal rule of
+    /// the two kicks, J.
     pub fn add(&self, rows: DampingRows<'_>, stress: &mut [DMat3]) -> f64 {
         let ElasticConstants { lambda, shear, young, .. } = *self.elastic;
         let share = if self.is_short { SHARE } else { 0.0 };

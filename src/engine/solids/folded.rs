@@ -1,5 +1,5 @@
-//! Terms of plugins that are linear in X_ij or u_ij. They fold into the stress of a particle, `(A_i + A_j) X_ij + (k_i + k_j) u_ij` per pair with the weight of
-//! the formulation, and cost nothing per pair.
+//! Terms of plugins that are linear in X_ij or u_ij. They fold into the stress of a particle, `(A_i + A_j)
+//! X_ij + (k_i + k_j) u_ij` per pair with the weight of the formulation, and cost nothing per pair.
 
 use std::ops::Range;
 
@@ -11,9 +11,10 @@ use crate::parallel::split_by_rows;
 use crate::plugin::SimBuilder;
 use crate::world::BodySet;
 
-/// A block of particles of one body, after their stress is known and before the pass over pairs that computes the force.
-/// All slices have one length. Beside particles that have failed, displacement gradient and error are those of a fit to the neighbours that
-/// hold, and what a term adds does not act on those that have failed: no bond across a crack carries a force of a term.
+/// A block of particles of one body, after their stress is known and before the pass over pairs that computes
+/// the force. All slices have one length. Beside particles that have failed, displacement gradient and error
+/// are those of a fit to the neighbours that hold, and what a term adds does not act on those that have
+/// failed: no bond across a crack carries a force of a term.
 pub struct FoldedRows<'a> {
     /// Deformation gradient F_i.
     pub deformation: &'a [DMat3],
@@ -49,15 +50,17 @@ impl FoldedRows<'_> {
     }
 }
 
-/// What terms leave in columns: modulus and error of the mean deformation of the last step, for terms that become softer on the way, and the fit
-/// for pair terms. A slice is empty where no plugin has added its column.
+/// What terms leave in columns: modulus and error of the mean deformation of the last step, for terms that
+/// become softer on the way, and the fit for pair terms. A slice is empty where no plugin has added its
+/// column.
 #[derive(Default)]
 pub struct FoldedMemory<'a> {
     /// Modulus, Pa: column [`HourglassModulus`](crate::world::HourglassModulus); zero before the first step.
     pub modulus: &'a mut [f64],
     /// Error of the mean deformation: column [`HourglassResidual`](crate::world::HourglassResidual).
     pub residual: &'a mut [f64],
-    /// Deformation gradient that fits the neighbours that hold: column [`HourglassGradient`](crate::world::HourglassGradient).
+    /// Deformation gradient that fits the neighbours that hold: column
+    /// [`HourglassGradient`](crate::world::HourglassGradient).
     pub gradient: &'a mut [DMat3],
 }
 
@@ -85,17 +88,19 @@ pub struct FoldedEnergy {
     pub released: f64,
 }
 
-/// A force term of solids that is linear in the pair vectors: it adds to the corrected stress A_i and to the bond stiffness k_i of every particle, and the
-/// formulation's own pass over pairs applies it (see [`CorrectedStress`](super::CorrectedStress)).
+/// A force term of solids that is linear in the pair vectors: it adds to the corrected stress A_i and to the
+/// bond stiffness k_i of every particle, and the formulation's own pass over pairs applies it (see
+/// [`CorrectedStress`](super::CorrectedStress)).
 pub trait FoldedTerm: Send + Sync + 'static {
     /// Adds the term to a block; returns its energy there.
     fn add(&self, rows: &mut FoldedRows<'_>) -> FoldedEnergy;
 
-    /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The stable time
-    /// step follows from it.
+    /// The stiffness that the term gives a bond, as a multiple of the modulus E_i: k_i = factor E_i. The
+    /// stable time step follows from it.
     fn stiffness_factor(&self) -> f64;
 
-    /// Whether it adds nothing to the stress, and only leaves in columns what it has seen. Formulations without a reference configuration take no other.
+    /// Whether it adds nothing to the stress, and only leaves in columns what it has seen. Formulations
+    /// without a reference configuration take no other.
     fn only_looks(&self) -> bool {
         false
     }
@@ -119,7 +124,8 @@ impl FoldedTermOfBodies {
 }
 
 impl SimBuilder<'_> {
-    /// Adds a force term that is linear in the pair vectors to bodies. The energy that it stores goes to the account of that name.
+    /// Adds a force term that is linear in the pair vectors to bodies. The energy that it stores goes to the
+    /// account of that name.
     pub fn add_folded_term(&mut self, bodies: BodySet, account: &str, term: impl FoldedTerm) {
         let account = Some(account.to_owned());
         FoldedTermOfBodies { account, released: None, term: Box::new(term) }.add(bodies, self);

@@ -1,8 +1,9 @@
-//! Stabilization by the difference of two second derivatives of the positions, as a plugin requests it for bodies. The formulation computes it with its own
-//! neighbours and weights.
+//! Stabilization by the difference of two second derivatives of the positions, as a plugin requests it for
+//! bodies. The formulation computes it with its own neighbours and weights.
 //!
-//! Motions that do not change the averaged gradient are seen by a second derivative of the positions, but not by the gradient of
-//! the gradient. The difference vanishes for affine motions, decreases with the spacing for smooth ones, and is resisted.
+//! Motions that do not change the averaged gradient are seen by a second derivative of the positions, but not
+//! by the gradient of the gradient. The difference vanishes for affine motions, decreases with the spacing
+//! for smooth ones, and is resisted.
 
 use glam::DVec3;
 
@@ -16,7 +17,8 @@ use crate::world::BodySet;
 pub enum HessianForm {
     /// The difference of Laplacians d_i stores the energy `eta^2 E_i V_i |d_i|^2 / 2`.
     FrameIndifferent,
-    /// The gradient has the difference times a vector with the smoothing length in every component added (Vidal, Bonet, Huerta 2007, eq. 17).
+    /// The gradient has the difference times a vector with the smoothing length in every component added
+    /// (Vidal, Bonet, Huerta 2007, eq. 17).
     Vidal2007,
 }
 

@@ -1,12 +1,13 @@
 //! Losses: particles that have been removed or have failed, as far as the sums of a solid know of them.
 //!
-//! What is lost in a step leaves the sums in the next one. A run that goes on from a checkpoint between the two has to know which losses these sums
-//! had taken up: a column says so, row by row.
+//! What is lost in a step leaves the sums in the next one. A run that goes on from a checkpoint between the
+//! two has to know which losses these sums had taken up: a column says so, row by row.
 
 use crate::column;
 
 column! {
-    /// What the sums over neighbours have taken up of the losses of a solid: 1 for a particle that has been removed, 2 for one that has failed, 3 for both.
+    /// What the sums over neighbours have taken up of the losses of a solid: 1 for a particle that has been
+    /// removed, 2 for one that has failed, 3 for both.
     pub struct TakenUp(u32) = "losses_taken_up", "-", "1";
 }
 

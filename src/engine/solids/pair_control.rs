@@ -1,14 +1,16 @@
-//! Hourglass control along pairs, as a plugin requests it for bodies whose weights live in the current configuration. The formulation computes it with its own
-//! neighbours.
+//! Hourglass control along pairs, as a plugin requests it for bodies whose weights live in the current
+//! configuration. The formulation computes it with its own neighbours.
 
 use super::folded::FoldedEnergy;
 use crate::plugin::SimBuilder;
 use crate::schedule::{AccountKind, Ledger};
 use crate::world::{BodyId, BodySet};
 
-/// The control of some bodies: `U_i = 1/4 E_i V_0,i sum_j V_0,j w_ij [xi s_ij^2 + across min(E_i, E_j)/E (|e_ij|^2 - s_ij^2)]` with the error `e_ij = F_i X_ij - x_ij` of the mean deformation
-/// since the start, and its part along the pair, `s_ij = e_ij . x_ij / |x_ij|`. E is Young's modulus of the material, E_i is in the column [`HourglassModulus`](crate::world::HourglassModulus); where it is zero the particle has failed, and its pairs store
-/// nothing.
+/// The control of some bodies: `U_i = 1/4 E_i V_0,i sum_j V_0,j w_ij [xi s_ij^2 + across min(E_i, E_j)/E
+/// (|e_ij|^2 - s_ij^2)]` with the error `e_ij = F_i X_ij - x_ij` of the mean deformation since the start, and
+/// its part along the pair, `s_ij = e_ij . x_ij / |x_ij|`. E is Young's modulus of the material, E_i is in
+/// the column [`HourglassModulus`](crate::world::HourglassModulus); where it is zero the particle has failed,
+/// and its pairs store nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairControl {
     /// Coefficient xi of the error along a pair, above zero \[1\].

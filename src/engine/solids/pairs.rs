@@ -1,5 +1,5 @@
-//! The pairs of any phase of solids for pair terms, neighbour by neighbour: for formulations that do not fill the lanes of a batch themselves. It gives no
-//! kernel values.
+//! The pairs of any phase of solids for pair terms, neighbour by neighbour: for formulations that do not fill
+//! the lanes of a batch themselves. It gives no kernel values.
 
 use std::ops::Range;
 

@@ -10,32 +10,38 @@ use crate::schedule::{Resources, Shareable};
 use crate::symmetry::Ghosts;
 use crate::world::{Mobility, PhaseId, Velocity};
 
-/// What a formulation packs of the particles of a solid: pair vectors, weights, lists, fits. In the access of systems.
+/// What a formulation packs of the particles of a solid: pair vectors, weights, lists, fits. In the access of
+/// systems.
 pub const PACKED_SOLID: &str = "packed_solid";
-/// What neighbours read of the stress of a particle, A = P M^-1 ([`CorrectedStress`](super::CorrectedStress)). In the access of systems.
+/// What neighbours read of the stress of a particle, A = P M^-1
+/// ([`CorrectedStress`](super::CorrectedStress)). In the access of systems.
 pub const CORRECTED_STRESS: &str = "corrected_stress";
 
 impl Shareable for Box<dyn SolidPhase> {
     const ROWS: &'static [&'static str] = &[PACKED_SOLID, CORRECTED_STRESS];
 }
 
-/// The packed rows of a solid formulation, one object per phase. The formulation puts it into the resources at set-up
-/// ([`Resources::insert_solid`]) and borrows it there for its passes ([`Resources::solid_rows_mut`]).
+/// The packed rows of a solid formulation, one object per phase. The formulation puts it into the resources
+/// at set-up ([`Resources::insert_solid`]) and borrows it there for its passes
+/// ([`Resources::solid_rows_mut`]).
 pub trait SolidPhase: Any + Send + Sync {
-    /// The ghosts behind the real rows: [`Ghosts::pair`] gives X_ij and x_ij from reference and current positions.
+    /// The ghosts behind the real rows: [`Ghosts::pair`] gives X_ij and x_ij from reference and current
+    /// positions.
     fn ghosts(&self) -> &Ghosts;
 
-    /// Calls `f` with the packed row and the pair weight w_ij of every neighbour of a row that has not been removed.
+    /// Calls `f` with the packed row and the pair weight w_ij of every neighbour of a row that has not been
+    /// removed.
     fn neighbors(&self, row: usize, f: &mut dyn FnMut(usize, f64));
 
-    /// Whether two particles that are near each other now are neighbours by kernels of the present configuration, so that contact of a body with itself must
-    /// leave them alone. By those of a reference configuration the distance there tells it.
+    /// Whether two particles that are near each other now are neighbours by kernels of the present
+    /// configuration, so that contact of a body with itself must leave them alone. By those of a reference
+    /// configuration the distance there tells it.
     fn holds_together(&self, _row: usize, _other: usize) -> bool {
         false
     }
 
-    /// How the points of the material beside a particle move, with the velocities of all rows; where velocities beside the particle are
-    /// not asked for (`moving`), they are not computed.
+    /// How the points of the material beside a particle move, with the velocities of all rows; where
+    /// velocities beside the particle are not asked for (`moving`), they are not computed.
     fn local_motion(
         &self,
         row: usize,
@@ -44,12 +50,13 @@ pub trait SolidPhase: Any + Send + Sync {
         moving: bool,
     ) -> LocalMotion;
 
-    /// Adds forces on points of the material beside particles, before the pass of the force: the sums `f (x) A`, N m, over the points A in the
-    /// reference configuration. The particles are `nodes`, ascending, of the body whose first row is `first`. On a particle of volume V the
-    /// stress is `P = -f (x) A / V`.
+    /// Adds forces on points of the material beside particles, before the pass of the force: the sums `f (x)
+    /// A`, N m, over the points A in the reference configuration. The particles are `nodes`, ascending, of
+    /// the body whose first row is `first`. On a particle of volume V the stress is `P = -f (x) A / V`.
     fn add_couples(&mut self, first: usize, nodes: &[u32], couples: &[DMat3]);
 
-    /// Whether the reference configuration is that of the start for good: what is pressed then stays what it is from step to step.
+    /// Whether the reference configuration is that of the start for good: what is pressed then stays what it
+    /// is from step to step.
     fn keeps_reference(&self) -> bool {
         false
     }

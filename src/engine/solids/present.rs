@@ -1,4 +1,5 @@
-//! The pairs of a body as they are now, for plugins that let particles of a solid exchange something: heat, density.
+//! The pairs of a body as they are now, for plugins that let particles of a solid exchange something: heat,
+//! density.
 
 use std::ops::Range;
 
@@ -13,7 +14,8 @@ use crate::world::{DeformationGradient, MissingColumn, PhaseView, ReferenceVolum
 pub struct PresentVolumes(Vec<f64>);
 
 impl PresentVolumes {
-    /// Finds V_0 det F of the rows of a body, zero for particles that are removed or turned inside out, and gives those of the whole phase.
+    /// Finds V_0 det F of the rows of a body, zero for particles that are removed or turned inside out, and
+    /// gives those of the whole phase.
     ///
     /// # Errors
     /// The phase has no deformation gradient.

@@ -1,9 +1,10 @@
 //! The effect of a cut bond on the measured deformation of a particle.
 //!
-//! Without a removed neighbour the fit F_i changes although nothing has moved. A law of F alone uses the new fit directly. Plastic
-//! flow, however, belongs to the F under which it occurred: a jump of the fit by some per cent would put the metal far beyond yield, and
-//! energy into the body. Such a law continues where it was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it.
-//! The force is the gradient of its energy by F_i, P_i C_i^T.
+//! Without a removed neighbour the fit F_i changes although nothing has moved. A law of F alone uses the new
+//! fit directly. Plastic flow, however, belongs to the F under which it occurred: a jump of the fit by some
+//! per cent would put the metal far beyond yield, and energy into the body. Such a law continues where it
+//! was: it sees F_i C_i with C_i = (F_i after the cut)^-1 F_i C_i before it. The force is the gradient of its
+//! energy by F_i, P_i C_i^T.
 
 use glam::DMat3;
 
@@ -28,7 +29,8 @@ impl Refits {
         if self.0.is_empty() { &[] } else { &self.0[until(first)..until(first + n)] }
     }
 
-    /// Takes in that the fit of a row has gone from `before` to `after`. A new fit that is inside out measures nothing.
+    /// Takes in that the fit of a row has gone from `before` to `after`. A new fit that is inside out
+    /// measures nothing.
     pub fn take_in(&mut self, row: u32, before: &DMat3, after: &DMat3) {
         let measures = after.determinant() > 0.0;
         if !measures {
@@ -42,8 +44,8 @@ impl Refits {
     }
 }
 
-/// Before the law: what the columns of a row hold becomes what the law sees. The stress column is the one whose Cauchy stress with F
-/// is that of the law, P C^T / det C.
+/// Before the law: what the columns of a row hold becomes what the law sees. The stress column is the one
+/// whose Cauchy stress with F is that of the law, P C^T / det C.
 pub(super) fn to_law(refits: &[(u32, DMat3)], first: usize, deformation: &mut [DMat3], stress: &mut [DMat3]) {
     for (row, c) in refits {
         let k = *row as usize - first;

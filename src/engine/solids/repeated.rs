@@ -13,8 +13,9 @@ impl SolidBodies {
         self.found().iter().map(SolidSum::stored).collect()
     }
 
-    /// Books what the bodies hold after a pass that was repeated at the same places. Terms that lose the fit or the modulus that they had say that they have released energy:
-    /// that is part of the change of what is stored, which [`book_change`](Self::book_change) books.
+    /// Books what the bodies hold after a pass that was repeated at the same places. Terms that lose the fit
+    /// or the modulus that they had say that they have released energy: that is part of the change of what is
+    /// stored, which [`book_change`](Self::book_change) books.
     ///
     /// # Errors
     /// A particle is inside out.
@@ -23,9 +24,10 @@ impl SolidBodies {
         self.book(step)
     }
 
-    /// Books what a pass that was repeated at the same places has changed: the stored energies since they were `held`, J, and what the second kick of the step, by
-    /// the forces `after` it, takes from a motion that those `before` it have made up to here; particles that have been removed in
-    /// this step lose what the old ones would have made. Forces are those of the phase.
+    /// Books what a pass that was repeated at the same places has changed: the stored energies since they
+    /// were `held`, J, and what the second kick of the step, by the forces `after` it, takes from a motion
+    /// that those `before` it have made up to here; particles that have been removed in this step lose what
+    /// the old ones would have made. Forces are those of the phase.
     ///
     /// # Errors
     /// The phase has no velocities.

@@ -1,11 +1,12 @@
 //! The stable time step of a body whose reference configuration gives the weights.
 //!
-//! The largest frequency of the scheme is estimated particle by particle from sums over its bonds. Stress gives
-//! `omega^2 = STRESS_FACTOR c_l^2 b_i` with `b_i = (sum_j V_j w_ij) trace(M_i^-1) / d`, which grows where the support is
-//! cut by a surface; a bond stiffness k_i = s E_i gives `omega^2 = BOND_FACTOR s E_i (sum_j V_j w_ij) / rho`. The two
-//! constants envelope the largest eigenvalue of the assembled linear operator of free square and cubic blocks, regular
-//! and irregular, for spiky and Wendland kernels of 2 to 3 spacings support; tests/stable_step.rs of the hourglass plugin
-//! compares with the largest frequency that a naive second implementation finds.
+//! The largest frequency of the scheme is estimated particle by particle from sums over its bonds. Stress
+//! gives `omega^2 = STRESS_FACTOR c_l^2 b_i` with `b_i = (sum_j V_j w_ij) trace(M_i^-1) / d`, which grows
+//! where the support is cut by a surface; a bond stiffness k_i = s E_i gives `omega^2 = BOND_FACTOR s E_i
+//! (sum_j V_j w_ij) / rho`. The two constants envelope the largest eigenvalue of the assembled linear
+//! operator of free square and cubic blocks, regular and irregular, for spiky and Wendland kernels of 2 to 3
+//! spacings support; tests/stable_step.rs of the hourglass plugin compares with the largest frequency that a
+//! naive second implementation finds.
 
 /// Stress: omega^2 = `STRESS_FACTOR` c_l^2 b_i.
 const STRESS_FACTOR: f64 = 1.45;
@@ -25,7 +26,8 @@ pub struct StepEstimate {
     pub wave: f64,
     /// Sum of the stiffness factors of all bond terms times E / rho, m2/s2.
     pub bond: f64,
-    /// Square of the coefficient of the stabilization by differences of second derivatives times modulus over density, m2/s2.
+    /// Square of the coefficient of the stabilization by differences of second derivatives times modulus over
+    /// density, m2/s2.
     pub hessian: f64,
 }
 
@@ -35,8 +37,8 @@ impl StepEstimate {
         self.stable_step_with(weight_sum, mean_inverse, 0.0)
     }
 
-    /// Stable step, s, where the difference of second derivatives of a particle has the weight `second`, m, over lengths squared: the sum of the sizes of
-    /// its coefficients times the smoothing length.
+    /// Stable step, s, where the difference of second derivatives of a particle has the weight `second`, m,
+    /// over lengths squared: the sum of the sizes of its coefficients times the smoothing length.
     pub fn stable_step_with(&self, weight_sum: f64, mean_inverse: f64, second: f64) -> f64 {
         let hessian = HESSIAN_FACTOR * self.hessian * second * second;
         let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
@@ -46,7 +48,8 @@ impl StepEstimate {
         SAFETY * 2.0 / omega_squared.sqrt()
     }
 
-    /// Stable step, s, where control along pairs gives a particle the stiffness `pairs` over its mass, 1/s2: the sum of those of its pairs.
+    /// Stable step, s, where control along pairs gives a particle the stiffness `pairs` over its mass, 1/s2:
+    /// the sum of those of its pairs.
     pub fn stable_step_with_pairs(&self, weight_sum: f64, mean_inverse: f64, pairs: f64) -> f64 {
         let stress = STRESS_FACTOR * self.wave * weight_sum * mean_inverse;
         SAFETY * 2.0 / stress.hypot(PAIR_FACTOR * pairs).sqrt()

@@ -7,7 +7,8 @@ use crate::materials::Stretches;
 use crate::parallel::{BlockSum, Largest, sum_over_own_blocks};
 use crate::world::{Damage, DeformationGradient};
 
-/// The extreme stretches of the particles of a body that have not failed: what is left of a failed one may have any shape.
+/// The extreme stretches of the particles of a body that have not failed: what is left of a failed one may
+/// have any shape.
 pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]>) -> Stretches {
     let intact = |row: usize| damage.is_none_or(|damage| damage[row].0 < 1.0);
     sum_over_own_blocks(gradient, &|first, rows: &[DeformationGradient]| {
@@ -21,8 +22,8 @@ pub(super) fn of_body(gradient: &[DeformationGradient], damage: Option<&[Damage]
     })
 }
 
-/// The smallest principal stretch, at most one, of the particles of a body that have not failed, since their reference configuration had the
-/// deformation gradients `reference`.
+/// The smallest principal stretch, at most one, of the particles of a body that have not failed, since their
+/// reference configuration had the deformation gradients `reference`.
 pub(super) fn smallest_since(
     gradient: &[DeformationGradient],
     reference: &[DMat3],

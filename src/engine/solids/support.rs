@@ -2,7 +2,8 @@
 
 use crate::plugin::SetupError;
 
-/// Checks the parameter `support` of a formulation, in spacings \[-\]; `usual` is what its message recommends, `spacing` that of the body \[m\].
+/// Checks the parameter `support` of a formulation, in spacings \[-\]; `usual` is what its message
+/// recommends, `spacing` that of the body \[m\].
 ///
 /// # Errors
 /// The support reaches no second neighbour, or is wider than ten spacings.

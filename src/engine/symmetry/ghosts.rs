@@ -52,8 +52,8 @@ impl Ghosts {
         if row < self.rows { row } else { self.sources[row - self.rows] as usize }
     }
 
-    /// Signs of the axes of a row that is a mirror image: its vectors are those of its source times the signs. `None` for
-    /// all other rows.
+    /// Signs of the axes of a row that is a mirror image: its vectors are those of its source times the
+    /// signs. `None` for all other rows.
     #[inline]
     pub fn mirror(&self, row: usize) -> Option<DVec3> {
         let signs = (row >= self.rows).then(|| self.map(row).signs)?;
@@ -65,8 +65,9 @@ impl Ghosts {
         &self.maps[self.which[row - self.rows] as usize]
     }
 
-    /// x_ij from a real row to any row, from the positions of the real rows. Seen from the other end of the bond it is the
-    /// same to the last bit, but for signs: the weight is rounded to single precision and must not differ.
+    /// x_ij from a real row to any row, from the positions of the real rows. Seen from the other end of the
+    /// bond it is the same to the last bit, but for signs: the weight is rounded to single precision and must
+    /// not differ.
     #[inline]
     pub fn pair(&self, position: &[DVec3], i: usize, j: usize) -> DVec3 {
         if j < self.rows {
@@ -81,8 +82,8 @@ impl Ghosts {
         self.map(row).place(position[self.source(row)])
     }
 
-    /// Adds the ghosts of a body whose sources are closer than `reach`, m, to what they repeat across; returns their rows. Bodies come in the order of
-    /// their rows.
+    /// Adds the ghosts of a body whose sources are closer than `reach`, m, to what they repeat across;
+    /// returns their rows. Bodies come in the order of their rows.
     pub fn add(
         &mut self,
         rows: Range<usize>,
@@ -91,7 +92,8 @@ impl Ghosts {
         repeats: &[Repeat],
     ) -> Range<usize> {
         let first = self.rows + self.len();
-        // What the repeats so far have made of the body: those that follow repeat it, too, which fills the corners.
+        // What the repeats so far have made of the body: those that follow repeat it, too, which fills the
+        // corners.
         let mut all: Vec<(u32, u32)> = Vec::new();
         for repeat in repeats {
             let real = self.intern(Map::IDENTITY);

@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
-/// The map x -> S x + c with a diagonal S of signs: a mirror image, a shift by a period, or several of these one after the other.
+/// The map x -> S x + c with a diagonal S of signs: a mirror image, a shift by a period, or several of these
+/// one after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
     /// Diagonal of S.

@@ -114,7 +114,8 @@ pub fn repeats_of(body: &BodyPlan, support: f64, sim: &SimBuilder<'_>) -> Result
     Ok(repeats)
 }
 
-/// What a body may be shorter than a period that it fills, over its spacing. A body that ends before the period does is not joined to itself.
+/// What a body may be shorter than a period that it fills, over its spacing. A body that ends before the
+/// period does is not joined to itself.
 const FILLS: f64 = 0.5;
 
 /// The length of the domain along an axis, and that of a body, m.
@@ -135,7 +136,8 @@ pub fn periods_of(body: &BodyPlan, sim: &SimBuilder<'_>) -> Vec<Repeat> {
     domain.periodic.iter().filter_map(period).collect()
 }
 
-/// The maps to the images that a body has beside it, beginning with the one that changes nothing: across each plane and period, and across several of them along different axes.
+/// The maps to the images that a body has beside it, beginning with the one that changes nothing: across each
+/// plane and period, and across several of them along different axes.
 pub fn maps_of(repeats: &[Repeat]) -> Vec<Map> {
     let mut all: Vec<(Map, [bool; 3])> = vec![(Map::IDENTITY, [false; 3])];
     for repeat in repeats {

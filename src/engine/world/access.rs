@@ -1,4 +1,5 @@
-//! What the running system has declared of the columns and of what systems share, and the first access that it has not.
+//! What the running system has declared of the columns and of what systems share, and the first access that
+//! it has not.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -29,7 +30,8 @@ impl Mode {
         (Self::Adds, "adds to"),
     ];
 
-    /// Whether what is declared allows what is done: writing and adding are one for a column that is borrowed, and whoever writes may read.
+    /// Whether what is declared allows what is done: writing and adding are one for a column that is
+    /// borrowed, and whoever writes may read.
     fn allows(self, done: Self) -> bool {
         match done {
             Self::Reads => true,
@@ -116,7 +118,8 @@ impl Watch {
         self.note(system, format!("the column `{}`", T::NAME), format!(".{declaration}::<{type_name}>()"));
     }
 
-    /// Notes the access to a value that systems share if the one that runs has declared none of the names of its rows.
+    /// Notes the access to a value that systems share if the one that runs has declared none of the names of
+    /// its rows.
     pub fn touches_shared(&self, rows: &'static [&'static str], done: Mode) {
         let Some(system) = self.undeclared_in(rows, done) else { return };
         let names: Vec<String> = rows.iter().map(|name| format!("`{name}`")).collect();

@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use crate::parallel::{BlockSum, Split, sum_over_blocks};
 
-/// The sum of `count` entries, each of which belongs to a row of a body with so many `rows`; the rows of the entries ascend. The entries of a row are added first,
-/// then the rows of a block, then blocks along the tree of all rows of the body. The result does not depend on the number of threads, nor on how many entries other rows have.
+/// The sum of `count` entries, each of which belongs to a row of a body with so many `rows`; the rows of the
+/// entries ascend. The entries of a row are added first, then the rows of a block, then blocks along the tree
+/// of all rows of the body. The result does not depend on the number of threads, nor on how many entries
+/// other rows have.
 pub fn sum_by_row<R: BlockSum>(
     rows: usize,
     count: usize,

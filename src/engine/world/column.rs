@@ -23,8 +23,8 @@ pub trait Value: Pod + Send + Sync + 'static {
     /// Values that are given component by component.
     fn of_components<A: Arithmetic>(a: A, components: &[A::Lanes]) -> Self::Four<A>;
 
-    /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a number as it
-    /// is.
+    /// The value of a mirror image, `signs` being those of its axes: S v for a vector, S A S for a tensor, a
+    /// number as it is.
     #[must_use]
     #[inline]
     fn mirrored(self, _signs: DVec3) -> Self {

@@ -1,7 +1,8 @@
 //! Columns of which a rank has computed its own rows: they are exchanged when somebody reads the rest.
 //!
-//! A pass that is divided among ranks writes a column by [`PhaseView::write_own`]. The rows of other ranks are old from then on, until the column is read or written
-//! as a whole; that exchanges it. The calls of a step follow from equal values, so that all ranks come to the same exchange.
+//! A pass that is divided among ranks writes a column by [`PhaseView::write_own`]. The rows of other ranks
+//! are old from then on, until the column is read or written as a whole; that exchanges it. The calls of a
+//! step follow from equal values, so that all ranks come to the same exchange.
 
 use std::any::TypeId;
 use std::sync::atomic::Ordering;
@@ -16,23 +17,27 @@ use crate::parallel::BLOCK;
 use crate::ranks::{self, Halo};
 
 impl<'a> PhaseView<'a> {
-    /// Column `T` for reading rows of this rank ([`own_rows`](crate::parallel::own_rows)), in a loop that is divided among ranks. The others may be old.
+    /// Column `T` for reading rows of this rank ([`own_rows`](crate::parallel::own_rows)), in a loop that is
+    /// divided among ranks. The others may be old.
     pub fn read_own<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         self.column(Mode::Reads)
     }
 
-    /// Column `T` for writing rows of this rank, in a loop that is divided among ranks. Whoever reads the column next gets the rows of all.
+    /// Column `T` for writing rows of this rank, in a loop that is divided among ranks. Whoever reads the
+    /// column next gets the rows of all.
     pub fn write_own<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
         self.mark_own(TypeId::of::<T>());
         self.column_mut()
     }
 
-    /// Column `T` for writing rows of this rank by a loop that finds out whether it changes any: if so, [`PhaseView::mark_own`] comes after it.
+    /// Column `T` for writing rows of this rank by a loop that finds out whether it changes any: if so,
+    /// [`PhaseView::mark_own`] comes after it.
     pub(crate) fn write_unmarked<T: Column>(&self) -> Result<ArchetypeColumnMut<'a, T>, MissingColumn> {
         self.column_mut()
     }
 
-    /// Column `T` for reading rows of this rank and those of its halo, which are exchanged if every rank has its own alone. The others may be old.
+    /// Column `T` for reading rows of this rank and those of its halo, which are exchanged if every rank has
+    /// its own alone. The others may be old.
     pub fn read_halo<T: Column>(&self, halo: &Halo) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         let column = ColumnInfo::of::<T>();
         let flag = self.own_only().flag(self.columns(), column.type_id);

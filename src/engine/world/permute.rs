@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::state::PhaseView;
 
 impl PhaseView<'_> {
-    /// Puts rows into another order, in all columns: row n of the range becomes what was row `order[n]` of it. `scratch` is memory that the
-    /// caller keeps.
+    /// Puts rows into another order, in all columns: row n of the range becomes what was row `order[n]` of
+    /// it. `scratch` is memory that the caller keeps.
     pub fn permute(&self, rows: Range<usize>, order: &[u32], scratch: &mut Vec<u8>) {
         for column in self.columns().iter() {
             let size = column.element_size;

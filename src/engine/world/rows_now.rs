@@ -20,7 +20,8 @@ impl World {
         Ok(Cow::Owned(places.into_iter().map(|(row, _)| row).collect()))
     }
 
-    /// The rows of the particles of a body that stood in these rows at the start, ascending, and which of them each is.
+    /// The rows of the particles of a body that stood in these rows at the start, ascending, and which of
+    /// them each is.
     ///
     /// # Errors
     /// The phase has no particle ids.
@@ -51,7 +52,8 @@ impl World {
         Ok(rows.all(|(now, at_start)| ids[now as usize].0 == first + u64::from(at_start)))
     }
 
-    /// Id of the particle that stood in the first row of the phase of a body: ids are counted through phases and rows.
+    /// Id of the particle that stood in the first row of the phase of a body: ids are counted through phases
+    /// and rows.
     fn first_id(&self, body: BodyId) -> u64 {
         let phase = self.body(body).phase.0;
         self.phases().take(phase).map(|phase| self.phase(phase).len() as u64).sum()

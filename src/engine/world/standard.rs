@@ -1,4 +1,5 @@
-//! The columns that the formulations of the engine share, and the state of materials, of which a phase has what its materials need.
+//! The columns that the formulations of the engine share, and the state of materials, of which a phase has
+//! what its materials need.
 
 use glam::{DMat3, DVec3};
 
@@ -20,13 +21,14 @@ column! {
     pub struct Mass(f64) = "mass", "m", "kg";
     /// Inverse mass per axis; zero along an axis whose motion is prescribed, so that no force moves it.
     pub struct Mobility(DVec3) = "mobility", "1/m", "1/kg";
-    /// Whether the particle has been taken out of the run. It is [`Removed::NO`] or [`Removed::YES`]. A removed particle stays a
-    /// row that nothing moves: it carries no stress and no force, and lists and sums leave it out. The systems of
-    /// [`removal`](crate::removal) set it, and nothing takes it back.
+    /// Whether the particle has been taken out of the run. It is [`Removed::NO`] or [`Removed::YES`]. A
+    /// removed particle stays a row that nothing moves: it carries no stress and no force, and lists and sums
+    /// leave it out. The systems of [`removal`](crate::removal) set it, and nothing takes it back.
     pub struct Removed(u32) = "removed", "-", "1";
     /// Volume in the reference configuration; in two dimensions per metre of thickness.
     pub struct ReferenceVolume(f64) = "reference_volume", "V0", "m^3";
-    /// Support radius in the reference configuration: pairs farther apart than the mean of two radii do not interact.
+    /// Support radius in the reference configuration: pairs farther apart than the mean of two radii do not
+    /// interact.
     pub struct SupportRadius(f64) = "support_radius", "H", "m";
     /// Deformation gradient, F = dx/dX.
     pub struct DeformationGradient(DMat3) = "deformation_gradient", "F", "1";
@@ -64,7 +66,8 @@ column! {
     pub struct HourglassModulus(f64) = "hourglass_modulus", "E_h", "Pa";
     /// Hourglass residual of the last step, `sum_j V_j w_ij |F_i X_ij - x_ij|^2`.
     pub struct HourglassResidual(f64) = "hourglass_residual_before", "e^2", "1";
-    /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the neighbours that hold.
+    /// Deformation gradient that hourglass control of bodies that can fail compares with: the fit to the
+    /// neighbours that hold.
     pub struct HourglassGradient(DMat3) = "hourglass_gradient", "F_h", "1";
 }
 

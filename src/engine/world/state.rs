@@ -118,7 +118,8 @@ impl World {
         PhaseView { phase, archetype, watch: &self.watch }
     }
 
-    /// From now on the accesses of systems are held against what they have declared, in the order of the schedule.
+    /// From now on the accesses of systems are held against what they have declared, in the order of the
+    /// schedule.
     pub(crate) fn declare(&mut self, systems: Vec<Declared>) {
         self.watch = Arc::new(Watch::new(systems));
     }
@@ -194,7 +195,8 @@ impl<'a> PhaseView<'a> {
         self.archetype.has::<T>()
     }
 
-    /// Column `T` for reading rows of the system's own. Panics if a system holds it for writing: the schedule excludes that.
+    /// Column `T` for reading rows of the system's own. Panics if a system holds it for writing: the schedule
+    /// excludes that.
     pub fn read<T: Column>(&self) -> Result<ArchetypeColumn<'a, T>, MissingColumn> {
         self.read_as(Mode::Reads)
     }
@@ -257,8 +259,8 @@ impl<'a> PhaseView<'a> {
         &self.phase.own_only
     }
 
-    /// Calls `f` with the writable bytes of several columns, at most `N`, in their order; slices that no column takes are
-    /// empty. Nothing is called where the phase lacks one of them.
+    /// Calls `f` with the writable bytes of several columns, at most `N`, in their order; slices that no
+    /// column takes are empty. Nothing is called where the phase lacks one of them.
     pub fn write_bytes_of<const N: usize>(&self, columns: &[ColumnInfo], f: &mut dyn FnMut([&mut [u8]; N])) {
         columns.iter().for_each(|column| self.complete(column));
         self.borrow_next(columns, 0, std::array::from_fn(|_| Default::default()), f);

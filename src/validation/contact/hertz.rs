@@ -95,7 +95,8 @@ fn impact(simulation: &mut Simulation, radius: f64) -> Result<Impact> {
 const RADIUS: f64 = 0.05;
 const MODULUS: f64 = 1.0e7 / (1.0 - 0.45 * 0.45);
 
-/// Points of the surface on either side of the lowest one at which the overlap is looked at, up to an angle of ARC.
+/// Points of the surface on either side of the lowest one at which the overlap is looked at, up to an angle
+/// of ARC.
 const POINTS: i32 = 400;
 const ARC: f64 = 0.3;
 

@@ -108,7 +108,8 @@ impl MeanOverSteps {
     }
 }
 
-/// The shear angle phi half-way between Lee and Shaffer's 45 deg - beta and Merchant's 45 deg - beta/2, with rake 0 and the friction angle beta.
+/// The shear angle phi half-way between Lee and Shaffer's 45 deg - beta and Merchant's 45 deg - beta/2, with
+/// rake 0 and the friction angle beta.
 fn usual_shear_angle() -> f64 {
     std::f64::consts::FRAC_PI_4 - 0.75 * FRICTION.atan()
 }
@@ -119,7 +120,8 @@ fn force_over_strength() -> f64 {
     DEPTH * beta.cos() / (phi.sin() * (phi + beta).cos())
 }
 
-/// Flow stress over sqrt 3 at the mean strain and temperature of what is sheared and holds, at a strain rate of v / (d / 10), Pa.
+/// Flow stress over sqrt 3 at the mean strain and temperature of what is sheared and holds, at a strain rate
+/// of v / (d / 10), Pa.
 fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (strain, damage) = (view.read::<PlasticStrain>()?, view.read::<Damage>()?);
@@ -133,7 +135,8 @@ fn shear_strength(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     Ok(flow / 3f64.sqrt())
 }
 
-/// Area of what was above the cut and is between two heights beside the rake face now, over their distance, m.
+/// Area of what was above the cut and is between two heights beside the rake face now, over their distance,
+/// m.
 fn chip_thickness(simulation: &Simulation, workpiece: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(workpiece);
     let (reference, position) = (view.read::<ReferencePosition>()?, view.read::<Position>()?);

@@ -59,8 +59,8 @@ fn restitution(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Ratio of the speeds of the first bounce, height after the second one, m, time of the first contact times the frequency of
-/// the undamped spring.
+/// Ratio of the speeds of the first bounce, height after the second one, m, time of the first contact times
+/// the frequency of the undamped spring.
 fn bounces(registry: &Registry, law: &str, e: f64, across: usize) -> Result<(f64, f64, f64)> {
     let mut simulation = Template::new(
         "tests/validation/restitution/scene.ron",

@@ -24,11 +24,13 @@ const RECTANGLE: f64 = 2.0e-5;
 const WIDTHS: [f64; 2] = [4.0e-5, 2.0e-4];
 /// Speed of the flow, m/s.
 const SPEED: f64 = 100.0;
-/// Speeds at which the fluid starts, m/s. Wear is chaotic: runs from starts that differ by a thousandth wear off areas that differ by some tens of per cent.
+/// Speeds at which the fluid starts, m/s. Wear is chaotic: runs from starts that differ by a thousandth wear
+/// off areas that differ by some tens of per cent.
 const STARTS: [f64; 5] = [SPEED, 100.1, 99.9, 100.2, 99.8];
 /// Depth below the floor, in spacings, down to which damage may reach away from hits.
 const DEPTH: f64 = 5.0;
-/// Time in which a place that has been worn off fills, s: the flow passes ten micrometres, half the height of the rectangle.
+/// Time in which a place that has been worn off fills, s: the flow passes ten micrometres, half the height of
+/// the rectangle.
 const FILLING: f64 = 1.0e-7;
 /// How many of these starts, and for how long, s: at the resolution of the tests, and at others.
 const RUNS: [(usize, f64); 2] = [(3, 5.0e-7), (5, 1.0e-6)];
@@ -153,8 +155,8 @@ fn mean_speed(simulation: &Simulation) -> Result<f64> {
     Ok(momentum / mass)
 }
 
-/// How far below the floor there is damage above 0.1 away from hits, m: farther than the allowed depth from all that has been worn off. What a grain has dug out of the floor may be
-/// deeper, and is damaged around.
+/// How far below the floor there is damage above 0.1 away from hits, m: farther than the allowed depth from
+/// all that has been worn off. What a grain has dug out of the floor may be deeper, and is damaged around.
 fn deepest_damage(simulation: &Simulation, floor: BodyId, spacing: f64) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(floor);
     let (reference, damage) = (view.read::<ReferencePosition>()?, view.read::<Damage>()?);
@@ -179,7 +181,8 @@ fn worn(simulation: &Simulation, floor: BodyId) -> Result<f64> {
     Ok(rows.filter(gone).map(|row| volume[row].0).sum())
 }
 
-/// Mean deviation of the height of the floor from its mean, m: a second implementation of the probe, column by column.
+/// Mean deviation of the height of the floor from its mean, m: a second implementation of the probe, column
+/// by column.
 fn roughness(simulation: &Simulation, floor: BodyId, spacing: f64) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(floor);
     let (position, removed) = (view.read::<Position>()?, view.read::<Removed>()?);
@@ -201,7 +204,8 @@ fn removed_rows(simulation: &Simulation, floor: BodyId) -> Result<Vec<usize>> {
     Ok(rows.filter(|&row| removed[row] == Removed::YES).collect())
 }
 
-/// Share of the places of particles that were removed before, within a spacing of which there is something else now: fluid, a grain, the rest of the floor.
+/// Share of the places of particles that were removed before, within a spacing of which there is something
+/// else now: fluid, a grain, the rest of the floor.
 fn filled(simulation: &Simulation, floor: BodyId, gone: &[usize]) -> Result<f64> {
     let (view, _) = simulation.world().body_view(floor);
     let reference = view.read::<ReferencePosition>()?;

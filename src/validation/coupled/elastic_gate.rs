@@ -16,11 +16,13 @@ pub(crate) const CASE: Case =
 /// Thickness of the gate and its free length, m.
 const THICKNESS: f64 = 5.0e-3;
 const LENGTH: f64 = 79.0e-3;
-/// Young's modulus, Pa, Poisson's ratio, and where the end of the dry gate comes to rest, m: to the side and up.
+/// Young's modulus, Pa, Poisson's ratio, and where the end of the dry gate comes to rest, m: to the side and
+/// up.
 const DRY: [(f64, f64, [f64; 2]); 2] =
     [(12.0e6, 0.4, [32.64e-3, 8.22e-3]), (7.8e6, 0.47, [41.45e-3, 13.82e-3])];
 const SOURCE: &str = "elastica in plane strain, reference.csv";
-/// Particles across of which the gate is put into water too, or a multiple, and compared with half as many: the lattices of the gate and of the tank then end at the same height.
+/// Particles across of which the gate is put into water too, or a multiple, and compared with half as many:
+/// the lattices of the gate and of the tank then end at the same height.
 const FINE: usize = 16;
 /// Strain energy of which the hourglass control may store a share.
 const SHARE: f64 = 0.1;

@@ -17,7 +17,8 @@ pub(crate) const CASE: Case = Case {
     run: water_on_plate,
 };
 
-/// Deflection of the middle of the plate under water and its own weight, m, by plane finite elements: see reference.csv.
+/// Deflection of the middle of the plate under water and its own weight, m, by plane finite elements: see
+/// reference.csv.
 const DEFLECTION: f64 = -7.055e-5;
 const SOURCE: &str = "plane finite elements, 80 x 8 of second order";
 

@@ -15,7 +15,8 @@ pub fn value<C: Column<Value = f64>>(simulation: &Simulation) -> Result<f64> {
     Ok(first)
 }
 
-/// The particle in the middle of the first body: one that has neighbours all around, however far it is sheared.
+/// The particle in the middle of the first body: one that has neighbours all around, however far it is
+/// sheared.
 fn middle(simulation: &Simulation) -> Result<usize> {
     let (view, rows) = simulation.world().body_view(BodyId(0));
     let reference = view.read::<ReferencePosition>()?;

@@ -28,7 +28,8 @@ const DRIVING: f64 = 7.5;
 /// Share of the run whose mean is taken.
 const FROM: f64 = 0.9;
 
-/// Drag over viscosity and mean velocity over the whole cell, with a share `c` of it solid: Sangani and Acrivos (1982).
+/// Drag over viscosity and mean velocity over the whole cell, with a share `c` of it solid: Sangani and
+/// Acrivos (1982).
 fn drag(c: f64) -> f64 {
     4.0 * PI / (-0.5 * c.ln() - 0.738 + c - 0.887 * c.powi(2) + 2.038 * c.powi(3))
 }
@@ -57,7 +58,8 @@ fn cylinder_array(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     })?;
     // Cylinders of four spacings are stairs.
     let most = if across >= 80 { 0.03 } else { 0.08 };
-    // The pressure gradient that the force stands for acts on the cylinder too: drag is the force on a cell that is full.
+    // The pressure gradient that the force stands for acts on the cylinder too: drag is the force on a cell
+    // that is full.
     Ok(vec![
         Check::new(
             "drag over viscosity and mean velocity of the cell",

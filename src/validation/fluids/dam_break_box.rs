@@ -30,8 +30,9 @@ const EVERY: f64 = 1e-3;
 const HALF_PEAK: f64 = 0.01;
 const IMPULSE: f64 = 0.2;
 
-/// Tolerances of the largest 20 ms means at P1 to P3, at 27 over the height. Each alone is judged from there on: with fewer particles those of spacings that differ by a tenth
-/// differ by up to 100 %, and a spacing could be found for every wish.
+/// Tolerances of the largest 20 ms means at P1 to P3, at 27 over the height. Each alone is judged from there
+/// on: with fewer particles those of spacings that differ by a tenth differ by up to 100 %, and a spacing
+/// could be found for every wish.
 const PEAKS: [f64; 3] = [0.4, 0.2, 0.2];
 
 /// What the sensors P1 to P4 show, Pa, and the gauges H2 and H4, m.
@@ -76,7 +77,8 @@ fn scene(registry: &Registry, spacing: f64) -> Result<Simulation> {
     Ok(built)
 }
 
-/// The checks; `coarse` is the spacing over that of 27 particles over the height, of which the tolerances are.
+/// The checks; `coarse` is the spacing over that of 27 particles over the height, of which the tolerances
+/// are.
 fn compare(measured: &BoxHistories, reference: &BoxHistories, coarse: f64) -> Result<Vec<Check>> {
     let scale = 1000.0 * 9.81 * HEIGHT;
     let time = (HEIGHT / 9.81).sqrt();

@@ -22,7 +22,8 @@ const REFERENCE: &str = include_str!("../../../tests/validation/dam_front/refere
 const SOURCE: &str = "boundary elements, no friction";
 /// Depth of the water where its front is, over the width of the column: 0.02 of its height.
 const DEPTH: f64 = 0.04;
-/// Places of the front over the width of the column, and the largest error of the times at 40 particles across.
+/// Places of the front over the width of the column, and the largest error of the times at 40 particles
+/// across.
 const PLACES: [(f64, f64); 4] = [(2.0, 0.035), (3.0, 0.025), (4.0, 0.02), (5.0, 0.02)];
 
 /// How fast these errors fall, and the largest of them without a spacing.

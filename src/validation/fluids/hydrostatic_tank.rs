@@ -23,7 +23,8 @@ const WEIGHT: f64 = 9810.0;
 /// Potential energy of the water, J: rho g H^2 / 2 per metre.
 const POTENTIAL: f64 = 4905.0;
 
-/// Mean over the lowest layer of the pressure at the bottom: that of the particle and of the water below its centre.
+/// Mean over the lowest layer of the pressure at the bottom: that of the particle and of the water below its
+/// centre.
 fn bottom(simulation: &Simulation, water: BodyId) -> Result<f64> {
     let (view, rows) = simulation.world().body_view(water);
     let (position, pressure) = (view.read::<Position>()?, view.read::<Pressure>()?);

@@ -1,4 +1,5 @@
-//! F15: how high water stands once it has come to rest, with and without shifting, in two and three dimensions.
+//! F15: how high water stands once it has come to rest, with and without shifting, in two and three
+//! dimensions.
 
 use anyhow::{Result, ensure};
 use meshless_engine::plugin::Registry;

@@ -22,10 +22,12 @@ pub(crate) const CASE: Case = Case {
 const MOTION: &str = include_str!("../../../tests/validation/moving_square/motion.csv");
 const REFERENCE: &str = include_str!("../../../tests/validation/moving_square/reference.csv");
 const SOURCE: &str = "finite differences, reference.csv";
-/// Times of the means, s: while the square is accelerated, and over the time in which sound crosses the box and comes back.
+/// Times of the means, s: while the square is accelerated, and over the time in which sound crosses the box
+/// and comes back.
 const START: (f64, f64) = (0.4, 0.6);
 const STEADY: (f64, f64) = (1.5, 2.17);
-/// Tolerances at 40 across; they are in proportion to the spacing. The error of friction is over the whole drag.
+/// Tolerances at 40 across; they are in proportion to the spacing. The error of friction is over the whole
+/// drag.
 const DRAG: f64 = 0.05;
 const FRICTION: f64 = 0.1;
 /// From a force on the half of the square, N, to the drag over rho U^2 L / 2.

@@ -101,7 +101,8 @@ fn pressure_in_the_middle(simulation: &Simulation, patch: BodyId) -> Result<f64>
     Ok(inside.iter().sum::<f64>() / inside.len() as f64)
 }
 
-/// Least distance of the surface from the centre, m, as a mean over the four sides: the surface is where the volume of particles over that of space falls to a half.
+/// Least distance of the surface from the centre, m, as a mean over the four sides: the surface is where the
+/// volume of particles over that of space falls to a half.
 fn nearest_side(simulation: &Simulation, patch: BodyId) -> Result<f64> {
     let positions = positions(simulation, patch)?;
     let cloud = simulation.resources().get::<FlowCloud>();

@@ -45,7 +45,8 @@ impl Disorder {
         self.pairs.len() as f64 / simulation.world().body(self.body).rows.len() as f64
     }
 
-    /// Root mean square of |F X - x| / |X| over all pairs: below 0.05 particles are in order, above 0.3 they are not.
+    /// Root mean square of |F X - x| / |X| over all pairs: below 0.05 particles are in order, above 0.3 they
+    /// are not.
     pub fn measure(&self, simulation: &Simulation) -> Result<f64> {
         let mut sum = 0.0;
         self.visit(simulation, |apart, expected, actual| {
@@ -54,7 +55,8 @@ impl Disorder {
         Ok((sum / self.pairs.len() as f64).sqrt())
     }
 
-    /// Least |x| / |F X| of all pairs: below one half, particles have come closer than their deformation says.
+    /// Least |x| / |F X| of all pairs: below one half, particles have come closer than their deformation
+    /// says.
     pub fn closest(&self, simulation: &Simulation) -> Result<f64> {
         let mut least = f64::INFINITY;
         self.visit(simulation, |_, expected, actual| {

@@ -1,8 +1,9 @@
 //! The energy balance of a run, and what each kind of run may miss of it.
 //!
-//! Every energy has an account, so that the residual is the error of the leapfrog. It is that of the square of the step where bodies and flows move smoothly, and that of single
-//! steps where something begins or ends within one: a touch, a yield, a bond that breaks, a reference that is renewed. The largest error of the run counts, over the largest energy of
-//! an account in the run.
+//! Every energy has an account, so that the residual is the error of the leapfrog. It is that of the square
+//! of the step where bodies and flows move smoothly, and that of single steps where something begins or ends
+//! within one: a touch, a yield, a bond that breaks, a reference that is renewed. The largest error of the
+//! run counts, over the largest energy of an account in the run.
 
 use meshless_engine::simulation::Simulation;
 
@@ -13,7 +14,8 @@ use crate::check::Check;
 pub enum Kind {
     /// Bodies deform and swing, slide along each other or lie in a flow; flows have surfaces, waves and jets.
     Smooth,
-    /// Bodies yield or break, or slip particle by particle over the edge of a tool; a lattice of fluid particles breaks up.
+    /// Bodies yield or break, or slip particle by particle over the edge of a tool; a lattice of fluid
+    /// particles breaks up.
     Inelastic,
     /// Bodies hit each other, their references are renewed every few steps, or particles leave the run.
     Abrupt,

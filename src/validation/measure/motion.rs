@@ -15,8 +15,8 @@ pub fn body(simulation: &Simulation, name: &str) -> Result<BodyId> {
     Ok(BodyId(k.with_context(|| format!("the scene has no body `{name}`"))?))
 }
 
-/// A material point that need not be a particle: the nearest particle carries it by its deformation gradient; of
-/// equally near ones the mean counts, so that a symmetric motion is measured symmetrically.
+/// A material point that need not be a particle: the nearest particle carries it by its deformation gradient;
+/// of equally near ones the mean counts, so that a symmetric motion is measured symmetrically.
 pub struct MaterialPoint {
     body: BodyId,
     rows: Vec<usize>,
@@ -57,8 +57,9 @@ impl MaterialPoint {
     }
 }
 
-/// What roundings in single precision may change of the momentum of a flow in a second, N: 3e-9 of the magnitudes of the pressure forces of all pairs with 32 k particles. Those of
-/// different particles do not know of each other, so that the share falls with the root of their number.
+/// What roundings in single precision may change of the momentum of a flow in a second, N: 3e-9 of the
+/// magnitudes of the pressure forces of all pairs with 32 k particles. Those of different particles do not
+/// know of each other, so that the share falls with the root of their number.
 pub fn rounded_forces(simulation: &Simulation) -> f64 {
     let cloud = simulation.resources().get::<FlowCloud>();
     let records = cloud.records();

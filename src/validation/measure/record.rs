@@ -42,8 +42,8 @@ impl Record {
         self
     }
 
-    /// Middle of the time in which the value is above `share` of its largest value, s. Where a peak is flat, this is
-    /// well-defined and the time of the largest value is not.
+    /// Middle of the time in which the value is above `share` of its largest value, s. Where a peak is flat,
+    /// this is well-defined and the time of the largest value is not.
     pub fn middle_of_peak(&self, share: f64) -> Result<f64> {
         let (_, largest) = self.maximum()?;
         let level = share * largest;

@@ -55,7 +55,8 @@ fn cantilever_large(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Largest disorder on the way, without control. A run that particles which pair have ended counts up to there.
+/// Largest disorder on the way, without control. A run that particles which pair have ended counts up to
+/// there.
 fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     let (mut simulation, disorder) = beam(registry, across, 0.0)?;
     let mut largest = 0.0f64;

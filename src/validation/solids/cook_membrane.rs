@@ -20,7 +20,8 @@ pub(crate) const CASE: Case = Case {
 const SOURCE: &str = "finite elements, reference.csv";
 
 fn cook_membrane(registry: &Registry, across: usize) -> Result<Vec<Check>> {
-    // The last of the three columns of the clamp stands on the left edge; the right edge is half a spacing outside of the last column.
+    // The last of the three columns of the clamp stands on the left edge; the right edge is half a spacing
+    // outside of the last column.
     let columns = (48.0 * across as f64 / 44.0 - 0.5).round() + 0.5;
     let spacing = 48.0 / columns;
     let left = -2.5 * spacing;

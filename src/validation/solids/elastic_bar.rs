@@ -76,7 +76,8 @@ fn bar(registry: &Registry, along: usize, formulation: &str, plugins: &str) -> R
     Ok(BarMotion { end: record, saw_tooth, balance: balance.unwrap_or(Balance::UNKNOWN) })
 }
 
-/// Root mean square of the second difference of the displacements of the middle row over four, over the largest displacement.
+/// Root mean square of the second difference of the displacements of the middle row over four, over the
+/// largest displacement.
 fn saw_tooth(simulation: &meshless_engine::simulation::Simulation, spacing: f64) -> Result<f64> {
     let (view, _) = simulation.world().body_view(BodyId(0));
     let (x, start) = (view.read::<Position>()?, view.read::<ReferencePosition>()?);

@@ -90,7 +90,8 @@ fn thrown(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     (invariants::THROWN.run)(&eulerian(registry), across)
 }
 
-/// The resolution at which the thick plate swings for 2.5 s, and the thin one, too, once, which costs nearly twice as much.
+/// The resolution at which the thick plate swings for 2.5 s, and the thin one, too, once, which costs nearly
+/// twice as much.
 const DECAY: usize = 10;
 
 fn oscillating_plate(registry: &Registry, across: usize) -> Result<Vec<Check>> {
@@ -129,7 +130,8 @@ fn tension(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// Draws the plate to a strain; gives the axial Cauchy stress in its middle, and the disorder of the free part.
+/// Draws the plate to a strain; gives the axial Cauchy stress in its middle, and the disorder of the free
+/// part.
 fn drawn(registry: &Registry, across: usize, control: &str, strain: f64) -> Result<(f64, f64)> {
     let spacing = 0.02 / across as f64;
     let clamps = 3.0 * spacing;

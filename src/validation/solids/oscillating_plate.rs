@@ -61,8 +61,8 @@ pub(super) fn plate(
     let (_, amplitude) = deflection.clone().until(period).maximum()?;
     let name = |what: &str| format!("h = {thickness} m: {what}");
     let swing = Check::new(name("period"), period, period_reference, Tolerance::Relative(0.02), "s", SOURCE);
-    // In the thin plate the bending stiffness of the control and the softness of the clamp cancel each other at 10 across;
-    // both fall, their sum does not.
+    // In the thin plate the bending stiffness of the control and the softness of the clamp cancel each other
+    // at 10 across; both fall, their sum does not.
     checks.push(if thickness > 0.015 { swing.converging() } else { swing });
     checks.push(
         Check::new(name("amplitude"), amplitude, amplitude_reference, Tolerance::Relative(0.05), "m", SOURCE)

@@ -179,7 +179,8 @@ fn mean_dilatation(simulation: &Simulation) -> Result<f64> {
     Ok(rows.map(|k| volume[k].0 * (gradient[k].0.determinant() - 1.0)).sum::<f64>() / total)
 }
 
-/// Period between two bounds at which the Fourier transform of the record, under a Hann window, is largest, s.
+/// Period between two bounds at which the Fourier transform of the record, under a Hann window, is largest,
+/// s.
 fn spectral_peak(record: &Record, shortest: f64, longest: f64) -> f64 {
     let (samples, end) = (&record.0, record.0.last().map_or(1.0, |last| last.0));
     let mean = samples.iter().map(|s| s.1).sum::<f64>() / samples.len() as f64;

@@ -109,10 +109,12 @@ fn sphere(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Number of ways from the cavity to the outer side of the hollow sphere that its scene has probes at the ends of.
+/// Number of ways from the cavity to the outer side of the hollow sphere that its scene has probes at the
+/// ends of.
 const WAYS: usize = 7;
 
-/// The radial displacement of the surface of the cavity and of the outer side, as the mean at the ends of some ways, whose probes show both ends.
+/// The radial displacement of the surface of the cavity and of the outer side, as the mean at the ends of
+/// some ways, whose probes show both ends.
 fn at_the_surface(simulation: &Simulation, across: usize) -> Result<Vec<Check>> {
     let mut means = [0.0; 2];
     for way in 1..=WAYS {
@@ -143,7 +145,8 @@ fn at_rest(shell: &PressurisedShell, registry: &Registry, across: usize) -> Resu
     Ok(simulation)
 }
 
-/// The radial displacement of the innermost and the outermost layer of particles over that of the closed form at their radii.
+/// The radial displacement of the innermost and the outermost layer of particles over that of the closed form
+/// at their radii.
 fn displacements(shell: &PressurisedShell, simulation: &Simulation, across: usize) -> Result<Vec<Check>> {
     let PressurisedShell { body: name, tolerance, exact, radius, .. } = *shell;
     let spacing = (OUTER - INNER) / across as f64;

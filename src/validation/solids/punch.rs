@@ -33,7 +33,8 @@ const STAGES: [PunchStage; 5] = [
     PunchStage { compression: 0.4, reaction: 3.705e6, half_width: 4.193e-3, tolerance: 0.04 },
     PunchStage { compression: 0.5, reaction: 5.09e6, half_width: 4.478e-3, tolerance: 0.05 },
 ];
-/// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle that is free at its sides.
+/// Compressions and reactions, N/m, between wide tools: the closed form of a rectangle that is free at its
+/// sides.
 const WIDE: [(f64, f64); 3] = [(0.1, 8.62e5), (0.2, 2.024e6), (0.25, 2.772e6)];
 const SOURCE: &str = "finite elements, reference.csv";
 /// Half the range of compression that lines are taken over.
@@ -49,7 +50,7 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut simulation = scene.clone().build(registry)?;
     let block = body(&simulation, "block")?;
     let disorder = Disorder::new(&simulation, block)?;
-    let Pressed { reactions, widths, balance } = press(&mut simulation)?;
+    let PunchRun { reactions, widths, balance } = press(&mut simulation)?;
     let worst = disorder.measure(&simulation)?;
     let last = reactions.last().context("no step")?;
     ensure!(last.0 > 0.5, "pressed to {} only", last.0);
@@ -64,7 +65,8 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
             Check::new(name("half width"), width, half_width, tolerance, "m", SOURCE).converging(),
         ]);
     }
-    // The surface of the block yields by a share of a spacing, which is too much at the resolution of the tests: see the page.
+    // The surface of the block yields by a share of a spacing, which is too much at the resolution of the
+    // tests: see the page.
     if across != CASE.ci_resolution {
         checks.extend(wide(registry, scene.clone())?);
     }
@@ -79,7 +81,7 @@ fn punch(registry: &Registry, across: usize) -> Result<Vec<Check>> {
 }
 
 /// What a run has shown, each over the compression.
-struct Pressed {
+struct PunchRun {
     /// N per metre.
     reactions: Vec<(f64, f64)>,
     /// Half widths, m.
@@ -87,7 +89,7 @@ struct Pressed {
     balance: Balance,
 }
 
-fn press(simulation: &mut Simulation) -> Result<Pressed> {
+fn press(simulation: &mut Simulation) -> Result<PunchRun> {
     let block = body(simulation, "block")?;
     let side = MaterialPoint::new(simulation, block, DVec3::new(3.0e-3, 0.0, 0.0))?;
     let (mut reactions, mut widths) = (Vec::new(), Vec::new());
@@ -99,7 +101,7 @@ fn press(simulation: &mut Simulation) -> Result<Pressed> {
         widths.push((compression, side.position(simulation)?.x));
         Ok(())
     })?;
-    Ok(Pressed { reactions, widths, balance })
+    Ok(PunchRun { reactions, widths, balance })
 }
 
 /// Between tools that are wider than the block, which stays a rectangle: no edge, and closed-form reactions.
@@ -109,7 +111,7 @@ fn wide(registry: &Registry, scene: Template) -> Result<Vec<Check>> {
         .set("bodies.lower.shape", "Box(min: (-4.0e-3, -2.1e-3), max: (4.0e-3, -1.5e-3))")?
         .set("time.end", 2.4e-4)?
         .build(registry)?;
-    let Pressed { reactions, .. } = press(&mut simulation)?;
+    let PunchRun { reactions, .. } = press(&mut simulation)?;
     let check = |(compression, reaction): (f64, f64)| -> Result<Check> {
         let name = format!("tools of 8 mm: reaction at {:.0} %", 100.0 * compression);
         let tolerance = Tolerance::Relative(0.03);
@@ -119,7 +121,8 @@ fn wide(registry: &Registry, scene: Template) -> Result<Vec<Check>> {
     WIDE.into_iter().map(check).collect()
 }
 
-/// The value at a compression. The force falls in steps, whenever a particle slips over the edge of a tool: a line through some of them.
+/// The value at a compression. The force falls in steps, whenever a particle slips over the edge of a tool: a
+/// line through some of them.
 fn at(values: &[(f64, f64)], compression: f64) -> Result<f64> {
     let near = |done: &f64| (done - compression).abs() < WINDOW;
     let window: Vec<_> = values.iter().filter(|(done, _)| near(done)).collect();

@@ -18,7 +18,8 @@ pub(crate) const CASE: Case = Case {
     run: quarter_punch,
 };
 
-/// The coefficient of the paper for this punch, and twice the usual one of the control: what is under the edge of the tool is squeezed to a quarter of its volume.
+/// The coefficient of the paper for this punch, and twice the usual one of the control: what is under the
+/// edge of the tool is squeezed to a quarter of its volume.
 const STABILIZERS: [(&str, &str); 2] =
     [("Hessian", "hessian_stabilization(eta: 1.4)"), ("hourglass", "hourglass_control(alpha: 10.0)")];
 

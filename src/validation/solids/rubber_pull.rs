@@ -59,8 +59,8 @@ fn rubber_pull(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-/// Largest disorder on the way, without control. A particle that is turned inside out ends the run: that is disorder without
-/// bound.
+/// Largest disorder on the way, without control. A particle that is turned inside out ends the run: that is
+/// disorder without bound.
 fn disorder_without(registry: &Registry, across: usize) -> Result<f64> {
     let (mut simulation, disorder) = sheet(registry, across, 0.0)?;
     let mut largest = 0.0f64;

@@ -49,7 +49,8 @@ fn measure(simulation: &Simulation, axis: DVec3, balance: Balance) -> Result<Bar
     Ok(BarShape { length: high - low, radius, plastic_strain, balance })
 }
 
-/// Where the points are of two lines of the surface along the bar, which the scene has probes for: one in a plane of the lattice and the axis, one between two such planes.
+/// Where the points are of two lines of the surface along the bar, which the scene has probes for: one in a
+/// plane of the lattice and the axis, one between two such planes.
 pub fn sides(simulation: &Simulation) -> Result<[Vec<DVec3>; 2]> {
     Ok([side(simulation, "along_axis")?, side(simulation, "between_axes")?])
 }

@@ -63,7 +63,8 @@ fn aluminium(registry: &Registry, across: usize) -> Result<Vec<Check>> {
         .set("bodies.bar.spacing", 7.595e-3 / across as f64)?;
     let mut simulation = template.build(registry)?;
     let shape = impact(&mut simulation, DVec3::Z)?;
-    // Cells of particles reach beyond the surface at the sharp rim of the foot; the surface encloses the volume of the body.
+    // Cells of particles reach beyond the surface at the sharp rim of the foot; the surface encloses the
+    // volume of the body.
     let shape = BarShape { radius: largest_radius(&sides(&simulation)?), ..shape };
     let of_radius = if across < 16 { 0.1 } else { 0.06 };
     Ok(checks(&shape, (0.026304, 0.03), (0.00725, of_radius), 1.5))

@@ -31,7 +31,8 @@ struct Break {
     first: f64,
     /// Elongation at the largest force, m.
     peak: f64,
-    /// Distance from the middle of the first particle that has failed, and the mean of all when the force has halved, m.
+    /// Distance from the middle of the first particle that has failed, and the mean of all when the force has
+    /// halved, m.
     place: (f64, f64),
     /// Energy balance.
     balance: Balance,
@@ -68,8 +69,8 @@ fn tensile_failure(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     ])
 }
 
-/// Elongation at which the middle of the gauge reaches the limit if every section is strained uniformly by the same force: the strain
-/// is as one over the area, whose width falls linearly to the middle.
+/// Elongation at which the middle of the gauge reaches the limit if every section is strained uniformly by
+/// the same force: the strain is as one over the area, whose width falls linearly to the middle.
 fn elongation_of_uniform_sections() -> f64 {
     let pieces = 1000;
     let stretch = |k: usize| {
@@ -117,7 +118,8 @@ fn mean_distance(places: &[f64]) -> f64 {
     places.iter().map(|x| x.abs()).sum::<f64>() / places.len() as f64
 }
 
-/// Force on the right grip, N, and where failed particles were in the reference configuration along the bar, m.
+/// Force on the right grip, N, and where failed particles were in the reference configuration along the bar,
+/// m.
 fn look(simulation: &Simulation) -> Result<(f64, Vec<f64>)> {
     let (view, rows) = simulation.world().body_view(body(simulation, "bar")?);
     let reference = view.read::<ReferencePosition>()?;

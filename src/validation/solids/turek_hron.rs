@@ -45,7 +45,8 @@ fn turek_hron(registry: &Registry, across: usize) -> Result<Vec<Check>> {
     let mut reference = Record::read(REFERENCE, "time", "Uy")?.until(simulation.end());
     reference.0.iter_mut().for_each(|sample| sample.1 = -sample.1);
     let ((_, lowest), (_, lowest_reference)) = (sag.maximum()?, reference.maximum()?);
-    // The flag starts from rest at its highest point, so that half a period passes until the middle of its fall.
+    // The flag starts from rest at its highest point, so that half a period passes until the middle of its
+    // fall.
     let (period, period_reference) = (2.0 * sag.middle_of_peak(0.5)?, 2.0 * reference.middle_of_peak(0.5)?);
     checks.push(
         Check::new(

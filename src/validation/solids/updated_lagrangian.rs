@@ -1,7 +1,9 @@
-//! Cases of total-Lagrangian solids with the updated-Lagrangian formulation in its place: invariants as exact, errors within 1.5 times the tolerances.
+//! Cases of total-Lagrangian solids with the updated-Lagrangian formulation in its place: invariants as
+//! exact, errors within 1.5 times the tolerances.
 //!
-//! Elastic bodies keep their first reference by default, and would be total-Lagrangian ones with another kernel: here they are updated every ten steps, as they need not be.
-//! (`Adaptive(change: 0.25)` makes no update in S11 either: lengths of pairs change by less.) Metals are updated as they are by default.
+//! Elastic bodies keep their first reference by default, and would be total-Lagrangian ones with another
+//! kernel: here they are updated every ten steps, as they need not be. (`Adaptive(change: 0.25)` makes no
+//! update in S11 either: lengths of pairs change by less.) Metals are updated as they are by default.
 
 use anyhow::Result;
 use meshless_engine::formulations::updated_lagrangian::{Update, UpdatedLagrangian};
@@ -93,7 +95,8 @@ fn run(
     Ok(general.map(|check| widened(check, factor)).collect())
 }
 
-/// The check with a wider tolerance. That of the energy is a bound, which others keep: here every update books what it changes between two steps.
+/// The check with a wider tolerance. That of the energy is a bound, which others keep: here every update
+/// books what it changes between two steps.
 fn widened(check: Check, factor: f64) -> Check {
     let factor_of_bound = if check.name.ends_with(ENERGY_BALANCE) { factor } else { 1.0 };
     let check = check.widened(factor);

@@ -1,8 +1,8 @@
 //! Particles in space, as shaded balls, or as the surface that their balls have when seen from the eye.
 //!
-//! The surface is that of screen-space fluids (W. van der Laan, S. Green, M. Sainz, Screen space fluid rendering with
-//! curvature flow, Symposium on Interactive 3D Graphics and Games 2009): the depths of the balls are smoothed where
-//! they differ by little, and normals are those of the smoothed depths.
+//! The surface is that of screen-space fluids (W. van der Laan, S. Green, M. Sainz, Screen space fluid
+//! rendering with curvature flow, Symposium on Interactive 3D Graphics and Games 2009): the depths of the
+//! balls are smoothed where they differ by little, and normals are those of the smoothed depths.
 
 use super::canvas::{Canvas, Rgb, rgb};
 use super::plane::{color_of, pixels};
@@ -83,8 +83,8 @@ fn balls(canvas: &Canvas, frame: &RecordedFrame, view: &View, larger: f32) -> Ve
     seen
 }
 
-/// Means of depth and colour along rows (`stride` 1) or columns (`stride` the width), over pixels that are no more than two
-/// radii nearer or farther.
+/// Means of depth and colour along rows (`stride` 1) or columns (`stride` the width), over pixels that are no
+/// more than two radii nearer or farther.
 fn smoothed(seen: &[SeenPixel], width: usize, height: usize, stride: usize) -> Vec<SeenPixel> {
     let mut result = seen.to_vec();
     for (place, pixel) in result.iter_mut().enumerate().filter(|(_, pixel)| pixel.depth.is_finite()) {
@@ -108,7 +108,8 @@ fn smoothed(seen: &[SeenPixel], width: usize, height: usize, stride: usize) -> V
     result
 }
 
-/// Normals from the differences of the depths, the smaller of both sides, so that they do not reach over an edge.
+/// Normals from the differences of the depths, the smaller of both sides, so that they do not reach over an
+/// edge.
 fn turn_normals(seen: &mut [SeenPixel], width: usize, scale: f32) {
     let depths: Vec<f32> = seen.iter().map(|pixel| pixel.depth).collect();
     let height = depths.len() / width;

@@ -1,5 +1,5 @@
-//! Plane bodies as areas: each pixel has the mean colour of the particles around it, and belongs to a body where these fill it,
-//! or where it lies in a particle, so that lone drops are seen.
+//! Plane bodies as areas: each pixel has the mean colour of the particles around it, and belongs to a body
+//! where these fill it, or where it lies in a particle, so that lone drops are seen.
 
 use super::canvas::{Canvas, Rgb, rgb};
 use super::plane::{color_of, pixels};
@@ -8,7 +8,8 @@ use crate::reading::{RecordedBody, RecordedFrame};
 
 /// Reach of a particle over its radius: two spacings.
 const REACH: f32 = 4.0;
-/// Density of the particles, over that inside of a body, at its surface: half of the surroundings are empty there.
+/// Density of the particles, over that inside of a body, at its surface: half of the surroundings are empty
+/// there.
 const AT_SURFACE: f32 = 0.5;
 
 /// What the particles give to a pixel.

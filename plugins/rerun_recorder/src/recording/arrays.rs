@@ -1,4 +1,5 @@
-//! The columns of a frame as arrow arrays. They are filled here, where loops are optimized, and not by the generic code of rerun's types.
+//! The columns of a frame as arrow arrays. They are filled here, where loops are optimized, and not by the
+//! generic code of rerun's types.
 
 use std::sync::Arc;
 

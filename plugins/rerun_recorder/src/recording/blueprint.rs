@@ -1,7 +1,8 @@
 //! Views and containers of the viewer's layout, written as the viewer keeps them.
 //!
-//! The layout builder of the rerun crate cannot set cameras, backgrounds and bounds of views, and does not tell the
-//! names of its views to those who would set them; the archetypes beneath it can be logged by anyone.
+//! The layout builder of the rerun crate cannot set cameras, backgrounds and bounds of views, and does not
+//! tell the names of its views to those who would set them; the archetypes beneath it can be logged by
+//! anyone.
 
 use re_sdk_types::blueprint::archetypes::{
     ContainerBlueprint, PanelBlueprint, TimePanelBlueprint, ViewBlueprint, ViewContents, ViewportBlueprint,

@@ -18,8 +18,8 @@ impl ColorScale {
         if width > 0.0 { (value - self.low) / width } else { 0.0 }
     }
 
-    /// The narrowest scale with round ends that holds all values from `min` to `max`. It starts at zero if that is
-    /// near, and is symmetric if the values lie on both sides of it.
+    /// The narrowest scale with round ends that holds all values from `min` to `max`. It starts at zero if
+    /// that is near, and is symmetric if the values lie on both sides of it.
     pub fn around(min: f64, max: f64) -> Self {
         let size = min.abs().max(max.abs());
         let width = max - min;
@@ -52,8 +52,8 @@ fn round_up(x: f64) -> f64 {
     fits.unwrap_or(10.0 * decade)
 }
 
-/// The share of the particles at either end that an automatic scale may leave outside: single particles at a corner
-/// or a point load would else take all colours from the rest.
+/// The share of the particles at either end that an automatic scale may leave outside: single particles at a
+/// corner or a point load would else take all colours from the rest.
 const OUTSIDE: f64 = 0.005;
 
 /// The colour scale of a run.
@@ -72,9 +72,9 @@ impl RunningScale {
         Self { fixed, seen: None, last: None }
     }
 
-    /// The scale for a frame with these values. An automatic scale only grows, so that a colour means the same in
-    /// all frames from the one with the largest values on; it grows to what two frames in a row have reached, so that one impact does not take the
-    /// colours from all the rest.
+    /// The scale for a frame with these values. An automatic scale only grows, so that a colour means the
+    /// same in all frames from the one with the largest values on; it grows to what two frames in a row have
+    /// reached, so that one impact does not take the colours from all the rest.
     pub fn update(&mut self, values: &mut Vec<f64>) -> ColorScale {
         if let Some(fixed) = self.fixed {
             return fixed;

@@ -1,7 +1,8 @@
 //! The file of a recording.
 //!
-//! rerun's own writer ends its thread at the first error, and whoever waits for that thread then waits for ever: a full disk would hang
-//! the run. This one keeps the error for those who ask, and drops what comes after it.
+//! rerun's own writer ends its thread at the first error, and whoever waits for that thread then waits for
+//! ever: a full disk would hang the run. This one keeps the error for those who ask, and drops what comes
+//! after it.
 
 use std::fs::File;
 use std::io;

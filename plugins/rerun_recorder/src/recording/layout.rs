@@ -1,4 +1,5 @@
-//! What the viewer shows when a recording is opened: particles with their colour bar on the left, plots on the right.
+//! What the viewer shows when a recording is opened: particles with their colour bar on the left, plots on
+//! the right.
 
 use meshless_engine::scene::Dimension;
 use re_sdk_types::blueprint::archetypes::{

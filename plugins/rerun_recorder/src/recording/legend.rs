@@ -1,4 +1,5 @@
-//! The colour bar: a strip of the colours with five values under it, and under these the extreme values with their places.
+//! The colour bar: a strip of the colours with five values under it, and under these the extreme values with
+//! their places.
 
 use re_sdk_types::archetypes::{Image, Points2D};
 use re_sdk_types::components::Color;

@@ -25,8 +25,8 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// For how long the file is waited for.
 const WRITING: Duration = Duration::from_secs(60);
 
-/// A file and perhaps a viewer, which get the same. They are two streams, so that the file does not depend on the
-/// viewer: the user may close it at any time.
+/// A file and perhaps a viewer, which get the same. They are two streams, so that the file does not depend on
+/// the viewer: the user may close it at any time.
 pub struct RecordingOutput {
     file: RecordingStream,
     written: RecordingFile,

@@ -50,8 +50,8 @@ struct Open {
 
 /// Particles of a body that is grey or does not have the field of the colours: a grey that no colour map has.
 const PLAIN: [u8; 3] = [122, 126, 132];
-/// Share of their radius that particles without colours have in three dimensions, so that a tank does not hide its fluid, nor a tool what it
-/// presses.
+/// Share of their radius that particles without colours have in three dimensions, so that a tank does not
+/// hide its fluid, nor a tool what it presses.
 const SEEN_THROUGH: f32 = 0.2;
 /// Directions of an axis in the viewer's words.
 const UP: u8 = ViewDir::Up as u8;
@@ -60,16 +60,16 @@ const DOWN: u8 = ViewDir::Down as u8;
 const NOT_A_NUMBER: [u8; 3] = [255, 0, 255];
 
 impl RerunFile {
-    /// A recorder that keeps the values of `fields` and draws the bodies of `grey` without colours; `up` is the unit vector that
-    /// points up in the picture.
+    /// A recorder that keeps the values of `fields` and draws the bodies of `grey` without colours; `up` is
+    /// the unit vector that points up in the picture.
     pub fn new(settings: RerunRecorder, fields: Vec<String>, grey: Vec<String>, up: [f64; 3]) -> Self {
         let scale = RunningScale::new(settings.range);
         Self { settings, fields, grey, up, scale, open: None }
     }
 
     fn open(&mut self, run: &RunInfo<'_>) -> Result<(), RerunError> {
-        // A recording cannot be continued: a resumed run writes the rest of the time into a file of its own, and
-        // doing so again replaces that rest.
+        // A recording cannot be continued: a resumed run writes the rest of the time into a file of its own,
+        // and doing so again replaces that rest.
         let (file, existing) = if run.resumed {
             (format!("{}-from-{}s.rrd", run.scene_name, short(run.start_time)), Existing::Replace)
         } else {
@@ -308,8 +308,8 @@ impl Recorder for RerunFile {
         let mut open = self.open.take().ok_or(RerunError::NotOpen)?;
         open.series.send(&open.output).map_err(RecordError::from)?;
         open.output.log_static(&paths::notes(), &open.notes.document(warnings)).map_err(RecordError::from)?;
-        // In the file the camera now has in view where the particles went, and plots leave out accounts that have stayed empty; a
-        // viewer that is watching keeps its own.
+        // In the file the camera now has in view where the particles went, and plots leave out accounts that
+        // have stayed empty; a viewer that is watching keeps its own.
         open.series.finish();
         open.send_layout(true)?;
         Ok(open.output.complete()?)

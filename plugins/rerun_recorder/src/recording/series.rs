@@ -30,7 +30,8 @@ pub struct Plot {
 pub struct SeriesTable {
     bodies: Vec<String>,
     known: Vec<(String, String)>,
-    /// What has come since the last time that it was sent, series by series: one piece costs little more than one value.
+    /// What has come since the last time that it was sent, series by series: one piece costs little more than
+    /// one value.
     pending: BTreeMap<String, Vec<TimedValue>>,
     /// Accounts that have been nothing but zero.
     idle: BTreeSet<String>,
@@ -47,13 +48,15 @@ const MINOR: f64 = 0.01;
 /// Curves in one plot of probes, at most: the entries of a legend that is longer cannot be reached.
 const MOST_CURVES: usize = 8;
 
-/// Values that have been sent over those that are sent next, at most: a recording that is cut short may lack the last of so many parts of its curves.
+/// Values that have been sent over those that are sent next, at most: a recording that is cut short may lack
+/// the last of so many parts of its curves.
 const PIECES: usize = 100;
 
 /// Values of a series that are held back at most.
 const MOST_PENDING: usize = 1000;
 
-/// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008; the last three: P. Tol, 2021).
+/// Colours that differ for all kinds of colour vision, on dark and on light (M. Okabe, K. Ito, 2008; the last
+/// three: P. Tol, 2021).
 const COLORS: [[u8; 3]; 10] = [
     [230, 159, 0],
     [86, 180, 233],
@@ -117,8 +120,9 @@ impl SeriesTable {
         if most < MOST_PENDING { Ok(()) } else { self.send(output) }
     }
 
-    /// Sends what has been taken if that is a good part of all: each piece leaves an entry in the index of the recording, which is kept in
-    /// memory, so that their number may grow with the logarithm of the run only.
+    /// Sends what has been taken if that is a good part of all: each piece leaves an entry in the index of
+    /// the recording, which is kept in memory, so that their number may grow with the logarithm of the run
+    /// only.
     pub fn send_if_due(&mut self, output: &RecordingOutput) -> Result<(), RerunError> {
         if self.longest_pending() * PIECES < self.sent { Ok(()) } else { self.send(output) }
     }
@@ -142,7 +146,8 @@ impl SeriesTable {
         self.over = true;
     }
 
-    /// The accounts that are not drawn among those that matter: below a share of the largest of their group, once the run is over.
+    /// The accounts that are not drawn among those that matter: below a share of the largest of their group,
+    /// once the run is over.
     fn minor(&self) -> Vec<EntityPath> {
         let largest_of = |group: &PlotGroup| {
             let members = self.largest.iter().filter(|(name, _)| self.group(name) == *group);
@@ -245,7 +250,8 @@ impl SeriesTable {
         self.groups().contains(&PlotGroup::Body(body.to_owned()))
     }
 
-    /// Errors of the energy balance, in joules in front: the relative one starts with next to nothing over nothing.
+    /// Errors of the energy balance, in joules in front: the relative one starts with next to nothing over
+    /// nothing.
     pub fn errors(&self) -> Vec<Plot> {
         let mut errors: Vec<(PlotGroup, String)> = self
             .groups()

@@ -115,7 +115,8 @@ impl Drop for WebViewer {
     }
 }
 
-/// Whether the request was sent to this machine by its name: a page from elsewhere that has made its own name point here was not.
+/// Whether the request was sent to this machine by its name: a page from elsewhere that has made its own name
+/// point here was not.
 fn is_local(request: &Request) -> bool {
     let host = request.headers().iter().find(|header| header.field.equiv("Host"));
     let host = host.map_or("", |header| header.value.as_str());

@@ -89,7 +89,8 @@ pub(in crate::scene) fn expression_problem(node: &Node, error: &ExpressionError)
 
 const MARK: char = '\u{1f}';
 
-/// A message about the bytes `start..end` of a text value, for `serde::de::Error::custom`, which can carry only text.
+/// A message about the bytes `start..end` of a text value, for `serde::de::Error::custom`, which can carry
+/// only text.
 pub(in crate::scene) fn text_error(start: usize, end: usize, message: &str, help: &str) -> String {
     format!("{MARK}{start}{MARK}{end}{MARK}{message}{MARK}{help}")
 }

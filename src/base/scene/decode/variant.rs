@@ -1,5 +1,5 @@
-//! serde's view of a variant of an enum. A variant whose parameters all have defaults may be written without brackets,
-//! one without parameters with empty ones.
+//! serde's view of a variant of an enum. A variant whose parameters all have defaults may be written without
+//! brackets, one without parameters with empty ones.
 
 use serde::de::{DeserializeSeed, Deserializer, EnumAccess, VariantAccess, Visitor};
 

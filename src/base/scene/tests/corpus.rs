@@ -1,5 +1,6 @@
-//! The bad scenes of `tests/scenes/bad`. A file says in its first lines what its error must contain, `// expect: text`,
-//! and at which places, `// at: line:column`. With `// level: build` it is a scene that only building it finds bad.
+//! The bad scenes of `tests/scenes/bad`. A file says in its first lines what its error must contain, `//
+//! expect: text`, and at which places, `// at: line:column`. With `// level: build` it is a scene that only
+//! building it finds bad.
 
 use super::super::load;
 use super::folder;

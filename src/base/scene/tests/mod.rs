@@ -1,4 +1,5 @@
-//! Tests of the scene language. The good and bad scenes are files, shared with the tests of what is built from them.
+//! Tests of the scene language. The good and bad scenes are files, shared with the tests of what is built
+//! from them.
 
 mod corpus;
 mod items;

@@ -1,4 +1,5 @@
-//! Removes vertices where triangles of a flat part are needlessly small: cut edges of long fans of triangles leave slivers.
+//! Removes vertices where triangles of a flat part are needlessly small: cut edges of long fans of triangles
+//! leave slivers.
 
 use glam::DVec3;
 
@@ -6,15 +7,18 @@ use super::Facets;
 
 /// An edge is short below this share of the longest one that is wanted.
 const SHORT: f64 = 0.5;
-/// Square of the sine of the angle between normals up to which triangles lie in one plane; files have seven digits.
+/// Square of the sine of the angle between normals up to which triangles lie in one plane; files have seven
+/// digits.
 const FLAT: f64 = 1e-10;
-/// Twice the area over the square of the longest edge from which a triangle is good; half of it for that of a square.
+/// Twice the area over the square of the longest edge from which a triangle is good; half of it for that of a
+/// square.
 const GOOD: f64 = 0.4;
 /// Rounds in which vertices are taken out: each leaves one alone beside one that has gone.
 const ROUNDS: usize = 20;
 
-/// Takes out vertices in flat parts that are closer to another one than half of `longest` \[m\], as long as no edge becomes longer than that and no triangle
-/// turns over or becomes thinner than the thinnest there was. The surface stays where it is.
+/// Takes out vertices in flat parts that are closer to another one than half of `longest` \[m\], as long as
+/// no edge becomes longer than that and no triangle turns over or becomes thinner than the thinnest there
+/// was. The surface stays where it is.
 pub(super) fn coarsened(mut mesh: Facets, longest: f64) -> Facets {
     for _ in 0..ROUNDS {
         let around = triangles_at_vertices(&mesh);

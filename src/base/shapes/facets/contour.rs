@@ -1,9 +1,10 @@
-//! Facets on the surface of any region, including combinations whose parts intersect or go over into each other: dual contouring (Ju, Losasso, Schaefer and
-//! Warren, ACM Trans. Graph. 21, 2002).
+//! Facets on the surface of any region, including combinations whose parts intersect or go over into each
+//! other: dual contouring (Ju, Losasso, Schaefer and Warren, ACM Trans. Graph. 21, 2002).
 //!
-//! Every grid cell that the surface crosses contains a vertex, at the point nearest to the tangent planes at the intersections of the surface with the edges of the
-//! cell. This holds on smooth surfaces, on sharp edges and in corners. Every grid edge that the surface cuts joins the vertices of the four cells
-//! around it, in two dimensions those of the two cells beside it.
+//! Every grid cell that the surface crosses contains a vertex, at the point nearest to the tangent planes at
+//! the intersections of the surface with the edges of the cell. This holds on smooth surfaces, on sharp edges
+//! and in corners. Every grid edge that the surface cuts joins the vertices of the four cells around it, in
+//! two dimensions those of the two cells beside it.
 
 use std::collections::BTreeMap;
 
@@ -21,16 +22,19 @@ const HALVINGS: usize = 34;
 const STEP: f64 = 1e-5;
 /// Distance over the length of a cell within which a point is on the surface of a part.
 const ON: f64 = 1e-9;
-/// Eigenvalue over the largest one, below which tangent planes do not say where the vertex is in that direction.
+/// Eigenvalue over the largest one, below which tangent planes do not say where the vertex is in that
+/// direction.
 const FLAT: f64 = 0.05;
 
-/// The surface of `region` in facets of about `length`; none if it has no end, or if two pieces of an outline go through one cell.
+/// The surface of `region` in facets of about `length`; none if it has no end, or if two pieces of an outline
+/// go through one cell.
 pub(super) fn of_region(region: &dyn Region, axes: usize, length: f64) -> Option<Facets> {
     let bounds = region.bounds();
     if !bounds.is_bounded() {
         return None;
     }
-    // Planes of the grid stand half a cell away from the sides of the box, which are often faces of the shape.
+    // Planes of the grid stand half a cell away from the sides of the box, which are often faces of the
+    // shape.
     let cell = bounds.extent() / (bounds.extent() / length).round().max(DVec3::ONE);
     let frame = Aabb { min: bounds.min - 0.5 * cell, max: bounds.max + 0.5 * cell };
     let grid = Tiling::new(&frame, &frame, cell, axes);
@@ -65,7 +69,8 @@ struct Net<'a> {
 }
 
 impl Net<'_> {
-    /// Whether the surface leaves the region along the edge from the corner of a cell that is farthest along `across` on along `axis`, or enters it.
+    /// Whether the surface leaves the region along the edge from the corner of a cell that is farthest along
+    /// `across` on along `axis`, or enters it.
     fn leaves(&self, cell: [usize; 3], across: &[usize], axis: usize) -> Option<bool> {
         let corner = beyond(cell, across);
         let ends = [corner, beyond(corner, &[axis])].map(|node| is_inside(self.region, self.grid, node));

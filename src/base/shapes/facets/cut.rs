@@ -1,5 +1,5 @@
-//! The outline of a combination of shapes: those pieces of the outlines of its parts that have the inside of the combination on one side and the
-//! outside on the other.
+//! The outline of a combination of shapes: those pieces of the outlines of its parts that have the inside of
+//! the combination on one side and the outside on the other.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use glam::DVec3;
 use super::{Facets, directed_area};
 use crate::shapes::region::Region;
 
-/// How far beside a line the inside is looked for, over the length of its segments: farther than they are from the curves that they stand for.
+/// How far beside a line the inside is looked for, over the length of its segments: farther than they are
+/// from the curves that they stand for.
 const BESIDE: f64 = 0.1;
 /// Segments shorter than this share of the usual length are left out; ends that are so near are one point.
 const SHORTEST: f64 = 0.2;

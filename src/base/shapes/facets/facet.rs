@@ -15,8 +15,8 @@ pub struct Facets {
     pub axes: usize,
     /// Vertices, on the surface \[m\].
     pub points: Vec<DVec3>,
-    /// Vertices of every facet, of which segments use the first two; the outward normal is to the right of a segment, and that of triangles that
-    /// go round counter-clockwise.
+    /// Vertices of every facet, of which segments use the first two; the outward normal is to the right of a
+    /// segment, and that of triangles that go round counter-clockwise.
     pub corners: Vec<[u32; 3]>,
 }
 
@@ -39,7 +39,8 @@ impl Facets {
         (directed.normalize_or_zero(), measure)
     }
 
-    /// Whether segments join in closed lines that do not meet: each point is the end of one and the start of another.
+    /// Whether segments join in closed lines that do not meet: each point is the end of one and the start of
+    /// another.
     pub(super) fn is_closed_line(&self) -> bool {
         let mut ends = vec![[0; 2]; self.points.len()];
         for [a, b, _] in &self.corners {
@@ -76,8 +77,8 @@ pub fn directed_area(axes: usize, [a, b, c]: &[DVec3; 3]) -> DVec3 {
 }
 
 impl Shape {
-    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of particle files, and of meshes that are
-    /// much finer.
+    /// The surface of a checked shape in facets of about `length` \[m\]; none where it is not known: of
+    /// particle files, and of meshes that are much finer.
     pub fn facets(&self, dimension: Dimension, folder: &Path, length: f64) -> Option<Facets> {
         match dimension {
             Dimension::Two => outline::of_shape(self, folder, length),

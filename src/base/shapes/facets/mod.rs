@@ -1,4 +1,5 @@
-//! Surfaces of flat facets with outward normals, of about the requested length: segments in two dimensions, triangles in three.
+//! Surfaces of flat facets with outward normals, of about the requested length: segments in two dimensions,
+//! triangles in three.
 
 mod coarse;
 mod contour;

@@ -43,7 +43,8 @@ pub(super) fn of_shape(shape: &Shape, folder: &Path, length: f64) -> Option<Face
     if is_single(shape) {
         return Some(leaves);
     }
-    // Where curves go over into each other, as at rounded corners, it is not clear from points beside them which is the outline.
+    // Where curves go over into each other, as at rounded corners, it is not clear from points beside them
+    // which is the outline.
     cut::boundary(&leaves, &*region, length).or_else(|| contour::of_region(&*region, 2, length))
 }
 

@@ -9,7 +9,8 @@ use super::Facets;
 /// Rounds of cutting in two: edges become a thousand times shorter.
 const ROUNDS: usize = 10;
 
-/// Cuts all edges longer than `longest` \[m\] in two, until there are none. Neighbouring triangles stay neighbours.
+/// Cuts all edges longer than `longest` \[m\] in two, until there are none. Neighbouring triangles stay
+/// neighbours.
 pub(super) fn refined(mut mesh: Facets, longest: f64) -> Facets {
     for _ in 0..ROUNDS {
         let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();

@@ -111,7 +111,8 @@ fn outlines_that_go_over_into_each_other_close_around_their_area() {
     );
 }
 
-/// The planes of the grid of 5 cells stand at the odd tenths of the length, the faces at which the boxes meet on one of them.
+/// The planes of the grid of 5 cells stand at the odd tenths of the length, the faces at which the boxes meet
+/// on one of them.
 #[test]
 fn parts_that_meet_on_a_plane_of_the_grid_are_one() {
     let boxes = "Union([Box(min: (0, 0, 0), max: (0.125, 0.2, 0.2)), Box(min: (0.125, 0, 0), max: (0.25, 0.2, 0.2))])";

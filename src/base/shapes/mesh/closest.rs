@@ -9,11 +9,11 @@ use crate::shapes::moments::Moments;
 use crate::shapes::region::Region;
 use crate::shapes::surface::{Surface, SurfacePoint};
 
-/// The normals that tell inside from outside wherever the nearest point is: on a face its normal, on an edge the mean of both faces, at a
-/// corner the mean weighted by angles.
+/// The normals that tell inside from outside wherever the nearest point is: on a face its normal, on an edge
+/// the mean of both faces, at a corner the mean weighted by angles.
 ///
-/// Bærentzen and Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE Transactions on Visualization and Computer
-/// Graphics 11 (2005), 243-253.
+/// Bærentzen and Aanæs, Signed distance computation using the angle weighted pseudonormal, IEEE Transactions
+/// on Visualization and Computer Graphics 11 (2005), 243-253.
 pub(super) struct Normals {
     faces: Vec<DVec3>,
     edges: Vec<[DVec3; 3]>,

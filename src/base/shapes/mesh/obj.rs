@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::fault::MeshFault;
 
-/// The triangles of an OBJ file \[unit of the file\]. Faces of more than three corners are cut into triangles from their first corner
-/// on, which is right for convex ones.
+/// The triangles of an OBJ file \[unit of the file\]. Faces of more than three corners are cut into triangles
+/// from their first corner on, which is right for convex ones.
 pub(super) fn read(text: &str) -> Result<Vec<[DVec3; 3]>, MeshFault> {
     let mut points = Vec::new();
     let mut triangles = Vec::new();

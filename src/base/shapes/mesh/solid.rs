@@ -20,7 +20,8 @@ pub(in crate::shapes) struct MeshSolid {
 }
 
 impl MeshSolid {
-    /// Joins and checks triangles given by their corners \[m\]. Meshes that face inward as a whole are turned.
+    /// Joins and checks triangles given by their corners \[m\]. Meshes that face inward as a whole are
+    /// turned.
     ///
     /// # Errors
     /// The triangles are not the surface of a solid.
@@ -50,7 +51,8 @@ impl MeshSolid {
     }
 }
 
-/// The volume of the tetrahedra between the triangles and a point near them, positive if they face away from the inside \[m³\].
+/// The volume of the tetrahedra between the triangles and a point near them, positive if they face away from
+/// the inside \[m³\].
 fn volume(triangles: &Triangles, origin: DVec3) -> f64 {
     let six_times = |n: usize| {
         let [a, b, c] = triangles.at(n).map(|corner| corner - origin);

@@ -156,7 +156,8 @@ fn nearest_points_at_edges_and_corners_of_a_cube() {
 
 #[test]
 fn the_sign_holds_at_a_sharp_edge() {
-    // A wedge of one degree: in front of the edge the nearest point belongs to two faces that look away from each other.
+    // A wedge of one degree: in front of the edge the nearest point belongs to two faces that look away from
+    // each other.
     let s = 0.5f64.to_radians().sin();
     let (tip, tail) = ([DVec3::ZERO, DVec3::Z], [DVec3::new(1.0, s, 0.0), DVec3::new(1.0, -s, 0.0)]);
     let lift = |p: DVec3| p + DVec3::Z;

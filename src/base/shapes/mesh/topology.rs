@@ -16,7 +16,8 @@ pub(super) struct Triangles {
 }
 
 impl Triangles {
-    /// Joins equal corners. Triangles that have no three different corners are left out: files of round parts have some.
+    /// Joins equal corners. Triangles that have no three different corners are left out: files of round parts
+    /// have some.
     pub fn join(triangles: &[[DVec3; 3]]) -> Result<Self, MeshFault> {
         let mut joined = Self { points: Vec::new(), corners: Vec::new() };
         let mut known = BTreeMap::new();

@@ -16,7 +16,8 @@ struct BoxNode {
     count: u32,
 }
 
-/// Boxes about boxes, halved at the middle triangle of the longest side: the depth is the logarithm of the number of triangles.
+/// Boxes about boxes, halved at the middle triangle of the longest side: the depth is the logarithm of the
+/// number of triangles.
 pub(super) struct Tree {
     nodes: Vec<BoxNode>,
     /// Numbers of triangles, leaf after leaf.
@@ -52,7 +53,8 @@ impl Tree {
         self.split(boxes, middle, end);
     }
 
-    /// Calls `visit` for triangles that may be nearer to `point` than the square of a distance that it returns, near boxes first.
+    /// Calls `visit` for triangles that may be nearer to `point` than the square of a distance that it
+    /// returns, near boxes first.
     pub fn nearest(&self, point: DVec3, mut visit: impl FnMut(u32) -> f64) {
         let square = |node: u32| {
             let bounds = &self.nodes[node as usize].bounds;

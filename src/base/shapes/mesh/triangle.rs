@@ -50,7 +50,8 @@ pub(super) fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, TrianglePart) 
     (a + vb / sum * ab + vc / sum * ac, TrianglePart::Face)
 }
 
-/// Whether the segment from `p` to `q` goes through triangle `t` from one side to the other. An end on the triangle does not count.
+/// Whether the segment from `p` to `q` goes through triangle `t` from one side to the other. An end on the
+/// triangle does not count.
 pub(super) fn is_pierced([a, b, c]: [DVec3; 3], p: DVec3, q: DVec3) -> bool {
     // Six times the volume of a tetrahedron, and what round-off may make of none.
     let size = [b - a, c - a, p - a, q - a].iter().fold(0.0, |size: f64, edge| size.max(edge.length()));

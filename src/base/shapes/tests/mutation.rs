@@ -1,4 +1,5 @@
-//! Damaged meshes and particle files: any content gives a result or an error. `PROPTEST_CASES` sets the number of cases.
+//! Damaged meshes and particle files: any content gives a result or an error. `PROPTEST_CASES` sets the
+//! number of cases.
 
 use proptest::prelude::*;
 

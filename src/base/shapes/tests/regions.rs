@@ -160,8 +160,8 @@ fn a_hole_through_a_body_has_no_lid() {
     assert_eq!(channel.clearance(DVec3::new(0.5, -1.0, 0.0)), -0.5);
 }
 
-/// A slit in the floor of a tank, in the two orders and as one hole of two parts: the distance is that from the corners of the slit or its sides, and crossing the lines along which
-/// the sides go on it does not jump.
+/// A slit in the floor of a tank, in the two orders and as one hole of two parts: the distance is that from
+/// the corners of the slit or its sides, and crossing the lines along which the sides go on it does not jump.
 #[test]
 fn a_slit_in_a_floor_is_open_and_has_no_sides_above_it() {
     let (outer, tank, slit) = (

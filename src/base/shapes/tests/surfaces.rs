@@ -1,4 +1,5 @@
-//! Nearest points of surfaces: closed forms at faces, edges, corners and inside; properties that any surface has.
+//! Nearest points of surfaces: closed forms at faces, edges, corners and inside; properties that any surface
+//! has.
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! The active contacts of a step and their forces. Both are computed in parallel and kept in the order of the
-//! candidates. Energies are added by the nodes of the first body, in blocks of its rows, so that nothing depends on the number of threads or on the age of the list of candidates.
+//! candidates. Energies are added by the nodes of the first body, in blocks of its rows, so that nothing
+//! depends on the number of threads or on the age of the list of candidates.
 
 use super::filter::{BLOCKS_OF_TEST, Found, keep};
 use crate::contact::response::{ContactEnergy, Histories, History, PairKey};
@@ -9,7 +10,8 @@ use crate::world::sum_by_row;
 /// In the place of a number for candidates that do not touch.
 const NONE: u32 = u32::MAX;
 
-/// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is what else the candidates tell.
+/// The candidates of a step that touch, each with what is known of it, `T`, and what it does, `P`; `E` is
+/// what else the candidates tell.
 pub(in crate::contact) struct ActiveContacts<T, P, E> {
     /// As long as the list of candidates; in each block those that touch come first.
     slots: Vec<(PairKey, T)>,
@@ -57,7 +59,8 @@ impl<T, P, E> Default for ActiveContacts<T, P, E> {
 impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockSum + Sync>
     ActiveContacts<T, P, E>
 {
-    /// Makes room for that many candidates. What is not used is not touched: it takes addresses, and no memory.
+    /// Makes room for that many candidates. What is not used is not touched: it takes addresses, and no
+    /// memory.
     pub fn reserve(&mut self, count: usize) {
         fn room<V>(list: &mut Vec<V>, count: usize) {
             list.reserve(count.saturating_sub(list.len()));
@@ -73,7 +76,8 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         self.histories.reserve(count);
     }
 
-    /// Finds out which candidates, ascending, touch. Returns what `test` adds up; it keeps an `S` from one candidate of a block to the next.
+    /// Finds out which candidates, ascending, touch. Returns what `test` adds up; it keeps an `S` from one
+    /// candidate of a block to the next.
     pub fn find<S: Default>(
         &mut self,
         candidates: &[PairKey],
@@ -131,8 +135,8 @@ impl<T: Copy + Default + Send + Sync, P: Copy + Default + Send + Sync, E: BlockS
         self.histories.set(self.met.iter().map(|(key, met)| (*key, begun(*key, met))).collect());
     }
 
-    /// Computes what every contact does, with what it remembers, and what those do that have ended. Returns what all of them hold and
-    /// lose, added by the `nodes` of the first body.
+    /// Computes what every contact does, with what it remembers, and what those do that have ended. Returns
+    /// what all of them hold and lose, added by the `nodes` of the first body.
     pub fn respond(
         &mut self,
         nodes: usize,

@@ -2,7 +2,8 @@
 
 use crate::parallel::{BLOCK, BlockSum, Split, block_count, for_each_block, for_each_block_in_tasks};
 
-/// Blocks of a test that a thread takes at a time: a test takes some ten nanoseconds beside a box, and microseconds beside a mesh.
+/// Blocks of a test that a thread takes at a time: a test takes some ten nanoseconds beside a box, and
+/// microseconds beside a mesh.
 pub(super) const BLOCKS_OF_TEST: usize = 4;
 
 /// What the test of a block has found.
@@ -33,7 +34,8 @@ impl<T: Copy + Default + Send + Sync, E: BlockSum + Sync> Filter<T, E> {
         Self { slots: Vec::with_capacity(count), found: Vec::with_capacity(block_count(count)) }
     }
 
-    /// Puts into `kept` what `test` makes of the numbers below `count`, in their order; returns what it adds up.
+    /// Puts into `kept` what `test` makes of the numbers below `count`, in their order; returns what it adds
+    /// up.
     pub fn select(
         &mut self,
         count: usize,

@@ -1,4 +1,5 @@
-//! The active contacts among the candidates of a step, with their histories and forces, and the sums of the forces on particles.
+//! The active contacts among the candidates of a step, with their histories and forces, and the sums of the
+//! forces on particles.
 
 mod least;
 

@@ -1,5 +1,5 @@
-//! The particles of a body in contact in a step. The motion of their neighbourhoods is computed once for each, and every
-//! particle sums the forces of its contacts in their order.
+//! The particles of a body in contact in a step. The motion of their neighbourhoods is computed once for
+//! each, and every particle sums the forces of its contacts in their order.
 
 use glam::{DMat3, DVec3};
 
@@ -43,14 +43,16 @@ pub(in crate::contact) struct ContactNodes {
     nodes: Vec<u32>,
     /// Where the ends of each begin.
     starts: Vec<u32>,
-    /// Of every particle its candidates, ascending: twice their number, and one more where it is the second one.
+    /// Of every particle its candidates, ascending: twice their number, and one more where it is the second
+    /// one.
     ends: Vec<u32>,
     local_motions: Vec<LocalMotion>,
     /// Sum of the forces on each, N.
     forces: Vec<DVec3>,
     /// Sums of f (x) A of forces on points A beside it, N m.
     couples: Vec<DMat3>,
-    /// Sums of stiffness over mass of the contacts of each, 1/s2: a bound on the square of a frequency (Gershgorin).
+    /// Sums of stiffness over mass of the contacts of each, 1/s2: a bound on the square of a frequency
+    /// (Gershgorin).
     stiffness: Vec<f64>,
     /// Heat that each takes up in the step, J.
     heat: Vec<f64>,

@@ -22,12 +22,14 @@ pub(in crate::contact) const BUMPS: &str = "what slides on particles meets bumps
 #[derive(Clone)]
 pub(in crate::contact) struct MemberParticles {
     pub body: BodyId,
-    /// Radius of every particle in the reference configuration, m: half the side of the square or cube of its volume.
+    /// Radius of every particle in the reference configuration, m: half the side of the square or cube of its
+    /// volume.
     pub radius: Vec<f64>,
-    /// Whether their shapes follow their deformation. In a body that may fail they stay spheres: the deformation gradient
-    /// of what has failed is that of a crack.
+    /// Whether their shapes follow their deformation. In a body that may fail they stay spheres: the
+    /// deformation gradient of what has failed is that of a crack.
     pub deform: bool,
-    /// Number of particles on the largest side of the box around the body: what may touch at once, of most bodies.
+    /// Number of particles on the largest side of the box around the body: what may touch at once, of most
+    /// bodies.
     pub on_a_side: usize,
 }
 

@@ -1,4 +1,5 @@
-//! The bodies in contact in their current state: their motion bounds, particles with the ellipsoids into which they deform, points and surfaces.
+//! The bodies in contact in their current state: their motion bounds, particles with the ellipsoids into
+//! which they deform, points and surfaces.
 
 mod error;
 

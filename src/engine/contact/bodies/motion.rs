@@ -1,7 +1,9 @@
-//! Bounds of the motion and the stretches of the bodies in contact, which determine how long a list of candidates is valid.
+//! Bounds of the motion and the stretches of the bodies in contact, which determine how long a list of
+//! candidates is valid.
 //!
-//! Velocities of a body lie in a ball around a velocity of its own. So two bodies approach each other at most with the distance of their two velocities and both radii, which no
-//! common velocity changes, and no third body.
+//! Velocities of a body lie in a ball around a velocity of its own. So two bodies approach each other at most
+//! with the distance of their two velocities and both radii, which no common velocity changes, and no third
+//! body.
 
 use glam::DVec3;
 
@@ -12,7 +14,8 @@ use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{BodyId, DeformationGradient, Velocity};
 
-/// Bounds of the velocities of a body, and a bound of how far it is stretched: in tenths, so that lists are seldom built for another one.
+/// Bounds of the velocities of a body, and a bound of how far it is stretched: in tenths, so that lists are
+/// seldom built for another one.
 #[derive(Clone, Copy)]
 pub(in crate::contact) struct MotionBounds {
     /// In the middle of the velocities, m/s.
@@ -26,7 +29,8 @@ impl MotionBounds {
     /// Of a body that does not move.
     pub const NONE: Self = Self { velocity: DVec3::ZERO, spread: 0.0, stretch: 1.0 };
 
-    /// Bounds of the speeds of two bodies in the frame of the first one, whose sum bounds how fast they approach each other, m/s.
+    /// Bounds of the speeds of two bodies in the frame of the first one, whose sum bounds how fast they
+    /// approach each other, m/s.
     pub fn speeds([first, second]: [Self; 2]) -> [f64; 2] {
         [first.spread, first.velocity.distance(second.velocity) + second.spread]
     }

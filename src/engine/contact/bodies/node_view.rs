@@ -8,7 +8,8 @@ use crate::rigid::{RigidBody, Round};
 use crate::shapes::SurfacePoint;
 use crate::solids::LocalMotion;
 
-/// Which of the two contacts of a pair of rigid bodies, of the nodes of each with the surface of the other, it is.
+/// Which of the two contacts of a pair of rigid bodies, of the nodes of each with the surface of the other,
+/// it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::contact) enum NodeTurn {
     /// There is no other.
@@ -102,7 +103,8 @@ impl NodeView<'_> {
         on_surface(distance, normal, shape)
     }
 
-    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a rim the distance is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
+    /// The nearest point of the surface of a tool to a node with its centre at `x`, m. For a rim the distance
+    /// is that of its lowest point, and the surface the plane that is tangential to it at the point nearest
     /// to the centre. None where a rim lies flat.
     pub fn nearest(&self, i: usize, x: DVec3, tool: &RigidBody) -> Option<SurfacePoint> {
         let nearest = tool.surface.closest(tool.reference(x));
@@ -114,13 +116,15 @@ impl NodeView<'_> {
         Some(SurfacePoint { point, signed_distance, ..nearest })
     }
 
-    /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its centre, and does not touch its rim.
+    /// Whether the lowest point of a rim is inside of the tool; a tool in the hole of a ring is near its
+    /// centre, and does not touch its rim.
     pub fn reaches(&self, i: usize, x: DVec3, normal: DVec3, tool: &RigidBody) -> bool {
         let Some(Some(arm)) = self.lowest(i, normal, tool) else { return true };
         tool.surface.closest(tool.reference(x) + arm).signed_distance < 0.0
     }
 
-    /// From the centre of a rim to its lowest point over a plane of that normal, both in the reference configuration of the tool, if the node is a rim.
+    /// From the centre of a rim to its lowest point over a plane of that normal, both in the reference
+    /// configuration of the tool, if the node is a rim.
     fn lowest(&self, i: usize, normal: DVec3, tool: &RigidBody) -> Option<Option<DVec3>> {
         let Self::Rigid(body) = self else { return None };
         let Round::Rim(rim) = body.nodes.list()[i].round else { return None };
@@ -128,8 +132,9 @@ impl NodeView<'_> {
         Some(rim.lowest(turn * normal).map(|arm| turn.inverse() * arm))
     }
 
-    /// Whether contact at a point of a tool is left to the nodes of that: its round outline touches with circles of its own. Those of a ball lie in every plane, and go before the rims of a cylinder; of two alike the
-    /// first contact keeps it.
+    /// Whether contact at a point of a tool is left to the nodes of that: its round outline touches with
+    /// circles of its own. Those of a ball lie in every plane, and go before the rims of a cylinder; of two
+    /// alike the first contact keeps it.
     pub fn leaves_to(&self, i: usize, tool: &RigidBody, point: DVec3, turn: NodeTurn) -> bool {
         let Self::Rigid(body) = self else { return false };
         if turn == NodeTurn::Alone || !tool.nodes.is_round(point) {
@@ -144,8 +149,9 @@ impl NodeView<'_> {
         }
     }
 
-    /// The place at which both bodies are pushed: where the material touches, `arm` beside the particle in the reference configuration. A sphere
-    /// has no spin: it is pushed where it is, so that angular momentum is kept; a rigid body is pushed at the surface.
+    /// The place at which both bodies are pushed: where the material touches, `arm` beside the particle in
+    /// the reference configuration. A sphere has no spin: it is pushed where it is, so that angular momentum
+    /// is kept; a rigid body is pushed at the surface.
     pub fn place(&self, i: usize, position: DVec3, arm: DVec3, on_surface: impl FnOnce() -> DVec3) -> DVec3 {
         match self {
             Self::Particles(members) => position + members.carry(i, arm),

@@ -1,15 +1,18 @@
-//! The shapes of particles in contact: ellipsoids, into which the deformation gradients map spheres of half a spacing.
+//! The shapes of particles in contact: ellipsoids, into which the deformation gradients map spheres of half a
+//! spacing.
 //!
-//! Overlaps are measured in the reference configuration, d = r (1 - s), where s is the distance of the other side over its distance at first
-//! contact. Contact is thus at the surface of the body however flat its particles are, a rotating particle keeps its shape, and
-//! the spring of a particle stiffens as it gets thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the
-//! point of contact `x_i + F_i A_i` and not at the particle (see [`LocalMotion`](crate::solids::LocalMotion)).
+//! Overlaps are measured in the reference configuration, d = r (1 - s), where s is the distance of the other
+//! side over its distance at first contact. Contact is thus at the surface of the body however flat its
+//! particles are, a rotating particle keeps its shape, and the spring of a particle stiffens as it gets
+//! thinner, as its bonds do. The potential depends on deformation gradients: its force acts at the point of
+//! contact `x_i + F_i A_i` and not at the particle (see [`LocalMotion`](crate::solids::LocalMotion)).
 
 use glam::{DMat3, DVec3};
 
 use crate::world::DeformationGradient;
 
-/// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a sphere.
+/// A particle: radius in the reference configuration, m, and deformation gradient; without one it stays a
+/// sphere.
 pub(in crate::contact) type Shape = (f64, Option<DMat3>);
 
 /// Where two sides are near each other.
@@ -25,9 +28,10 @@ pub(in crate::contact) struct Nearness {
     pub arms: [DVec3; 2],
 }
 
-/// The ellipsoids of two particles; `x_ij` leads from the first to the second. The sum of both is taken for the ellipsoid of
-/// `Q = (r_i + r_j) (r_i F_i F_i^T + r_j F_j F_j^T)`, which is exact where both have one deformation gradient, and s^2 = x . Q^-1 x. The point of
-/// contact is the same seen from both: F_i A_i - F_j A_j = Q Q^-1 x = x.
+/// The ellipsoids of two particles; `x_ij` leads from the first to the second. The sum of both is taken for
+/// the ellipsoid of `Q = (r_i + r_j) (r_i F_i F_i^T + r_j F_j F_j^T)`, which is exact where both have one
+/// deformation gradient, and s^2 = x . Q^-1 x. The point of contact is the same seen from both: F_i A_i - F_j
+/// A_j = Q Q^-1 x = x.
 pub(in crate::contact) fn of_pair(x_ij: DVec3, first: Shape, second: Shape) -> Nearness {
     let reach = first.0 + second.0;
     let square = |(radius, f): Shape| f.map_or(DMat3::IDENTITY, |f| f * f.transpose()) * (reach * radius);
@@ -42,8 +46,8 @@ pub(in crate::contact) fn of_pair(x_ij: DVec3, first: Shape, second: Shape) -> N
     }
 }
 
-/// The ellipsoid of a particle and a surface at a signed distance along its outward normal: s = distance / (r |F^T n|). The point of contact is
-/// on the surface.
+/// The ellipsoid of a particle and a surface at a signed distance along its outward normal: s = distance /
+/// (r |F^T n|). The point of contact is on the surface.
 pub(in crate::contact) fn on_surface(distance: f64, normal: DVec3, (radius, f): Shape) -> Nearness {
     let along = f.map_or(normal, |f| f.transpose() * normal);
     let stretch = along.length();

@@ -48,13 +48,16 @@ pub(in crate::contact) struct ContactSides {
     pub seams: Vec<Repeat>,
 }
 
-/// How near to the end of a period a point of a surface counts as one of the side there, over the period, and cosine of its normal from which on it does.
+/// How near to the end of a period a point of a surface counts as one of the side there, over the period, and
+/// cosine of its normal from which on it does.
 const AT_SEAM: f64 = 1e-6;
 const TO_SEAM: f64 = 0.5;
-/// Shares of the way to the middle of the body at which the surface is looked for in place of a point near its end.
+/// Shares of the way to the middle of the body at which the surface is looked for in place of a point near
+/// its end.
 const INWARD: [f64; 2] = [0.03, 0.25];
 
-/// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without radius.
+/// Overlap at the start that is let pass, over the radius of a node, and over the spacing of nodes without
+/// radius.
 const RADIUS_SHARE: f64 = 0.5;
 const SPACING_SHARE: f64 = 0.05;
 
@@ -86,8 +89,9 @@ impl ContactSides {
         }
     }
 
-    /// The nearest point of the surface to the image of a place that is nearest to its body, in the reference configuration of the body. Where the body fills a period its
-    /// ends are no surface: it goes on behind them.
+    /// The nearest point of the surface to the image of a place that is nearest to its body, in the reference
+    /// configuration of the body. Where the body fills a period its ends are no surface: it goes on behind
+    /// them.
     pub fn closest(&self, x: DVec3, tool: &RigidBody) -> SurfacePoint {
         let at = tool.reference(self.near(x, tool));
         let mut found = tool.surface.closest(at);
@@ -111,7 +115,8 @@ impl ContactSides {
         found
     }
 
-    /// How far two rigid bodies are apart at least, m, by the balls around their centres; zero for particles and unbounded bodies.
+    /// How far two rigid bodies are apart at least, m, by the balls around their centres; zero for particles
+    /// and unbounded bodies.
     pub fn gap(&self, nodes: &NodeView<'_>, tool: &RigidBody) -> f64 {
         let NodeView::Rigid(body) = nodes else { return 0.0 };
         if !(tool.surface.bounds().is_bounded() && body.surface.bounds().is_bounded()) {

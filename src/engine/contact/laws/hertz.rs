@@ -7,9 +7,9 @@ use super::law::{ContactLaw, ContactPair, NormalForce, Spring, Touch};
 use crate::materials::ParameterError;
 use crate::scene::Dimension;
 
-/// Contact of elastic spheres: f = 4/3 E* sqrt(R) d^(3/2), with 1/R = 1/R1 + 1/R2. In two dimensions there is no such law
-/// of the overlap alone; the force of the sphere is spread over its radius, f = 4/3 E* sqrt(d/R) d per metre of
-/// thickness.
+/// Contact of elastic spheres: f = 4/3 E* sqrt(R) d^(3/2), with 1/R = 1/R1 + 1/R2. In two dimensions there is
+/// no such law of the overlap alone; the force of the sphere is spread over its radius, f = 4/3 E* sqrt(d/R)
+/// d per metre of thickness.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Hertz {
@@ -25,8 +25,8 @@ pub enum PlaneForce {
     /// The force of a sphere over its radius, per metre of thickness.
     #[default]
     OverRadius,
-    /// The force of one sphere, taken for that of a metre of thickness, as in Ganzenmueller 2015. It depends on the
-    /// spacing, and is so soft at usual ones that bodies pass through each other.
+    /// The force of one sphere, taken for that of a metre of thickness, as in Ganzenmueller 2015. It depends
+    /// on the spacing, and is so soft at usual ones that bodies pass through each other.
     Sphere,
 }
 
@@ -69,8 +69,9 @@ impl NormalForce for Sphere {
         1.5 * c * deepest.sqrt()
     }
 
-    /// With the dashpot proportional to d^(1/4), the motion in the variables d^(5/4) and the integral of d^(1/4) dt is
-    /// that of a linear spring and dashpot (Antypov and Elliott, Europhys. Lett. 94 (2011) 50004).
+    /// With the dashpot proportional to d^(1/4), the motion in the variables d^(5/4) and the integral of
+    /// d^(1/4) dt is that of a linear spring and dashpot (Antypov and Elliott, Europhys. Lett. 94 (2011)
+    /// 50004).
     fn damping_factor(&self) -> f64 {
         (5.0_f64 / 6.0).sqrt()
     }

@@ -35,13 +35,15 @@ impl ContactPair {
 /// Where two surfaces overlap.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
-    /// Depth of the overlap d, m; positive. Between particles that deform it is that in the reference configuration.
+    /// Depth of the overlap d, m; positive. Between particles that deform it is that in the reference
+    /// configuration.
     pub overlap: f64,
     /// Radius of a sphere on a plane with the same gap, `1/R = 1/R_1 + 1/R_2`, m.
     pub radius: f64,
     /// Length that the contact stands for, m: the distance of the centres of two particles that just touch.
     pub length: f64,
-    /// Overlap at which the centre of a particle is at the surface, or those of two at one place, m; infinite between rigid bodies.
+    /// Overlap at which the centre of a particle is at the surface, or those of two at one place, m; infinite
+    /// between rigid bodies.
     pub depth: f64,
 }
 
@@ -77,12 +79,12 @@ pub trait NormalForce: Send + Sync {
     /// The force at an overlap. It must be zero at zero overlap and rise with it.
     fn at(&self, touch: &Touch) -> Spring;
 
-    /// The tangent stiffness at the deepest point of an impact, N/m: of a mass, kg, at a speed, m/s. The overlap of
-    /// `touch` is not used.
+    /// The tangent stiffness at the deepest point of an impact, N/m: of a mass, kg, at a speed, m/s. The
+    /// overlap of `touch` is not used.
     fn stiffness_of_impact(&self, touch: &Touch, mass: f64, speed: f64) -> f64;
 
-    /// A number g of the law, such that the dashpot `2 zeta g sqrt(stiffness mass)` has the restitution of a linear
-    /// spring with damping ratio zeta.
+    /// A number g of the law, such that the dashpot `2 zeta g sqrt(stiffness mass)` has the restitution of a
+    /// linear spring with damping ratio zeta.
     fn damping_factor(&self) -> f64 {
         1.0
     }

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-/// Ratio of the speeds after and before an impact on a linear spring and dashpot of damping ratio zeta, where the contact
-/// ends when the force has fallen to zero (Schwager and Poeschel, Granular Matter 9 (2007) 465-469).
+/// Ratio of the speeds after and before an impact on a linear spring and dashpot of damping ratio zeta, where
+/// the contact ends when the force has fallen to zero (Schwager and Poeschel, Granular Matter 9 (2007)
+/// 465-469).
 pub fn restitution(zeta: f64) -> f64 {
     if zeta < 1.0 {
         let frequency = (1.0 - zeta * zeta).sqrt();
@@ -18,8 +19,8 @@ pub fn restitution(zeta: f64) -> f64 {
     }
 }
 
-/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5 more than the steps of an impact bear: it would turn the velocity
-/// around within one.
+/// Least restitution that a dashpot makes: the damping ratio of zero would be infinite, and a ratio above 5
+/// more than the steps of an impact bear: it would turn the velocity around within one.
 const LEAST: f64 = 0.01;
 
 /// Damping ratio of a restitution from 0 to 1.

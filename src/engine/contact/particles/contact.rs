@@ -12,8 +12,8 @@ use crate::schedule::{Step, StepError};
 use crate::symmetry::Map;
 use crate::world::{Position, ReferencePosition};
 
-/// Particles of one body closer than this in the reference configuration do not touch, over the distance at which they
-/// would: bonds hold them apart.
+/// Particles of one body closer than this in the reference configuration do not touch, over the distance at
+/// which they would: bonds hold them apart.
 const APART: f64 = 2.5;
 
 /// Candidates of every particle of a side for which there is room from the start.
@@ -102,7 +102,8 @@ impl ParticleContact {
         self.contacts.begin(|_, near| History::begun(near.overlap, part));
     }
 
-    /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a bound of all stretches.
+    /// Searches for pairs that may touch where they may be others; returns the speed of approach, m/s, and a
+    /// bound of all stretches.
     fn search_anew(&mut self, step: &Step<'_>, motion: [MotionBounds; 2]) -> Result<(f64, f64), StepError> {
         let speed = MotionBounds::approach(motion, &self.mirror);
         let stretch = motion[0].stretch.max(motion[1].stretch);
@@ -120,7 +121,8 @@ impl ParticleContact {
         Ok((speed, stretch))
     }
 
-    /// The force of every pair that touches; returns the energies, and the least distance of two that are near and just touch, m.
+    /// The force of every pair that touches; returns the energies, and the least distance of two that are
+    /// near and just touch, m.
     fn evaluate(&mut self, step: &Step<'_>, stretch: f64) -> Result<(ContactEnergy, f64), StepError> {
         let first = MemberColumns::new(&self.first, step.world, step.resources)?;
         let second = MemberColumns::new(&self.second, step.world, step.resources)?;

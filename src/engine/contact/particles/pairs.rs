@@ -10,8 +10,8 @@ use crate::neighbors::Periodic;
 use crate::solids::LocalMotion;
 use crate::symmetry::Map;
 
-/// Force on the first particle of a pair, N, where it acts on both, in the reference configuration, m, and the stiffness of the spring over
-/// the mass of either side, 1/s2.
+/// Force on the first particle of a pair, N, where it acts on both, in the reference configuration, m, and
+/// the stiffness of the spring over the mass of either side, 1/s2.
 #[derive(Clone, Copy, Default)]
 pub(in crate::contact) struct PairPush {
     arms: [DVec3; 2],

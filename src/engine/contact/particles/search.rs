@@ -1,7 +1,8 @@
-//! Candidates of contact: pairs within reach and a skin, searched again when the bodies may have moved by the skin.
+//! Candidates of contact: pairs within reach and a skin, searched again when the bodies may have moved by the
+//! skin.
 //!
-//! The search covers the particles near the common part of the boxes around two bodies. The list contains every pair in
-//! contact, however old it is, so that results do not depend on its age.
+//! The search covers the particles near the common part of the boxes around two bodies. The list contains
+//! every pair in contact, however old it is, so that results do not depend on its age.
 
 use glam::DVec3;
 
@@ -101,8 +102,8 @@ impl Search {
         }
     }
 
-    /// Takes in how far the two bodies may have moved together, m, and how far their particles are stretched at most, and says whether
-    /// the list has to be built again. It is then built for this stretch.
+    /// Takes in how far the two bodies may have moved together, m, and how far their particles are stretched
+    /// at most, and says whether the list has to be built again. It is then built for this stretch.
     pub fn moved(&mut self, distance: f64, stretch: f64) -> bool {
         self.travelled += distance;
         let grown = (self.largest[0] + self.largest[1]) * (stretch - self.stretch).max(0.0);
@@ -154,8 +155,8 @@ impl Search {
         Ok(())
     }
 
-    /// Finds the pairs of a body with itself, or with an image of itself, that `apart` accepts, the smaller number first. A particle may
-    /// touch its own image.
+    /// Finds the pairs of a body with itself, or with an image of itself, that `apart` accepts, the smaller
+    /// number first. A particle may touch its own image.
     pub fn of_itself(
         &mut self,
         own: Crowd<'_>,

@@ -1,14 +1,15 @@
 //! Images of bodies in contact, across periodic sides and symmetry planes.
 //!
-//! Across a periodic side the nearest image counts. Across symmetry planes the particles of the first body touch mirror images of those of the
-//! second: a force on the first acts mirrored, with opposite sign, on the source of the image. Of the two pairs of the whole problem, one is
-//! the mirror image of the other, and one lies in the half that is computed.
+//! Across a periodic side the nearest image counts. Across symmetry planes the particles of the first body
+//! touch mirror images of those of the second: a force on the first acts mirrored, with opposite sign, on the
+//! source of the image. Of the two pairs of the whole problem, one is the mirror image of the other, and one
+//! lies in the half that is computed.
 
 use crate::symmetry::{Map, MirrorPlane, Repeat, maps_of};
 use crate::world::BodyId;
 
-/// The images of the second body that the first one may touch, beginning with that body itself: mirrored by each plane that cuts both, and by
-/// planes at right angles together.
+/// The images of the second body that the first one may touch, beginning with that body itself: mirrored by
+/// each plane that cuts both, and by planes at right angles together.
 pub(super) fn mirrors(planes: &[MirrorPlane], first: BodyId, second: BodyId) -> Vec<Map> {
     let cuts = |plane: &&MirrorPlane| plane.bodies.contains(first) && plane.bodies.contains(second);
     maps_of(&planes.iter().filter(cuts).map(Repeat::from).collect::<Vec<_>>())

@@ -55,7 +55,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Two deformable bodies, or one with itself: their skins, or particles with each image of the second one.
+    /// Two deformable bodies, or one with itself: their skins, or particles with each image of the second
+    /// one.
     fn deformable(
         &mut self,
         named: &Named<'_>,
@@ -90,7 +91,8 @@ impl Planner<'_> {
         let mut pairs = Vec::new();
         for mirror in mirrors(self.planes, first.id, second.id) {
             let mut bodies = [first, second].map(|body| self.particles(body));
-            // Beside spheres the other side keeps spheres, too: then forces act along the line of the centres.
+            // Beside spheres the other side keeps spheres, too: then forces act along the line of the
+            // centres.
             let deform = bodies.iter().all(|particles| particles.deform);
             bodies.iter_mut().for_each(|particles| particles.deform = deform);
             let interaction = self.interaction(named, ContactSurface::Particles)?;
@@ -119,7 +121,8 @@ impl Planner<'_> {
         })
     }
 
-    /// A contact of skins, which ends where a body can fail and does so; `particles` are what touches from then on.
+    /// A contact of skins, which ends where a body can fail and does so; `particles` are what touches from
+    /// then on.
     fn until_failure(
         &mut self,
         skins: Touching,

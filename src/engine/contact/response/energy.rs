@@ -23,12 +23,14 @@ pub(in crate::contact) struct ContactEnergy {
 }
 
 impl ContactEnergy {
-    /// Of springs in the last step of a contact that others take over from: they hold nothing more, and do not act in the kick that follows.
+    /// Of springs in the last step of a contact that others take over from: they hold nothing more, and do
+    /// not act in the kick that follows.
     pub fn given_up(self) -> Self {
         Self { stored: 0.0, changed: self.stored + self.ahead, ..self }
     }
 
-    /// Of springs in their first step, which have taken over: they act in the kick that follows, and have not in the one before.
+    /// Of springs in their first step, which have taken over: they act in the kick that follows, and have not
+    /// in the one before.
     pub fn taken_over(self) -> Self {
         let Losses { damping, friction } = self.losses;
         Self { changed: -(self.stored + self.ahead + damping + friction), ..self }

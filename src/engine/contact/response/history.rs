@@ -3,7 +3,8 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Which contact: number of a node of the first body, and number of a node of the second, or zero for its surface.
+/// Which contact: number of a node of the first body, and number of a node of the second, or zero for its
+/// surface.
 pub(in crate::contact) type PairKey = (u32, u32);
 
 /// What a contact remembers.
@@ -17,7 +18,8 @@ pub(in crate::contact) struct History {
     pub dashpot: DVec3,
     /// Depth of the overlap, m; zero where there was none.
     pub overlap: f64,
-    /// How much deeper the sides overlap, m: what took over from other springs begins with the energy of these.
+    /// How much deeper the sides overlap, m: what took over from other springs begins with the energy of
+    /// these.
     pub offset: f64,
     /// From the particles of both sides to where the forces act, in the reference configuration, m.
     pub arms: [DVec3; 2],
@@ -47,8 +49,8 @@ impl History {
     }
 }
 
-/// The histories of all contacts of two bodies, ascending by pair. A new generation is written while the old one is
-/// read: what is not written again has ended.
+/// The histories of all contacts of two bodies, ascending by pair. A new generation is written while the old
+/// one is read: what is not written again has ended.
 #[derive(Clone, Debug, Default)]
 pub(in crate::contact) struct Histories {
     now: Vec<(PairKey, History)>,

@@ -1,10 +1,13 @@
-//! The force of one contact: spring and dashpot along the normal; spring, dashpot and Coulomb's limit in the tangential direction.
+//! The force of one contact: spring and dashpot along the normal; spring, dashpot and Coulomb's limit in the
+//! tangential direction.
 //!
-//! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at the end of the
-//! step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time step, and the
-//! restitution does not depend on the step to first order. Other forces act there too: bonds hold a particle of a body and balance the contact force f of the
-//! last step, weight and other contacts move a rigid body, whose acceleration a of the last step has f in it. So only the change of f counts, beside a: `u = (u' + dt/2 (a - w (f - f_last)))/(1 + dt/2 w c)`.
-//! Otherwise a dashpot would pull at pressed bodies at rest, its heat would be negative, and stacks would be kicked whenever the step changes.
+//! Velocities are those of mid-step. The dashpots act on the velocity that results from the contact itself at
+//! the end of the step, `u = (u' - dt/2 w f)/(1 + dt/2 w c)` with the inverse mass w. They damp at any time
+//! step, and the restitution does not depend on the step to first order. Other forces act there too: bonds
+//! hold a particle of a body and balance the contact force f of the last step, weight and other contacts move
+//! a rigid body, whose acceleration a of the last step has f in it. So only the change of f counts, beside a:
+//! `u = (u' + dt/2 (a - w (f - f_last)))/(1 + dt/2 w c)`. Otherwise a dashpot would pull at pressed bodies at
+//! rest, its heat would be negative, and stacks would be kicked whenever the step changes.
 
 use glam::DVec3;
 
@@ -38,7 +41,8 @@ pub(in crate::contact) struct ContactState {
     pub arms: [DVec3; 2],
     /// Velocity of the first side relative to the second at that point at mid-step, m/s.
     pub velocity: DVec3,
-    /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of rigid bodies; those on particles are in balance.
+    /// Acceleration there of the first side relative to the second by all forces of the last step, m/s2: of
+    /// rigid bodies; those on particles are in balance.
     pub acceleration: DVec3,
 }
 
@@ -88,16 +92,18 @@ impl Interaction {
         self.beside(spring, &ContactState { touch, ..*state }, inverse_mass, dt, before)
     }
 
-    /// What a contact held at the end of the last step that ends because a particle is taken out, and what its force there would have taken from the motion in the last
-    /// kick, J; the sides move against each other at that velocity, m/s.
+    /// What a contact held at the end of the last step that ends because a particle is taken out, and what
+    /// its force there would have taken from the motion in the last kick, J; the sides move against each
+    /// other at that velocity, m/s.
     pub fn held(&self, state: &ContactState, dt: f64, before: &History) -> f64 {
         let touch = Touch { overlap: before.overlap, ..state.touch };
         let force = before.pressure - before.dashpot.dot(state.normal);
         self.law.at(&touch).energy - 0.5 * dt * force * state.normal.dot(state.velocity)
     }
 
-    /// The spring of a point of a surface that remembers nothing, of an area over that for which the law holds: where it was in the last step and will be in the
-    /// next follows from the speed at which it approaches, m/s.
+    /// The spring of a point of a surface that remembers nothing, of an area over that for which the law
+    /// holds: where it was in the last step and will be in the next follows from the speed at which it
+    /// approaches, m/s.
     #[inline]
     pub fn spring(&self, touch: &Touch, area: f64, approach: f64, dt: f64) -> Spring {
         let mut spring = self.law.at(touch).over(area);
@@ -145,8 +151,8 @@ impl Interaction {
         }
     }
 
-    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the share of a
-    /// step for which it is to act in the kicks around the end of its first one.
+    /// A dashpot whose force jumps at the first touch has acted since then, not since half a step before: the
+    /// share of a step for which it is to act in the kicks around the end of its first one.
     fn share_of_first_step(&self, touch: &Touch, approach: f64, dt: f64, before: &History) -> f64 {
         if before.is_none()
             && approach * dt > 0.0
@@ -158,7 +164,8 @@ impl Interaction {
         }
     }
 
-    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is what the spring does to it.
+    /// Force of a dashpot beside a spring of that stiffness that slows a motion at `speed`, N; `force` is
+    /// what the spring does to it.
     fn dashpot(&self, stiffness: f64, inverse_mass: f64, speed: f64, force: f64, dt: f64) -> f64 {
         if self.damping_ratio == 0.0 || inverse_mass <= 0.0 {
             return 0.0;
@@ -207,9 +214,10 @@ fn is_held(touch: &Touch) -> bool {
     touch.depth.is_finite()
 }
 
-/// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a contact has acted since the sides met, with
-/// half of that force in the mean; in its last it acts until they part. Without this share a touch would miss up to an eighth of
-/// `k (v dt)^2` of its energy at either end. Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
+/// The force of a spring acts in the kicks around the end of a step, half a step each. In its first step a
+/// contact has acted since the sides met, with half of that force in the mean; in its last it acts until they
+/// part. Without this share a touch would miss up to an eighth of `k (v dt)^2` of its energy at either end.
+/// Rigid bodies take steps so short that it does not matter, and gain no energy by this guess.
 fn share_of_step(touch: &Touch, approach: f64, before: &History) -> f64 {
     share_of_way(touch, if before.is_none() { approach } else { before.overlap - touch.overlap })
 }
@@ -228,8 +236,8 @@ impl Losses {
         self.friction += other.friction;
     }
 
-    /// Adds what the forces of a contact took at one end of the step, where the first side moves against the second at that velocity, m/s:
-    /// one of the two kicks puts half of each force into the motion.
+    /// Adds what the forces of a contact took at one end of the step, where the first side moves against the
+    /// second at that velocity, m/s: one of the two kicks puts half of each force into the motion.
     pub fn add_work(&mut self, share: f64, history: &History, velocity: DVec3, dt: f64) {
         let half = 0.5 * share * dt * velocity;
         self.damping -= history.dashpot.dot(half);

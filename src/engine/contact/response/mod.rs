@@ -1,4 +1,5 @@
-//! One contact: its force from overlap and velocity, what it remembers of the last step, its energy and the time step that it allows.
+//! One contact: its force from overlap and velocity, what it remembers of the last step, its energy and the
+//! time step that it allows.
 
 mod history;
 

@@ -6,23 +6,29 @@ use crate::contact::laws::{NormalForce, Touch};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, Mass};
 
-/// A third of the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts together stay stable, and what
-/// the first and the last step of a touch miss of its energy, which goes with the square of this, stays small.
+/// A third of the critical step of the contacts alone: bonds, which have used up 0.6 of theirs, and contacts
+/// together stay stable, and what the first and the last step of a touch miss of its energy, which goes with
+/// the square of this, stays small.
 const FREQUENCY_FACTOR: f64 = 0.7;
 /// Share of the distance of two particles that just touch by which they may approach in a step.
 const SWEPT_FACTOR: f64 = 0.25;
 
-/// Factor for a touch of skins that begins or ends, two fifths of the critical step of the contact of a skin alone, which is 1.33 over the root of stiffness over the mass
-/// of a layer of particles: what a touch misses at its ends is a share of `k (v dt)^2` of a spring that begins, and bodies that bounce then keep their energy to a thousandth.
+/// Factor for a touch of skins that begins or ends, two fifths of the critical step of the contact of a skin
+/// alone, which is 1.33 over the root of stiffness over the mass of a layer of particles: what a touch misses
+/// at its ends is a share of `k (v dt)^2` of a spring that begins, and bodies that bounce then keep their
+/// energy to a thousandth.
 const OF_LANDING: f64 = 0.55;
-/// Factor for skins that are pressed: together with bonds, which have used up 0.65 of theirs, nine tenths of the critical step. What hardens as it is pressed is stiff where nothing begins.
+/// Factor for skins that are pressed: together with bonds, which have used up 0.65 of theirs, nine tenths of
+/// the critical step. What hardens as it is pressed is stiff where nothing begins.
 const OF_PRESSED: f64 = 0.85;
-/// Ways in a step over the depth at which the centre of a particle is at the surface (of rigid bodies, over the deepest overlap), up to which the spring stays what it is within a step, and from which on it changes
+/// Ways in a step over the depth at which the centre of a particle is at the surface (of rigid bodies, over
+/// the deepest overlap), up to which the spring stays what it is within a step, and from which on it changes
 /// so much that the step is that of a touch that begins.
 const STEADY: [f64; 2] = [0.01, 0.04];
 
-/// Steps of the present length within which skins that are apart may touch: from then on the step is that of a touch. A step that is longer than the contact
-/// allows would put a point that touches for the first time too deep, and make energy.
+/// Steps of the present length within which skins that are apart may touch: from then on the step is that of
+/// a touch. A step that is longer than the contact allows would put a point that touches for the first time
+/// too deep, and make energy.
 const AHEAD: f64 = 3.0;
 /// Overlap over the spacing whose stiffness stands for that of a touch to come: laws may begin with none.
 const EXPECTED: f64 = 0.05;
@@ -40,8 +46,9 @@ pub(in crate::contact) struct OfSkins<'a> {
     /// Sum of the largest speeds, m/s, and length of the step, s.
     pub speed: f64,
     pub dt: f64,
-    /// Whether the reference of all that deforms stays. A reference that follows wants the steps of a touch for as long as it lasts: where the edge of a tool squeezes particles to
-    /// a quarter of their volume, they lose their order in longer ones.
+    /// Whether the reference of all that deforms stays. A reference that follows wants the steps of a touch
+    /// for as long as it lasts: where the edge of a tool squeezes particles to a quarter of their volume,
+    /// they lose their order in longer ones.
     pub keeps_reference: bool,
 }
 
@@ -76,10 +83,12 @@ impl OfSkins<'_> {
     }
 }
 
-/// Share of the usual step while springs let go that were loaded at the start: a leapfrog that starts from rest loses (omega dt)^2 / 4 of their energy for good, which is
-/// 8 % in usual steps and a thousandth in these. The step grows again as any other that was short does.
+/// Share of the usual step while springs let go that were loaded at the start: a leapfrog that starts from
+/// rest loses (omega dt)^2 / 4 of their energy for good, which is 8 % in usual steps and a thousandth in
+/// these. The step grows again as any other that was short does.
 const OF_LOADED: f64 = 0.11;
-/// Overlap of one particle, over the distance at which particles just touch, whose energy counts as a load. What touches at the start overlaps by round-off.
+/// Overlap of one particle, over the distance at which particles just touch, whose energy counts as a load.
+/// What touches at the start overlaps by round-off.
 const LOADED: f64 = 1e-3;
 
 /// How two bodies touch, as far as the step follows from it.
@@ -125,8 +134,10 @@ pub(in crate::contact) fn propose(
     Ok(())
 }
 
-/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its energy; and where bodies lie, slide or roll on each other and nothing begins or
-/// ends. Friction, the corners of slender bodies and others on the far side make the frequency up to four times as large, so that steps stay below that part of the critical one.
+/// Step of the contacts of rigid bodies, over one over their frequency: some sixty steps an impact, for its
+/// energy; and where bodies lie, slide or roll on each other and nothing begins or ends. Friction, the
+/// corners of slender bodies and others on the far side make the frequency up to four times as large, so that
+/// steps stay below that part of the critical one.
 const IMPACT_FACTORS: [f64; 2] = [0.05, 0.3];
 
 /// Frequency of all springs together over that of a slow swing of a body on them, such as rocking.
@@ -146,7 +157,8 @@ impl NormalMotion {
     /// Of a particle that forces move: nothing is known of how it lands.
     pub const UNKNOWN: Self = Self { deepest: 0.0, speed: f64::INFINITY, acceleration: 0.0 };
 
-    /// Of one point that moves at `speed`, m/s, with this acceleration, m/s2, before a step of length `dt`, s.
+    /// Of one point that moves at `speed`, m/s, with this acceleration, m/s2, before a step of length `dt`,
+    /// s.
     pub fn of(overlap: f64, speed: f64, acceleration: f64, dt: f64) -> Self {
         if overlap > 0.0 || -overlap < AHEAD * speed * dt {
             Self { deepest: overlap.max(0.0), speed, acceleration }
@@ -162,8 +174,9 @@ impl NormalMotion {
         self.acceleration = self.acceleration.max(other.acceleration);
     }
 
-    /// Step over one over the frequency. The speed that counts is that of a swing about the state of balance, whose speed and acceleration are never zero at once: steps that
-    /// change within a swing would give it energy.
+    /// Step over one over the frequency. The speed that counts is that of a swing about the state of balance,
+    /// whose speed and acceleration are never zero at once: steps that change within a swing would give it
+    /// energy.
     fn factor(&self, frequency: f64, dt: f64) -> f64 {
         let [of_impact, at_rest] = IMPACT_FACTORS;
         if dt == 0.0 {
@@ -192,10 +205,12 @@ pub(in crate::contact) fn propose_rigid(
     }
 }
 
-/// Share of the spacing by which two rigid bodies that may touch may approach in a step, and of the gap between them.
+/// Share of the spacing by which two rigid bodies that may touch may approach in a step, and of the gap
+/// between them.
 const APPROACH_FACTOR: [f64; 2] = [0.1, 0.25];
 
-/// Proposes the limit of two bodies, one of which is rigid, that approach with a velocity, m/s, over a gap, m.
+/// Proposes the limit of two bodies, one of which is rigid, that approach with a velocity, m/s, over a gap,
+/// m.
 pub(in crate::contact) fn propose_approach(
     step: &mut Step<'_>,
     pair: (BodyId, BodyId),

@@ -5,7 +5,8 @@ use glam::DVec3;
 /// Numbers of vertices, and where all vertices of their side were and are, m.
 pub(super) type Displaced<'a> = (&'a [u32], &'a [DVec3], &'a [DVec3]);
 
-/// A bound of how much closer any two vertices of both sides have come, m; not a number if a place is none. What all have moved in common does not count.
+/// A bound of how much closer any two vertices of both sides have come, m; not a number if a place is none.
+/// What all have moved in common does not count.
 pub(super) fn approach(sides: [Displaced<'_>; 2]) -> f64 {
     let [first, second] = [range(sides[0]), range(sides[1])];
     let (least, most) = (first.0.min(second.0), first.1.max(second.1));

@@ -113,8 +113,9 @@ impl NearFacets<'_> {
         self.periodic.map_or(x, |periodic| center + periodic.minimal_image(x - center))
     }
 
-    /// The facet with the point nearest to `x`, with the square of its distance, m2, and the shares of the vertices there, if that is less than `farthest`, m. Of facets that
-    /// are equally near it is the first one.
+    /// The facet with the point nearest to `x`, with the square of its distance, m2, and the shares of the
+    /// vertices there, if that is less than `farthest`, m. Of facets that are equally near it is the first
+    /// one.
     #[inline(always)]
     fn nearest(&self, x: DVec3, farthest: f64) -> Option<(f64, u32, [f64; 3])> {
         let Self { patch, places, facets, .. } = *self;
@@ -146,8 +147,8 @@ impl NearFacets<'_> {
     }
 }
 
-/// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls are farther than the nearest
-/// one so far are passed over.
+/// The foot of `x` on the nearest of some facets, if it is no farther than `farthest`, m. Facets whose balls
+/// are farther than the nearest one so far are passed over.
 pub(super) fn foot(near: &NearFacets<'_>, x: DVec3, farthest: f64) -> Option<Foot> {
     let NearFacets { patch, places, .. } = *near;
     let axes = patch.skin.facets.axes;
@@ -172,8 +173,8 @@ fn point(corners: &[DVec3; 3], shares: [f64; 3]) -> DVec3 {
     shares[0] * corners[0] + shares[1] * corners[1] + shares[2] * corners[2]
 }
 
-/// The normals of the facets that meet at a vertex or an edge, weighted by the angles at which they do (Baerentzen and Aanaes, IEEE Trans. Vis. Comput.
-/// Graph. 11, 2005).
+/// The normals of the facets that meet at a vertex or an edge, weighted by the angles at which they do
+/// (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 2005).
 fn mean_normal(patch: &Patch, facet: u32, shares: [f64; 3]) -> DVec3 {
     let skin = &patch.skin;
     let axes = skin.facets.axes;
@@ -210,7 +211,8 @@ fn on_segment(x: DVec3, &[a, b, _]: &[DVec3; 3]) -> [f64; 3] {
     [1.0 - part, part, 0.0]
 }
 
-/// Shares of the corners of a triangle at the point nearest to `x` (Ericson, Real-Time Collision Detection (2005), section 5.1.5).
+/// Shares of the corners of a triangle at the point nearest to `x` (Ericson, Real-Time Collision Detection
+/// (2005), section 5.1.5).
 fn on_triangle(x: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
     let (ab, ac, ap, bp, cp) = (b - a, c - a, x - a, x - b, x - c);
     let (d1, d2, d3, d4, d5, d6) = (ab.dot(ap), ac.dot(ap), ab.dot(bp), ac.dot(bp), ab.dot(cp), ac.dot(cp));
@@ -242,7 +244,8 @@ fn on_triangle(x: DVec3, &[a, b, c]: &[DVec3; 3]) -> [f64; 3] {
     [va / sum, vb / sum, vc / sum]
 }
 
-/// The slope of a function that is linear on a facet, from its values at the vertices, and those of the shares of the vertices, 1/m.
+/// The slope of a function that is linear on a facet, from its values at the vertices, and those of the
+/// shares of the vertices, 1/m.
 pub(super) fn slopes(axes: usize, corners: &[DVec3; 3], values: [f64; 3]) -> (DVec3, [DVec3; 3]) {
     let [a, b, c] = *corners;
     let of_shares = if axes == 2 {

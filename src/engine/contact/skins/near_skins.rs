@@ -1,7 +1,9 @@
-//! Facets of two skins that may touch each other, searched again when the skins have moved by the margin of the search.
+//! Facets of two skins that may touch each other, searched again when the skins have moved by the margin of
+//! the search.
 //!
-//! Bounds of the speeds of the bodies say when the skins may have moved so far. Then their vertices are looked at, and where they have moved less, the facets are kept.
-//! The search covers regions of the skins, which are searched again when the bodies may have moved a few spacings.
+//! Bounds of the speeds of the bodies say when the skins may have moved so far. Then their vertices are
+//! looked at, and where they have moved less, the facets are kept. The search covers regions of the skins,
+//! which are searched again when the bodies may have moved a few spacings.
 
 use glam::DVec3;
 
@@ -16,7 +18,8 @@ use crate::skins::{Skin, SkinView};
 
 /// Gap over the spacing up to which facets are candidates.
 const NEAR: f64 = 1.5;
-/// How far the corners of a facet are from its centre at most, over the spacing, in two and three dimensions, and by how much it may be stretched before a period is too short.
+/// How far the corners of a facet are from its centre at most, over the spacing, in two and three dimensions,
+/// and by how much it may be stretched before a period is too short.
 const LONGEST: [f64; 2] = [0.25, 0.75];
 /// Share of the margin that must be left for the facets to be kept.
 const KEPT: f64 = 0.3;
@@ -80,7 +83,8 @@ impl NearSkins {
         2.0 * (NEAR + 2.0 * STRETCHED * LONGEST[skins[0].facets.axes - 2]) * spacing
     }
 
-    /// Takes in a step of that length, s, with a largest speed of both bodies together, m/s. Says whether the facets have to be found again.
+    /// Takes in a step of that length, s, with a largest speed of both bodies together, m/s. Says whether the
+    /// facets have to be found again.
     pub fn is_old(&mut self, speed: f64, dt: f64) -> bool {
         let way = FASTER * speed * dt;
         self.left -= way;
@@ -97,7 +101,8 @@ impl NearSkins {
         }
     }
 
-    /// Finds the facets near each other, and the points on them. Says whether there may be others than before.
+    /// Finds the facets near each other, and the points on them. Says whether there may be others than
+    /// before.
     pub fn find(
         &mut self,
         skins: [&Skin; 2],
@@ -152,7 +157,8 @@ impl NearSkins {
         Ok(true)
     }
 
-    /// Keeps the facets within `near`, m, if the vertices of the regions have moved so little that no others come closer than `margin`, m, soon.
+    /// Keeps the facets within `near`, m, if the vertices of the regions have moved so little that no others
+    /// come closer than `margin`, m, soon.
     fn keeps(&mut self, near: f64, margin: f64) -> bool {
         let Self { regions, found_at, places, .. } = self;
         let of_side = |side: usize| (&regions[side].vertices[..], &found_at[side][..], &places[side][..]);
@@ -203,7 +209,8 @@ impl NearSkins {
         Ok(())
     }
 
-    /// Asks for memory before the bodies meet: each facet may have as many of the other skin near it as it has of its own.
+    /// Asks for memory before the bodies meet: each facet may have as many of the other skin near it as it
+    /// has of its own.
     fn make_room(&mut self, skins: [&Skin; 2], points: usize, reach: f64) -> Result<(), NeighborError> {
         for side in 0..2 {
             let facets = skins[side].facets.corners.len();
@@ -227,7 +234,8 @@ impl NearSkins {
         });
     }
 
-    /// Finds the centres of the facets of the region of a side; returns how far the vertices of one are from its centre at most, m.
+    /// Finds the centres of the facets of the region of a side; returns how far the vertices of one are from
+    /// its centre at most, m.
     fn find_centers(&mut self, side: usize, skin: &Skin) -> f64 {
         let (centers, places) = (&mut self.centers[side], &self.places[side]);
         centers.clear();

@@ -1,6 +1,8 @@
-//! Facets of a skin that may touch a tool, searched again when the bodies may have moved by the skin of the search.
+//! Facets of a skin that may touch a tool, searched again when the bodies may have moved by the skin of the
+//! search.
 //!
-//! The search covers a region of the skin, which is searched again when the bodies may have moved a few spacings.
+//! The search covers a region of the skin, which is searched again when the bodies may have moved a few
+//! spacings.
 
 use glam::DVec3;
 
@@ -14,7 +16,8 @@ use crate::skins::{Skin, SkinView};
 const NEAR: f64 = 1.5;
 /// Gap that is left when the candidates are found again: a facet is one for some steps before it touches.
 pub(super) const MARGIN: f64 = 0.5;
-/// Speed of a point of a skin over the largest one of particles, at most: its weights add up to one, and some are negative.
+/// Speed of a point of a skin over the largest one of particles, at most: its weights add up to one, and some
+/// are negative.
 pub(super) const FASTER: f64 = 3.0;
 
 /// The facets near a tool.
@@ -36,7 +39,8 @@ impl NearTool {
         Self { left: 0.0, region: SkinRegion::new(skin), places, facets: Vec::with_capacity(facets) }
     }
 
-    /// Takes in a step of that length, s, with largest speeds of skin and tool, m/s. Says whether the facets have to be found again.
+    /// Takes in a step of that length, s, with largest speeds of skin and tool, m/s. Says whether the facets
+    /// have to be found again.
     pub fn is_old(&mut self, speeds: [f64; 2], dt: f64) -> bool {
         let way = (FASTER * speeds[0] + speeds[1]) * dt;
         self.left -= way;
@@ -81,7 +85,8 @@ impl NearTool {
     }
 }
 
-/// How far a facet is from the tool at least, m: no point of it is farther from all its corners than 0.6 times its longest side.
+/// How far a facet is from the tool at least, m: no point of it is farther from all its corners than 0.6
+/// times its longest side.
 fn gap(skin: &Skin, places: &[(DVec3, f64)], facet: u32) -> f64 {
     let [a, b, c] = skin.facets.corners[facet as usize].map(|vertex| places[vertex as usize]);
     let size = a.0.distance(b.0).max(b.0.distance(c.0)).max(c.0.distance(a.0));

@@ -1,8 +1,9 @@
 //! Contact of the skin of a deformable body with the exact surface of a rigid one.
 //!
-//! The energy is the integral of the law's energy over the skin, by points with areas of the reference configuration; the overlap is the exact distance of
-//! a point from the surface. `skin_points` places the points. Forces act on both bodies at the vertices of the skin, summed from the points around each; dashpot and
-//! friction belong to vertices as well.
+//! The energy is the integral of the law's energy over the skin, by points with areas of the reference
+//! configuration; the overlap is the exact distance of a point from the surface. `skin_points` places the
+//! points. Forces act on both bodies at the vertices of the skin, summed from the points around each; dashpot
+//! and friction belong to vertices as well.
 
 use std::sync::Arc;
 

@@ -1,14 +1,17 @@
 //! Contact of the skins of two deformable bodies.
 //!
-//! Points of either skin are tested against the facets of the other one, and the integral is shared. A point counts by
+//! Points of either skin are tested against the facets of the other one, and the integral is shared. A point
+//! counts by
 //!
 //! ```text
 //! w = (1 + c - c')/2,       c at the point, c' at its foot,      c = 1 at corners, 0 elsewhere, linear in between
 //! ```
 //!
-//! so that flat sides share it evenly, and at a corner the corner is the tested point. The overlap is the distance of the point from the facets, radial at
-//! notches. The force is the gradient of the energy, including the change of w as the foot moves, and acts along the line between point and foot. Friction acts on both
-//! bodies at the point; the material of the other body follows it with the deformation gradient at the foot.
+//! so that flat sides share it evenly, and at a corner the corner is the tested point. The overlap is the
+//! distance of the point from the facets, radial at notches. The force is the gradient of the energy,
+//! including the change of w as the foot moves, and acts along the line between point and foot. Friction acts
+//! on both bodies at the point; the material of the other body follows it with the deformation gradient at
+//! the foot.
 
 use std::sync::Arc;
 
@@ -88,8 +91,8 @@ impl SkinPair {
         Ok(energies)
     }
 
-    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s; with the stiffness over an area that the next one goes by, N/m3 (N/m2 in
-    /// two dimensions).
+    /// The forces between two bodies, whose largest speeds add up to `speed`, m/s, after a step of `dt`, s;
+    /// with the stiffness over an area that the next one goes by, N/m3 (N/m2 in two dimensions).
     pub fn act(
         &mut self,
         views: [SkinView<'_>; 2],

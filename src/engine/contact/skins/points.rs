@@ -1,8 +1,10 @@
 //! The points at which the contact of a skin with a tool is integrated.
 //!
-//! A facet has closely spaced points, so that it slides without grooves, where the contact area ends on it or where the tool is curved or has an edge. A facet with all vertices
-//! behind a smooth part of the tool has only the points needed to integrate the square of a linear overlap. Behind a plane the vertices determine the points,
-//! and under uniform overlap the vertices are the points; that is most of a contact. Points carry no history, so that a facet can change its rule; friction belongs to vertices.
+//! A facet has closely spaced points, so that it slides without grooves, where the contact area ends on it or
+//! where the tool is curved or has an edge. A facet with all vertices behind a smooth part of the tool has
+//! only the points needed to integrate the square of a linear overlap. Behind a plane the vertices determine
+//! the points, and under uniform overlap the vertices are the points; that is most of a contact. Points carry
+//! no history, so that a facet can change its rule; friction belongs to vertices.
 
 use glam::DVec3;
 
@@ -20,8 +22,8 @@ const BEYOND: f64 = 0.6;
 const PARTS: [usize; 2] = [8, 2];
 /// Cosine of the turn of the tool's normal between the vertices of a facet up to which it counts as smooth.
 const SMOOTH: f64 = 0.9;
-/// Differences of the overlap over the largest one, and over the longest side of the facet, up to which it is even: there the rules differ by some ten-thousandths of
-/// the energy of the facet.
+/// Differences of the overlap over the largest one, and over the longest side of the facet, up to which it is
+/// even: there the rules differ by some ten-thousandths of the energy of the facet.
 const EVEN: f64 = 0.05;
 const EVEN_OF_SIDE: f64 = 1e-3;
 /// What distances may differ from those of a plane, over the longest side of the facet.

@@ -222,7 +222,8 @@ impl SkinSide<'_> {
     }
 }
 
-/// The force of the change of the weight as the foot moves: dw = -dc'/2, with c' linear on the facet, or the edge, of the foot.
+/// The force of the change of the weight as the foot moves: dw = -dc'/2, with c' linear on the facet, or the
+/// edge, of the foot.
 pub(super) fn shift_foot(
     own: &mut Patch,
     other: &mut Patch,

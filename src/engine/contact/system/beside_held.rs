@@ -1,11 +1,13 @@
-//! Contact that reaches a side held along its normal alone: the stress beside the edge is off there, as under a load.
+//! Contact that reaches a side held along its normal alone: the stress beside the edge is off there, as under
+//! a load.
 
 use crate::plugin::{BodyPlan, HeldSide};
 use crate::schedule::Step;
 use crate::skins::Patch;
 use crate::world::BodyId;
 
-/// Share of the largest force on a particle from which contact counts, and share of a force along the normal of the side up to which it is across that.
+/// Share of the largest force on a particle from which contact counts, and share of a force along the normal
+/// of the side up to which it is across that.
 const COUNTS: f64 = 0.1;
 const ACROSS: f64 = 0.7;
 
@@ -32,7 +34,8 @@ impl ReachedSide {
         body.sides.iter().map(of_side)
     }
 
-    /// Looks whether a particle on the side carries a notable force of a patch across the normal of the side, and tells the user once.
+    /// Looks whether a particle on the side carries a notable force of a patch across the normal of the side,
+    /// and tells the user once.
     pub fn look(&mut self, patch: &Patch, step: &mut Step<'_>) {
         if self.is_told || patch.skin.body != self.body {
             return;

@@ -1,8 +1,11 @@
-//! Bodies that can fail touch with their skins for as long as all that carries these is whole, and with their particles from then on.
+//! Bodies that can fail touch with their skins for as long as all that carries these is whole, and with their
+//! particles from then on.
 //!
-//! The step in which a first particle of a skin fails computes both, for the same places. Particles stick out of a body that is squeezed along its surface, because those of a
-//! body that can fail stay spheres: with all of their overlaps they would hold more than the skin did, and make motion out of nothing. They therefore begin with a part of
-//! their overlaps, the one for which they hold what the skin held. The forces are theirs, and what is left of the difference goes to the account `contact_surface`.
+//! The step in which a first particle of a skin fails computes both, for the same places. Particles stick out
+//! of a body that is squeezed along its surface, because those of a body that can fail stay spheres: with all
+//! of their overlaps they would hold more than the skin did, and make motion out of nothing. They therefore
+//! begin with a part of their overlaps, the one for which they hold what the skin held. The forces are
+//! theirs, and what is left of the difference goes to the account `contact_surface`.
 
 use std::sync::Arc;
 
@@ -120,7 +123,8 @@ impl Acts {
     }
 }
 
-/// Has the particles that touch in the place of the skins of that number begin with what these hold; returns the two bodies, and the energies that these give up.
+/// Has the particles that touch in the place of the skins of that number begin with what these hold; returns
+/// the two bodies, and the energies that these give up.
 pub(super) fn break_skins(
     number: usize,
     touching: &mut [Touching],

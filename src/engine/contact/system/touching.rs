@@ -47,7 +47,8 @@ impl Touching {
         if let Self::Surface(contact) = self { Some(contact.together?.turned_around()) } else { None }
     }
 
-    /// Computes the forces; `beside` are the contacts of the points of the second of two rigid bodies on the surface of the first.
+    /// Computes the forces; `beside` are the contacts of the points of the second of two rigid bodies on the
+    /// surface of the first.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,

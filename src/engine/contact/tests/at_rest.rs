@@ -23,7 +23,8 @@ fn block(angle: f64, speed: f64, restitution: f64, end: f64) -> crate::simulatio
 fn a_block_that_lies_on_a_floor_takes_longer_steps_than_one_that_lands() {
     let mut sim = block(0.0, 0.0, 0.2, 0.1);
     sim.run(|_| true).unwrap();
-    // The springs hold the weight at the depth m g / k, and the block would swing on them at the root of k / m = g / depth. An impact has some sixty steps in half a period.
+    // The springs hold the weight at the depth m g / k, and the block would swing on them at the root of k /
+    // m = g / depth. An impact has some sixty steps in half a period.
     let depth = 0.05 - centre(&sim, 0).0.y;
     let per_swing = (depth / 9.81).sqrt() / sim.clock().dt;
     assert!(per_swing < 8.0, "{per_swing} steps a radian");
@@ -48,7 +49,8 @@ fn a_block_that_slides_to_rest_takes_some_thousand_steps_and_stops_where_coulomb
 
 #[test]
 fn a_block_that_swings_on_its_springs_keeps_its_swing() {
-    // It starts where the springs begin, and nothing damps it: some 290 swings between there and twice the depth of balance.
+    // It starts where the springs begin, and nothing damps it: some 290 swings between there and twice the
+    // depth of balance.
     let mut sim = block(0.0, 0.0, 1.0, 0.2);
     let mut highest: f64 = 0.0;
     sim.run(|sim| {

@@ -177,7 +177,8 @@ fn a_block_bounces_off_a_turned_plane_without_loss() {
 
 #[test]
 fn a_block_that_is_pressed_against_a_corner_or_a_ball_gets_back_what_it_gave() {
-    // At a corner the force has a kink, which costs an order of the leapfrog. By how much depends on when it is met: the worst of three steps counts.
+    // At a corner the force has a kink, which costs an order of the leapfrog. By how much depends on when it
+    // is met: the worst of three steps counts.
     for (shape, turn) in [
         ("Box(min: (-0.09, -0.05), max: (0.01, 0.05))", 20.0),
         ("Sphere(center: (0, -0.02), radius: 0.06)", 0.0),

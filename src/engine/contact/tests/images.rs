@@ -79,7 +79,8 @@ fn strips_without_ends_slide_by_coulomb_across_periodic_sides() {
     }
 }
 
-/// Places and velocities of the particles of all bodies below a height in the reference, by their reference places.
+/// Places and velocities of the particles of all bodies below a height in the reference, by their reference
+/// places.
 fn lower(sim: &Simulation, height: f64) -> Vec<[glam::DVec3; 3]> {
     let mut found = Vec::new();
     for k in 0..sim.world().bodies().len() {

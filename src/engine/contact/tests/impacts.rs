@@ -7,7 +7,8 @@ use super::{centre, simulation};
 use crate::rigid::RigidBodies;
 use crate::simulation::Simulation;
 
-/// A block that meets another one at 2 m/s; the upper one is turned about z by some degrees and moved along x.
+/// A block that meets another one at 2 m/s; the upper one is turned about z by some degrees and moved along
+/// x.
 struct Meeting {
     dimension: &'static str,
     /// Density of the lower one over that of the upper one.
@@ -101,7 +102,8 @@ fn two_free_blocks_part_with_the_restitution_that_is_asked_for() {
     }
 }
 
-/// A block that lands on one corner hops along a floor without friction; the points of the floor come under its face at its ends.
+/// A block that lands on one corner hops along a floor without friction; the points of the floor come under
+/// its face at its ends.
 #[test]
 fn a_block_that_hops_over_the_points_of_a_floor_keeps_its_energy() {
     let mut sim = simulation(
@@ -120,7 +122,8 @@ fn a_block_that_hops_over_the_points_of_a_floor_keeps_its_energy() {
     assert!(error.abs() < 3e-3 && centre(&sim, 1).0.x > 0.2, "{error}");
 }
 
-/// `U = m g d / 2` with the drop d of its centre, however long the steps are: a dashpot does not carry weight.
+/// `U = m g d / 2` with the drop d of its centre, however long the steps are: a dashpot does not carry
+/// weight.
 #[test]
 fn a_block_at_rest_is_carried_by_its_springs_alone() {
     for (step, restitution) in [("5e-5", 0.1), ("1e-5", 0.1), ("5e-5", 0.5)] {
@@ -141,7 +144,8 @@ fn a_block_at_rest_is_carried_by_its_springs_alone() {
     }
 }
 
-/// The masses of two tables that carry it are shared, and the points half a spacing inside of its ends push it straight up.
+/// The masses of two tables that carry it are shared, and the points half a spacing inside of its ends push
+/// it straight up.
 #[test]
 fn a_block_that_lands_on_two_tables_rebounds_straight_up() {
     let mut sim = simulation(
@@ -160,7 +164,8 @@ fn a_block_that_lands_on_two_tables_rebounds_straight_up() {
     assert!((v.y - 0.5).abs() < 0.02 && v.x.abs() < 1e-6, "{v}");
 }
 
-/// Points of a face are the same on both sides of a block, wherever it is: round-off decided which face of a corner the particle beside it had a point on, and the block rocked as it sprang.
+/// Points of a face are the same on both sides of a block, wherever it is: round-off decided which face of a
+/// corner the particle beside it had a point on, and the block rocked as it sprang.
 #[test]
 fn a_block_that_lands_flat_does_not_turn() {
     for (dimension, x, y) in [("Two", 0.0, 0.0), ("Two", 0.04, 0.0), ("Two", -0.1, 1e-7), ("Three", 0.0, 0.0)]

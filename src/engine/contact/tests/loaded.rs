@@ -2,7 +2,8 @@
 
 use super::simulation;
 
-/// Balance error over the energy of the springs, some oscillations of the contact after a block starts at rest within something else.
+/// Balance error over the energy of the springs, some oscillations of the contact after a block starts at
+/// rest within something else.
 fn error(other: &str, contact: &str) -> f64 {
     let held = if other.contains("Rigid") { r#"conditions: [Fix(on: Select(body: "other"))],"# } else { "" };
     let mut sim = simulation(&format!(

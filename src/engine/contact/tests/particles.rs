@@ -95,7 +95,8 @@ fn a_body_touches_itself() {
             {contacts} time: (end: 0.012))"#
         )
     };
-    // Distance of the particles that face each other across the gap, less than nothing where they have passed.
+    // Distance of the particles that face each other across the gap, less than nothing where they have
+    // passed.
     let gap = |sim: &Simulation| {
         let (view, rows) = sim.world().body_view(BodyId(0));
         let x = view.read::<Position>().unwrap();

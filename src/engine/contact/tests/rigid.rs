@@ -107,7 +107,8 @@ fn a_block_that_lands_flat_has_the_restitution_that_is_asked_for() {
             assert!((found - wanted).abs() < 0.02, "{dimension} {wanted}: {found}");
             assert!(error < 5e-3, "{dimension} {wanted}: {error}");
         }
-        // The points of a box touch the block as well, beside its own; dashpots of zero restitution threw it away.
+        // The points of a box touch the block as well, beside its own; dashpots of zero restitution threw it
+        // away.
         let (found, error) = rebound(dimension, floor, 0.0);
         assert!((0.0..0.05).contains(&found) && error < 0.05, "{dimension}: {found} {error}");
     }
@@ -197,7 +198,8 @@ fn a_body_may_not_start_inside_a_tool() {
     assert!(error.to_string().contains("a particle of `block` starts inside rigid body `tool`"), "{error}");
 }
 
-/// A block between a fixed table and a tool that presses it with that motion; contacts of that kind, up to that time, s.
+/// A block between a fixed table and a tool that presses it with that motion; contacts of that kind, up to
+/// that time, s.
 fn pressed_block(motion: &str, contact: &str, end: f64) -> Simulation {
     simulation(&format!(
         r#"(dimension: Two,
@@ -227,7 +229,8 @@ fn a_tool_that_presses_feels_the_reaction_and_does_the_work() {
     let bodies = sim.resources().get::<RigidBodies>();
     let states: Vec<_> = bodies.iter().map(|body| body.state).collect();
     let (table, tool) = (states[0], states[1]);
-    // Pressed by 7.5 mm of 100: about E'(0.075) over 0.1 m, with half a spacing of soft contact on both sides.
+    // Pressed by 7.5 mm of 100: about E'(0.075) over 0.1 m, with half a spacing of soft contact on both
+    // sides.
     assert!((5e3..9e3).contains(&tool.force.y), "{}", tool.force);
     assert!((table.force.y + tool.force.y).abs() < 0.1 * tool.force.y, "{} {}", table.force, tool.force);
     assert!((tool.center.y - 0.15 + 0.0075).abs() < 1e-6, "{}", tool.center);
@@ -280,7 +283,8 @@ fn a_hard_body_that_falls_into_an_empty_corner_of_a_tank_bounces_with_the_speed_
     assert!((v.y - 2.0).abs() < 0.02 && x.y > 0.08, "{x} {v}");
 }
 
-/// Three balls in a row on one line, the first of which flies at the others; `contacts` are those of the scene.
+/// Three balls in a row on one line, the first of which flies at the others; `contacts` are those of the
+/// scene.
 fn cradle(contacts: &str) -> Simulation {
     let ball = |k: usize, x: f64, speed: f64| {
         format!(
@@ -317,7 +321,8 @@ fn a_star_stands_for_all_bodies_whose_names_begin_alike() {
 
 #[test]
 fn a_rigid_block_slides_down_a_slope_with_the_acceleration_of_coulomb() {
-    // 30 degrees, friction 0.4: a = g (sin 30 - 0.4 cos 30), over seven points of the floor that the front of the block passes.
+    // 30 degrees, friction 0.4: a = g (sin 30 - 0.4 cos 30), over seven points of the floor that the front of
+    // the block passes.
     let (g, friction) = (9.81, 0.4);
     let (sin, cos) = 30f64.to_radians().sin_cos();
     let mut sim = simulation(&format!(

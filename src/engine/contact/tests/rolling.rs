@@ -6,7 +6,8 @@ use super::rigid::momenta;
 use super::{centre, simulation};
 use crate::simulation::Simulation;
 
-/// A body of that shape about (0, 0.1, 0) that starts on a floor with speed 1 m/s and the spin of rolling, under gravity that leans by some degrees towards x.
+/// A body of that shape about (0, 0.1, 0) that starts on a floor with speed 1 m/s and the spin of rolling,
+/// under gravity that leans by some degrees towards x.
 fn rolling(dimension: &str, shape: &str, floor: &str, degrees: f64, speed: f64) -> Simulation {
     let (sine, cosine) = degrees.to_radians().sin_cos();
     simulation(&format!(
@@ -59,7 +60,8 @@ fn wheels_accelerate_down_a_slope_as_their_inertia_says() {
     }
 }
 
-/// A ring that falls with its middle on the corner of a box is thrown straight back: the normal there is the line to its centre, not that of a face.
+/// A ring that falls with its middle on the corner of a box is thrown straight back: the normal there is the
+/// line to its centre, not that of a face.
 #[test]
 fn a_ring_that_meets_a_corner_is_pushed_along_the_line_to_its_centre() {
     let mut sim = simulation(

@@ -1,4 +1,5 @@
-//! The forces between two skins are the gradient of one continuous energy: at faces, edges and corners, straight and deformed.
+//! The forces between two skins are the gradient of one continuous energy: at faces, edges and corners,
+//! straight and deformed.
 
 use std::sync::Arc;
 

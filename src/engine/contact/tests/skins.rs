@@ -99,7 +99,8 @@ fn a_crash_of_two_skins_keeps_energy_momentum_and_angular_momentum() {
 
 #[test]
 fn heat_of_dashpots_between_soft_sheets_is_what_they_take() {
-    // They are pressed together by a fifth within the touch: what is booked must not see the stretch of the overlap.
+    // They are pressed together by a fifth within the touch: what is booked must not see the stretch of the
+    // overlap.
     let error = |restitution: f64| {
         let mut sim = simulation(&format!(
             r#"(dimension: Two,

@@ -1,5 +1,5 @@
-//! Contact of nodes with the exact surface of a rigid body: of particles of a deformable body, of the points of another rigid
-//! body.
+//! Contact of nodes with the exact surface of a rigid body: of particles of a deformable body, of the points
+//! of another rigid body.
 
 use super::nearby::Nearby;
 use super::on_surface::{NearNodes, NodeTouch, OnSurface};
@@ -122,7 +122,8 @@ impl SurfaceContact {
         })
     }
 
-    /// Computes the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of the points of the other body on the surface of this one.
+    /// Computes the forces of all nodes that touch, and pushes the rigid bodies; `beside` are the contacts of
+    /// the points of the other body on the surface of this one.
     pub fn run(
         &mut self,
         step: &mut Step<'_>,

@@ -1,22 +1,26 @@
 //! How much a point of a face counts near the end of the face that it touches.
 //!
-//! Faces touch with all of their points. As a body slides over the points of another one, they come under its face at its ends, where they are as deep as the bodies overlap: a spring that began there would have
-//! its energy from nowhere, and a box that hopped on another one without friction gained a quarter of its energy in two seconds. So the energy of a point of a face is `w u(d)`, where w grows from zero at the end of the other face to one
-//! at a distance D from it,
+//! Faces touch with all of their points. As a body slides over the points of another one, they come under its
+//! face at its ends, where they are as deep as the bodies overlap: a spring that began there would have its
+//! energy from nowhere, and a box that hopped on another one without friction gained a quarter of its energy
+//! in two seconds. So the energy of a point of a face is `w u(d)`, where w grows from zero at the end of the
+//! other face to one at a distance D from it,
 //!
 //! ```text
 //! w = -s(p - D n) / D,      D = 0.4 of the length that the point stands for
 //! ```
 //!
-//! with the nearest point p of the surface, its normal n, and the signed distance s. Along the face the force is `-u grad w`, a share d/(2 D) of the normal force at most.
+//! with the nearest point p of the surface, its normal n, and the signed distance s. Along the face the force
+//! is `-u grad w`, a share d/(2 D) of the normal force at most.
 
 use glam::DVec3;
 
 use crate::rigid::RigidBody;
 use crate::shapes::SurfacePoint;
 
-/// Distance from the end of a face within which points count less, over the length that a point stands for. Where faces and lattices are aligned the outermost points are half of that length inside: they count in full,
-/// and nothing pushes them along the face.
+/// Distance from the end of a face within which points count less, over the length that a point stands for.
+/// Where faces and lattices are aligned the outermost points are half of that length inside: they count in
+/// full, and nothing pushes them along the face.
 const RAMP: f64 = 0.4;
 
 /// The share w of a point, and its gradient, 1/m.
@@ -30,7 +34,8 @@ impl FaceShare {
     /// Of what is no point of a face.
     pub const WHOLE: Self = Self { share: 1.0, gradient: DVec3::ZERO };
 
-    /// Of a point that stands for a length, m, and is nearest to that point of the surface of `tool`, in the reference configuration.
+    /// Of a point that stands for a length, m, and is nearest to that point of the surface of `tool`, in the
+    /// reference configuration.
     pub fn new(nearest: &SurfacePoint, length: f64, tool: &RigidBody) -> Self {
         let depth = RAMP * length;
         let below = tool.surface.closest(nearest.point - depth * nearest.normal);

@@ -9,8 +9,8 @@ use crate::rigid::RigidBody;
 
 /// Skin over the size of a node.
 const SKIN: f64 = 1.0;
-/// Gap, over the size of a node, up to which a node counts as near the surface. All that are so near are candidates whenever the list was built, so
-/// that what follows from them follows from positions alone.
+/// Gap, over the size of a node, up to which a node counts as near the surface. All that are so near are
+/// candidates whenever the list was built, so that what follows from them follows from positions alone.
 pub(in crate::contact) const NEAR: f64 = 0.5;
 
 /// The nodes of a body that are near a surface.
@@ -38,8 +38,8 @@ impl Nearby {
         &self.candidates
     }
 
-    /// Takes in how far the two bodies may have moved together, m, and how far the nodes are stretched at most; finds the candidates anew if
-    /// they may be others, and says whether it has.
+    /// Takes in how far the two bodies may have moved together, m, and how far the nodes are stretched at
+    /// most; finds the candidates anew if they may be others, and says whether it has.
     pub fn update(
         &mut self,
         sides: &ContactSides,

@@ -64,7 +64,8 @@ pub(super) struct OnSurface<'a> {
     pub tool: &'a RigidBody,
     /// Length of the step, s.
     pub dt: f64,
-    /// What the contacts of the step do to the rigid bodies together, those between the two and all of them, if dashpots ask for that.
+    /// What the contacts of the step do to the rigid bodies together, those between the two and all of them,
+    /// if dashpots ask for that.
     pub together: &'a [Together],
 }
 
@@ -103,8 +104,9 @@ impl OnSurface<'_> {
         })
     }
 
-    /// How a node that nothing moves but the body that it is a point of, or conditions, moves against the surface, of which a point of the reference configuration is nearest to it; `shift` is the way to the image
-    /// of the node.
+    /// How a node that nothing moves but the body that it is a point of, or conditions, moves against the
+    /// surface, of which a point of the reference configuration is nearest to it; `shift` is the way to the
+    /// image of the node.
     fn landing(&self, i: usize, held: bool, [point, shift]: [DVec3; 2], near: &Nearness) -> NormalMotion {
         let Self { nodes, tool, dt, .. } = self;
         if matches!(nodes, NodeView::Particles(_)) && !held {
@@ -214,7 +216,8 @@ impl OnSurface<'_> {
         }
     }
 
-    /// Adds the work of the forces of the last step on the motion of this one, where they act: at the node and, for a particle, `arm` beside it.
+    /// Adds the work of the forces of the last step on the motion of this one, where they act: at the node
+    /// and, for a particle, `arm` beside it.
     #[inline(always)]
     fn add_work_before(&self, node: u32, motion: &NodeMotion<'_>, history: &History, losses: &mut Losses) {
         if history.is_elastic() {
@@ -233,9 +236,10 @@ impl OnSurface<'_> {
         losses.add_work(1.0, history, velocity, self.dt);
     }
 
-    /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on particles that do not give way, of which one is
-    /// held, 1/s2: a spring that gets stiffer with depth, or has no mass that would limit the step by itself, must not come as a surprise. All nodes that are near may
-    /// touch at once.
+    /// The squared frequency of the impact that a rigid body may make at `speed` on another one or on
+    /// particles that do not give way, of which one is held, 1/s2: a spring that gets stiffer with depth, or
+    /// has no mass that would limit the step by itself, must not come as a surprise. All nodes that are near
+    /// may touch at once.
     pub fn expected(&self, near: &NearNodes, speed: f64, gravity: f64) -> f64 {
         let Self { interaction, nodes, tool, .. } = self;
         let count = near.massless.max(1) as f64;
@@ -266,8 +270,9 @@ impl OnSurface<'_> {
     }
 }
 
-/// How the normal of a surface turns as a particle moves along the part of `p` that is across it: on curved surfaces and beside edges the overlap
-/// depends on that, because the reach of the particle does. Half-way inside a body normals jump, and there is no such thing.
+/// How the normal of a surface turns as a particle moves along the part of `p` that is across it: on curved
+/// surfaces and beside edges the overlap depends on that, because the reach of the particle does. Half-way
+/// inside a body normals jump, and there is no such thing.
 fn turn_of_normal(tool: &RigidBody, x: DVec3, normal: DVec3, p: DVec3) -> DVec3 {
     const STEP: f64 = 1e-4;
     let across = p - p.dot(normal) * normal;

@@ -19,7 +19,8 @@ pub(in crate::contact) struct NodePush {
     pub shift: DVec3,
     /// Force on the node, N.
     pub force: DVec3,
-    /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the normal turns as it moves, N.
+    /// The place of a particle, m, and a force on it and, opposite, on the other body there, because the
+    /// normal turns as it moves, N.
     pub center: DVec3,
     pub turning: DVec3,
     /// Heat of friction in the step, J.
@@ -28,7 +29,8 @@ pub(in crate::contact) struct NodePush {
     pub stiffness: [f64; 2],
 }
 
-/// What contacts do to the bodies of both sides, about their centres, and the sums of their stiffness over mass, 1/s2.
+/// What contacts do to the bodies of both sides, about their centres, and the sums of their stiffness over
+/// mass, 1/s2.
 #[derive(Clone, Copy, Default)]
 struct Pushes {
     on: [Wrench; 2],
@@ -44,7 +46,8 @@ impl BlockSum for Pushes {
     }
 }
 
-/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place; `count` is the number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
+/// Pushes the rigid bodies, exactly opposite to what is on the other side, at one place; `count` is the
+/// number of nodes. Returns the sums of stiffness over mass of both sides, 1/s2.
 pub(super) fn push<T: Sync>(
     sides: &ContactSides,
     met: &[(PairKey, T)],

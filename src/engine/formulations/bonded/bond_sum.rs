@@ -4,8 +4,8 @@ use super::bonds::Bonds;
 use crate::parallel::{FourLanes, Lanes4};
 use crate::solids::CorrectedStress;
 
-/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for every other
-/// bond, so that additions need not wait for each other.
+/// Sums over the neighbours of a particle, weighted with V_j w_ij. There are two of them in the loop, for
+/// every other bond, so that additions need not wait for each other.
 pub(in crate::formulations) struct BondSum<const D: usize> {
     /// `sum_j V_j w_ij A_j`, with `sum_j V_j w_ij k_j` in the last lane of the first column.
     pub columns: [Lanes4; D],
@@ -13,7 +13,8 @@ pub(in crate::formulations) struct BondSum<const D: usize> {
     pub traction: Lanes4,
 }
 
-/// Bonds between what is summed and what is asked for: some hundred cycles, which is what a row takes to arrive.
+/// Bonds between what is summed and what is asked for: some hundred cycles, which is what a row takes to
+/// arrive.
 const AHEAD: usize = 32;
 
 impl<const D: usize> BondSum<D> {

@@ -1,4 +1,5 @@
-//! The bonds of the reference configuration: neighbours, weights, and the inverse moment matrix of every particle.
+//! The bonds of the reference configuration: neighbours, weights, and the inverse moment matrix of every
+//! particle.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,7 +17,8 @@ use crate::parallel::{BLOCK, block_count};
 use crate::solids::StepEstimate;
 use crate::symmetry::Ghosts;
 
-/// Blocks of rows whose bonds are computed before they are put together: enough for all threads, and little memory.
+/// Blocks of rows whose bonds are computed before they are put together: enough for all threads, and little
+/// memory.
 const BLOCKS_AT_ONCE: usize = 256;
 
 /// Rows whose stable steps one task finds.
@@ -45,8 +47,8 @@ pub struct Bonds {
     pub(in crate::formulations) offsets: Arc<Vec<u32>>,
     /// Row of the neighbour; rows beyond the last particle are ghosts (see [`Ghosts`]).
     pub(in crate::formulations) neighbors: Arc<Vec<u32>>,
-    /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight, so the
-    /// deformation gradient of an affine map stays exact.
+    /// Pair weight w_ij = |W'(|X_ij|)| / |X_ij|. In single precision: M_i is built from the rounded weight,
+    /// so the deformation gradient of an affine map stays exact.
     pub(in crate::formulations) weights: Vec<f32>,
     /// Inverse of M_i = sum_j V_j w_ij X_ij (x) X_ij; zero for a free particle.
     pub(in crate::formulations) inverse_moment: Vec<Sym3>,
@@ -56,7 +58,8 @@ pub struct Bonds {
     pub(in crate::formulations) weight_sum: Vec<f64>,
     /// Particles that have too few neighbours for a deformation gradient; they carry no stress.
     pub(in crate::formulations) free: Vec<u32>,
-    /// Share of its stress that every row carries: that of the part of its cell which is not held. Empty where all carry all of it.
+    /// Share of its stress that every row carries: that of the part of its cell which is not held. Empty
+    /// where all carry all of it.
     pub(in crate::formulations) carried: Vec<f64>,
 }
 
@@ -226,8 +229,8 @@ impl Bonds {
         self.free.len() - before
     }
 
-    /// Makes the moment matrices of the given rows; a neighbour without volume has no part in them, and a row without
-    /// volume has none.
+    /// Makes the moment matrices of the given rows; a neighbour without volume has no part in them, and a row
+    /// without volume has none.
     pub(in crate::formulations) fn correct(
         &mut self,
         rows: Range<usize>,

@@ -1,10 +1,14 @@
-//! Cracks: bonds between an intact particle and a failed one that is still present. Terms on bonds do not act along them.
+//! Cracks: bonds between an intact particle and a failed one that is still present. Terms on bonds do not act
+//! along them.
 //!
-//! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack gets the fit over the intact neighbours (see
-//! [`edges`](super::edges)), so that its energy and force are those of a body without the failed particles. The second pass knows one
-//! corrected stress per particle, which acts on all its neighbours: the contribution of the terms to bonds across a crack is subtracted, on both sides of the bond.
+//! A [`FoldedTerm`](crate::solids::FoldedTerm) of a particle at the edge of a crack gets the fit over the
+//! intact neighbours (see [`edges`](super::edges)), so that its energy and force are those of a body without
+//! the failed particles. The second pass knows one corrected stress per particle, which acts on all its
+//! neighbours: the contribution of the terms to bonds across a crack is subtracted, on both sides of the
+//! bond.
 //!
-//! A particle that fails in a step changes sides at the start of the next one, because within a step the blocks of particles run independently.
+//! A particle that fails in a step changes sides at the start of the next one, because within a step the
+//! blocks of particles run independently.
 
 use std::ops::Range;
 
@@ -80,7 +84,8 @@ pub(in crate::formulations) struct Cracks {
 }
 
 impl Cracks {
-    /// Takes up what has failed since the last step. `known` holds the rows that had failed before, ascending; the others are added to it.
+    /// Takes up what has failed since the last step. `known` holds the rows that had failed before,
+    /// ascending; the others are added to it.
     pub fn take_up(
         &mut self,
         known: &mut Vec<u32>,
@@ -176,7 +181,8 @@ impl Cracks {
         if self.rows.is_empty() { &[] } else { &self.rows[until(first)..until(first + n)] }
     }
 
-    /// The force, N, that the second pass puts on a row at a crack by what folded terms have added to corrected stresses on the other side of a bond or on this one.
+    /// The force, N, that the second pass puts on a row at a crack by what folded terms have added to
+    /// corrected stresses on the other side of a bond or on this one.
     pub fn force_across(
         &self,
         row: usize,

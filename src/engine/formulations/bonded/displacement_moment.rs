@@ -4,11 +4,11 @@ use super::bonds::Bonds;
 use super::rows::PackedParticle;
 use crate::parallel::{FourLanes, Lanes4};
 
-/// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that additions need not
-/// wait for each other.
+/// Sums over the bonds of a particle. There are two of them in the loop, for every other bond, so that
+/// additions need not wait for each other.
 pub(in crate::formulations) struct DisplacementMoment<const D: usize> {
-    /// Columns of `sum_j V_j w_ij u_ij (x) X_ij`: X_i is taken off behind the loop. u_ij is made first, so that a body that
-    /// has moved as a whole has no gradient, to the bit.
+    /// Columns of `sum_j V_j w_ij u_ij (x) X_ij`: X_i is taken off behind the loop. u_ij is made first, so
+    /// that a body that has moved as a whole has no gradient, to the bit.
     pub spread: [Lanes4; D],
     /// `sum_j V_j w_ij u_ij`.
     pub stretched: Lanes4,

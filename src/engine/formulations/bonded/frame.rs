@@ -12,9 +12,9 @@ use crate::symmetry::Ghosts;
 
 /// An affine motion near that of the body, u = u_0 + H X: what its middle particle did in the last step.
 ///
-/// The force between two particles does not change if k H is added to A and this motion is taken off u. What is left
-/// of both is as small as the strains are, and so is what rounding makes of the sums: momentum stays exact for a
-/// body that has gone far and turned.
+/// The force between two particles does not change if k H is added to A and this motion is taken off u. What
+/// is left of both is as small as the strains are, and so is what rounding makes of the sums: momentum stays
+/// exact for a body that has gone far and turned.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::formulations) struct AffineFrame {
     /// First row behind the body.
@@ -44,7 +44,8 @@ impl AffineFrame {
         site.displacement.xyz() - self.displacement - self.gradient * site.reference.xyz()
     }
 
-    /// [`AffineFrame::rest`] in a hot loop, with the same bits: what a particle shows its neighbours must cancel with what it takes of itself.
+    /// [`AffineFrame::rest`] in a hot loop, with the same bits: what a particle shows its neighbours must
+    /// cancel with what it takes of itself.
     #[inline(always)]
     pub fn rest_in<A: FourLanes>(&self, a: A, site: &PackedParticle) -> Lanes4 {
         let [x, y, z] = self.columns();
@@ -76,7 +77,8 @@ impl AffineFrame {
     }
 }
 
-/// Completes the stresses of a block, and makes the part of the force that knows no stress but a particle's own.
+/// Completes the stresses of a block, and makes the part of the force that knows no stress but a particle's
+/// own.
 pub(in crate::formulations) struct CompleteStress<'a> {
     pub frame: &'a AffineFrame,
     pub bonds: &'a Bonds,
@@ -142,7 +144,8 @@ pub(in crate::formulations) fn frame_of(frames: &[AffineFrame], row: usize) -> u
     frames.partition_point(|frame| frame.end <= row)
 }
 
-/// Fills the stresses of the ghosts, which have their sites. `bond_force` is the force per volume squared and weight that a row has beside its stress.
+/// Fills the stresses of the ghosts, which have their sites. `bond_force` is the force per volume squared and
+/// weight that a row has beside its stress.
 pub(in crate::formulations) fn fill_ghosts(
     ghosts: &Ghosts,
     frames: &[AffineFrame],
@@ -151,7 +154,8 @@ pub(in crate::formulations) fn fill_ghosts(
     bond_force: impl Fn(usize) -> DVec3 + Sync,
 ) {
     ghosts.fill(stresses, |ghost, own: &CorrectedStress| {
-        // A of the source is in the frame already; that of the ghost needs its mirror image, and then the frame.
+        // A of the source is in the frame already; that of the ghost needs its mirror image, and then the
+        // frame.
         let frame = &frames[frame_of(frames, ghost.source)];
         let moved = [frame.gradient.x_axis, frame.gradient.y_axis, frame.gradient.z_axis];
         let mut plain = *own;

@@ -28,7 +28,8 @@ pub(in crate::formulations) struct Gather<'a> {
     pub written: Written<'a>,
 }
 
-/// Rows of the block that are written behind the sums; empty where that is not known. The sums leave time to fetch them: written at once, they would be waited for.
+/// Rows of the block that are written behind the sums; empty where that is not known. The sums leave time to
+/// fetch them: written at once, they would be waited for.
 #[derive(Clone, Copy, Default)]
 pub(in crate::formulations) struct Written<'a> {
     pub deformation: &'a [DMat3],
@@ -61,7 +62,8 @@ impl PlaneOrSpace for Gather<'_> {
                 DisplacementMoment::<D>::over(a, bonds, sites, i);
             // A free particle has a zero inverse, and so F = I.
             let h = fit::<A, D>(a, &spread, &bonds.inverse_moment[i]);
-            // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the least-squares fit.
+            // sum V w |F X - x|^2 = sum V w u^2 - H : (sum V w u (x) X), because H = F - I is the
+            // least-squares fit.
             let fitted: f64 = (0..D).map(|axis| h[axis].dot3(spread[axis])).sum();
             residual[k] = square.0[0] + square.0[1] + square.0[2] - fitted;
             stretch[k] = stretched.xyz();

@@ -1,7 +1,11 @@
-//! What the Lagrangian formulations of solids share: lists of neighbours of a reference configuration ("bonds"), with the sums over them.
+//! What the Lagrangian formulations of solids share: lists of neighbours of a reference configuration
+//! ("bonds"), with the sums over them.
 //!
-//! The total-Lagrangian formulation has them of the start, the updated-Lagrangian one of a reference that follows the body. Here are the bonds with weights and moment matrices, the packed
-//! particles, the gathering of F and the residual, the corrected stress in the frame of a body, cracks, differences of second derivatives, what held sides do to the particles beside them, the pass of the internal force, and the pairs for terms of plugins.
+//! The total-Lagrangian formulation has them of the start, the updated-Lagrangian one of a reference that
+//! follows the body. Here are the bonds with weights and moment matrices, the packed particles, the gathering
+//! of F and the residual, the corrected stress in the frame of a body, cracks, differences of second
+//! derivatives, what held sides do to the particles beside them, the pass of the internal force, and the
+//! pairs for terms of plugins.
 
 mod balance;
 mod body_set_up;

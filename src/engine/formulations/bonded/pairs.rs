@@ -28,7 +28,8 @@ pub(in crate::formulations) struct BodyKernel {
 pub(in crate::formulations) trait BondedRows: SolidPhase {
     /// Neighbours and weights.
     fn bonds(&self) -> &Bonds;
-    /// Original place, volume in the configuration of the weights, and displacement since the start of every row.
+    /// Original place, volume in the configuration of the weights, and displacement since the start of every
+    /// row.
     fn pair_sites(&self) -> &[PackedParticle];
     /// Kernel of every body.
     fn kernels(&self) -> &[BodyKernel];

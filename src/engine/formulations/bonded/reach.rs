@@ -1,8 +1,10 @@
 //! The support of a particle: a sphere, or an ellipsoid that stretches with the material.
 //!
-//! Where material is stretched along one direction and compressed along another, particles are far apart along the one and close together along the other, and a sphere contains
-//! neighbours in few directions only. An ellipsoid measures distances by a tensor G before they enter the kernel, `|r|^2 = r . G r`. A pair uses the mean of the
-//! tensors of both particles, and the kernel is multiplied by the inverse volume ratio of its ellipsoid: `w_ij = (det G)^(1/2) |W'(|r|)| / |r|`.
+//! Where material is stretched along one direction and compressed along another, particles are far apart
+//! along the one and close together along the other, and a sphere contains neighbours in few directions only.
+//! An ellipsoid measures distances by a tensor G before they enter the kernel, `|r|^2 = r . G r`. A pair uses
+//! the mean of the tensors of both particles, and the kernel is multiplied by the inverse volume ratio of its
+//! ellipsoid: `w_ij = (det G)^(1/2) |W'(|r|)| / |r|`.
 
 use glam::{DMat3, DVec3};
 
@@ -11,7 +13,8 @@ use crate::symmetry::Ghosts;
 
 /// Longest half axis of an ellipsoid, and shortest one's inverse.
 const LONGEST: f64 = 20.0;
-/// Share of a stretch that it follows in any case, beyond its root: a support of 2.4 spacings then reaches over 1.6 of those that the stretch makes of them.
+/// Share of a stretch that it follows in any case, beyond its root: a support of 2.4 spacings then reaches
+/// over 1.6 of those that the stretch makes of them.
 const LEAST: f64 = 2.0 / 3.0;
 /// Trace of F F^T up to which no stretch is so large that more than its root counts.
 const WIDE: f64 = 1.0 / (LEAST * LEAST * LEAST * LEAST);
@@ -20,7 +23,8 @@ const FLAT: f64 = 0.02;
 
 /// What a bound of an eigenvalue is raised by, so that rounding does not matter.
 const ROUNDING: f64 = 1e-6;
-/// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is then no more than half as far from the mean.
+/// Least bound of the eigenvalues of G, over their mean, from which on it is taken for the smallest: that is
+/// then no more than half as far from the mean.
 const ROUND: f64 = 0.9;
 
 /// The ellipsoid r . G r = 1 of a particle.
@@ -41,8 +45,9 @@ impl Ellipsoid {
     pub const SPHERE: Self =
         Self { tensor: Sym3::IDENTITY, inverse: Sym3::IDENTITY, longest: 1.0, density: 1.0 };
 
-    /// G of the ellipsoid that follows a deformation F half way, in the logarithm of the stretches, between a sphere and what a sphere becomes: the inverse of the left
-    /// stretch tensor, as long as no stretch is large.
+    /// G of the ellipsoid that follows a deformation F half way, in the logarithm of the stretches, between a
+    /// sphere and what a sphere becomes: the inverse of the left stretch tensor, as long as no stretch is
+    /// large.
     pub fn following(f: &DMat3) -> Sym3 {
         let squares = Sym3::gram(f.transpose());
         if squares.trace() <= WIDE && squares.determinant() >= FLAT {
@@ -82,13 +87,15 @@ impl Ellipsoid {
         ((1.0 + ROUNDING) * most).sqrt().recip()
     }
 
-    /// Trace of an inverse moment matrix as waves along an axis of that length feel it, which is the shortest one.
+    /// Trace of an inverse moment matrix as waves along an axis of that length feel it, which is the shortest
+    /// one.
     pub fn trace(&self, inverse: &Sym3, axis: f64) -> f64 {
         self.rounded_trace(inverse) / (axis * axis)
     }
 }
 
-/// A bound of the longest half axis of the ellipsoid of G: that of the widest G with such a trace and such a deviator, where this is nearly a sphere.
+/// A bound of the longest half axis of the ellipsoid of G: that of the widest G with such a trace and such a
+/// deviator, where this is nearly a sphere.
 fn longest(tensor: &Sym3, inverse: &Sym3) -> f64 {
     let (mean, deviator) = (tensor.trace() / 3.0, tensor.deviator());
     let least = mean - 2.0 * (deviator.double_dot(&deviator) / 6.0).sqrt();

@@ -10,10 +10,12 @@ use crate::ranks::Halo;
 use crate::schedule::StepError;
 use crate::world::{PhaseView, Position, ReferencePosition, ReferenceVolume};
 
-/// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x - X.
+/// Where a particle is: reference position X with the volume V_0 in the last lane, and displacement u = x -
+/// X.
 ///
-/// The passes work with displacements: differences of current positions would lose the digits of a small strain. X is
-/// measured from the middle of the bodies, because sums are taken over X_j before X_i is subtracted.
+/// The passes work with displacements: differences of current positions would lose the digits of a small
+/// strain. X is measured from the middle of the bodies, because sums are taken over X_j before X_i is
+/// subtracted.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub struct PackedParticle {
@@ -36,8 +38,9 @@ impl PackedParticle {
     }
 }
 
-/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees it. Of several ranks each fills the rows that it
-/// computes and those of the halo, once it has the places of all; until then there is no halo.
+/// Fills the sites of the real rows; a removed particle has no volume, so that no sum over neighbours sees
+/// it. Of several ranks each fills the rows that it computes and those of the halo, once it has the places of
+/// all; until then there is no halo.
 pub(in crate::formulations) fn pack(
     view: &PhaseView<'_>,
     origin: DVec3,

@@ -1,7 +1,8 @@
 //! A support radius for every particle of an irregular body.
 //!
-//! `H_i` is half-way between the distances of the n-th and of the next neighbour, and a pair interacts within the mean of its
-//! two radii (Ganzenmueller 2015, section 4.1, whose clouds of particles have 12 neighbours each).
+//! `H_i` is half-way between the distances of the n-th and of the next neighbour, and a pair interacts within
+//! the mean of its two radii (Ganzenmueller 2015, section 4.1, whose clouds of particles have 12 neighbours
+//! each).
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,8 +12,8 @@ use crate::neighbors::{Cloud, NeighborError, NeighborList, NeighborSearch, Perio
 /// Factor by which the search widens for particles that have not yet found their neighbours.
 const WIDER: f64 = 1.5;
 
-/// Chooses the support radius of every particle, m, from the distances of its nearest neighbours; `first` is the radius
-/// of the first search, m. There must be at least `neighbors + 2` particles.
+/// Chooses the support radius of every particle, m, from the distances of its nearest neighbours; `first` is
+/// the radius of the first search, m. There must be at least `neighbors + 2` particles.
 pub(in crate::formulations) fn choose_support(
     position: &[DVec3],
     first: f64,

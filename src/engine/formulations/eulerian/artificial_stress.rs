@@ -1,8 +1,9 @@
 //! The artificial stress of Gray, Monaghan and Swift (2001), for comparison with hourglass control.
 //!
-//! `f_i = V_i sum_j V_j w_ij (W_ij / W(dp))^n (R_i + R_j) x_ij` with `R = -epsilon sigma_+`, where sigma_+ is the tensile part of the Cauchy stress in its
-//! principal axes: a repulsion of particles that tension draws into clumps. Gray and others divide by densities, 1/rho_i^2 and
-//! 1/rho_j^2, which is the same to the order of the change of density. The force has no energy; its work is booked.
+//! `f_i = V_i sum_j V_j w_ij (W_ij / W(dp))^n (R_i + R_j) x_ij` with `R = -epsilon sigma_+`, where sigma_+ is
+//! the tensile part of the Cauchy stress in its principal axes: a repulsion of particles that tension draws
+//! into clumps. Gray and others divide by densities, 1/rho_i^2 and 1/rho_j^2, which is the same to the order
+//! of the change of density. The force has no energy; its work is booked.
 
 use glam::DMat3;
 use schemars::JsonSchema;

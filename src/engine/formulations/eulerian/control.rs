@@ -4,16 +4,22 @@
 //! U = sum_i xi/4 E_i V_0,i sum_j V_0,j m_ij w_ij [s_ij^2 + q min(E_i, E_j)/E (|e_ij|^2 - s_ij^2)] ,   e_ij = F_i X_ij - x_ij ,   s_ij = e_ij . x_ij / |x_ij| ,   m_ij = min(1, H^2 / |X_ij|^2)^2
 //! ```
 //!
-//! The error along the pair s_ij is what draws particles apart in tension. The rest of the error may count for a share q: in a twisted body, u = a (-z y, z x, 0), it is all there is, since u . x = 0.
-//! It decreases with the lesser modulus of the pair over Young's modulus E: neighbours slide past each other where either of them flows.
+//! The error along the pair s_ij is what draws particles apart in tension. The rest of the error may count
+//! for a share q: in a twisted body, u = a (-z y, z x, 0), it is all there is, since u . x = 0. It decreases
+//! with the lesser modulus of the pair over Young's modulus E: neighbours slide past each other where either
+//! of them flows.
 //!
-//! F is a state and not a function of the positions. U therefore changes in two ways: by the motion of the pairs at fixed F, which gives a force on the
-//! pair, and by dF/dt = L F, which gives the Kirchhoff stress `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L turns the latter into forces, as it does for the stress of the material. The
-//! sum of all energies is conserved; so is angular momentum, because U does not change where positions and F rotate together.
+//! F is a state and not a function of the positions. U therefore changes in two ways: by the motion of the
+//! pairs at fixed F, which gives a force on the pair, and by dF/dt = L F, which gives the Kirchhoff stress
+//! `(dU/dF_i) F_i^T / V_0,i`. The adjoint of L turns the latter into forces, as it does for the stress of the
+//! material. The sum of all energies is conserved; so is angular momentum, because U does not change where
+//! positions and F rotate together.
 //!
-//! Each particle resists the residual of its own F, as in the variational form of Lagrangian bodies. With the mean F of both particles the residual is of third order in
-//! bending, and the body stays as soft as the averaged gradient makes it. The weight is that of the velocity gradient: with a steeper one, W / |X|^2, bending would need three times
-//! the largest stiffness. m_ij reduces the weight of pairs that were originally further apart than the support H and became neighbours by flow.
+//! Each particle resists the residual of its own F, as in the variational form of Lagrangian bodies. With the
+//! mean F of both particles the residual is of third order in bending, and the body stays as soft as the
+//! averaged gradient makes it. The weight is that of the velocity gradient: with a steeper one, W / |X|^2,
+//! bending would need three times the largest stiffness. m_ij reduces the weight of pairs that were
+//! originally further apart than the support H and became neighbours by flow.
 
 use glam::DMat3;
 
@@ -32,8 +38,8 @@ column! {
     pub struct HourglassEnergy(f64) = "hourglass_energy", "U_h", "J";
 }
 
-/// Runs the pass over body `k`: adds the stress of the control to what is there, writes its forces, and gives its energy. `energy` are the rows of
-/// [`HourglassEnergy`] of the body, as the last step left them, J.
+/// Runs the pass over body `k`: adds the stress of the control to what is there, writes its forces, and gives
+/// its energy. `energy` are the rows of [`HourglassEnergy`] of the body, as the last step left them, J.
 pub(super) fn run(
     packed: &mut EulerianRows,
     k: usize,
@@ -107,7 +113,8 @@ impl HotLoop for ControlLoop<'_, '_> {
             let last = std::mem::replace(&mut energy[k].0, now);
             sum.stored += now;
             if with_modulus_before > 0.0 {
-                // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 s_n s_n+1 beyond the change of energy.
+                // The trapezoidal rule of the leapfrog spends (E_n - E_n+1)/2 s_n s_n+1 beyond the change of
+                // energy.
                 sum.released += (with_modulus_before - now) * (last / with_modulus_before).sqrt();
             } else {
                 sum.released -= now;

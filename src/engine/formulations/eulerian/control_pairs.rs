@@ -15,7 +15,8 @@ pub(super) struct ControlPairs<'a> {
     pub near: &'a EulerianNeighbors,
     pub points: &'a [EulerianParticle],
     pub carried: &'a [Carried],
-    /// Resistance to the error across a pair, over that to the error along it, for each Pa of the lesser modulus of the pair, 1/Pa.
+    /// Resistance to the error across a pair, over that to the error along it, for each Pa of the lesser
+    /// modulus of the pair, 1/Pa.
     pub across: f64,
 }
 

@@ -10,7 +10,8 @@ use crate::symmetry::Map;
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct Carried {
-    /// The columns of F, and in their last lanes the modulus of the control, that of the last step, Pa, and the reference volume, m3.
+    /// The columns of F, and in their last lanes the modulus of the control, that of the last step, Pa, and
+    /// the reference volume, m3.
     pub columns: [Lanes4; 3],
     /// X.
     pub original: Lanes4,

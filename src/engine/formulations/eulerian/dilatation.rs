@@ -1,7 +1,8 @@
 //! Change of volume that plugins request in addition to that of the motion: smoothing of the density.
 //!
-//! F is a state of the particle, so that its volume can be changed without a motion. The work of the stress in that change, including the stress of hourglass
-//! control, is not the work of a force: it is booked under the name of the plugin.
+//! F is a state of the particle, so that its volume can be changed without a motion. The work of the stress
+//! in that change, including the stress of hourglass control, is not the work of a force: it is booked under
+//! the name of the plugin.
 
 use glam::DMat3;
 
@@ -12,8 +13,9 @@ use crate::schedule::{AccountKind, Step, StepError};
 use crate::world::{BodyId, PhaseId};
 
 column! {
-    /// Rate of the logarithm of the volume that plugins add to the trace of the velocity gradient of the next step. Plugins that work on bodies which take
-    /// [`Offer::Dilatation`](crate::plugin::Offer::Dilatation) write it.
+    /// Rate of the logarithm of the volume that plugins add to the trace of the velocity gradient of the next
+    /// step. Plugins that work on bodies which take [`Offer::Dilatation`](crate::plugin::Offer::Dilatation)
+    /// write it.
     pub struct DilatationRate(f64) = "dilatation_rate", "d", "1/s";
 }
 
@@ -27,8 +29,8 @@ pub(super) struct Dilatation {
 }
 
 impl Dilatation {
-    /// Books what the change of volume of the last step has taken out of the stored energies of the bodies, by the mean of the stresses before and after it. Without a
-    /// step it takes up the stresses alone.
+    /// Books what the change of volume of the last step has taken out of the stored energies of the bodies,
+    /// by the mean of the stresses before and after it. Without a step it takes up the stresses alone.
     pub fn book(
         &mut self,
         phase: PhaseId,

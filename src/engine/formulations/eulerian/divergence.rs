@@ -10,10 +10,12 @@ use super::particle::EulerianParticle;
 /// How the force comes from the stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Divergence {
-    /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are kept.
+    /// The exact adjoint of the velocity gradient: momentum, angular momentum and power of the stress are
+    /// kept.
     #[default]
     Adjoint,
-    /// That of the paper (eqs. 10-11), with stresses over the sum of the kernel: momentum is kept, angular momentum and energy are not.
+    /// That of the paper (eqs. 10-11), with stresses over the sum of the kernel: momentum is kept, angular
+    /// momentum and energy are not.
     Shepard,
 }
 

@@ -1,19 +1,22 @@
 //! Pairs of a body that touches itself: kernel neighbours, or two surfaces in contact.
 //!
-//! The deformation of a particle implies the original distance of a pair that is now `x_ij` apart: `|F^-1 x_ij|`. Where the real original distance was much larger, no
-//! deformation has brought the two particles together: two surfaces of the body meet. A pair is in the kernel sums or in contact, never in both and, within the support, never in neither.
+//! The deformation of a particle implies the original distance of a pair that is now `x_ij` apart: `|F^-1
+//! x_ij|`. Where the real original distance was much larger, no deformation has brought the two particles
+//! together: two surfaces of the body meet. A pair is in the kernel sums or in contact, never in both and,
+//! within the support, never in neither.
 
 use glam::{DMat3, DVec3};
 
 use super::lists::EulerianLists;
 use crate::world::DeformationGradient;
 
-/// A pair is in contact if its original distance exceeds this many supports and this many times the distance that the deformation implies.
-/// Slip along a shear band one particle wide counts as deformation until then.
+/// A pair is in contact if its original distance exceeds this many supports and this many times the distance
+/// that the deformation implies. Slip along a shear band one particle wide counts as deformation until then.
 const ELSEWHERE: f64 = 2.5;
 
 impl EulerianLists {
-    /// Leaves pairs in contact out of the rows of bodies that touch themselves. The result depends on the current state alone, not on the age of the lists.
+    /// Leaves pairs in contact out of the rows of bodies that touch themselves. The result depends on the
+    /// current state alone, not on the age of the lists.
     pub fn leave_out_elsewhere(
         &mut self,
         position: &[DVec3],

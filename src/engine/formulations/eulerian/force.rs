@@ -31,7 +31,8 @@ pub(super) fn write(packed: &EulerianRows, mass: &[Mass], force: &mut [Force]) {
     share_rows_of(force, packed.lists.bodies.iter().map(|body| body.rows.clone()));
 }
 
-/// Writes the force of the stresses that are there, and of gravity, on the particles that this rank computes, N.
+/// Writes the force of the stresses that are there, and of gravity, on the particles that this rank computes,
+/// N.
 fn write_own(packed: &EulerianRows, mass: &[Mass], gravity: DVec3, force: &mut [Force]) {
     for rows in packed.lists.bodies.iter().map(|body| body.rows.clone()) {
         let start = rows.start;

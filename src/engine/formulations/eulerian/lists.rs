@@ -50,7 +50,8 @@ impl EulerianLists {
         Self { bodies, ..Self::default() }
     }
 
-    /// Builds the lists anew if a pair may have come within the support that is not in them; says whether it did.
+    /// Builds the lists anew if a pair may have come within the support that is not in them; says whether it
+    /// did.
     ///
     /// # Errors
     /// The body whose places have no neighbours that could be found.
@@ -107,8 +108,8 @@ impl EulerianLists {
 }
 
 impl EulerianBody {
-    /// Whether a particle has moved by more than half the skin. A body that flies takes its lists along; at a symmetry plane it meets its image, which
-    /// goes the other way.
+    /// Whether a particle has moved by more than half the skin. A body that flies takes its lists along; at a
+    /// symmetry plane it meets its image, which goes the other way.
     fn has_moved(&self, before: &[DVec3], now: &[DVec3]) -> bool {
         let is_mirrored = self.repeats.iter().any(|repeat| matches!(repeat, Repeat::Mirror { .. }));
         type Rows<'a> = (&'a [DVec3], &'a [DVec3]);
@@ -129,8 +130,9 @@ impl EulerianBody {
         farthest.0.is_nan() || farthest.0 > limit * limit
     }
 
-    /// What the body repeats itself by where it is now, and how far from a side its ghosts have their sources, m: a body that fills a period goes
-    /// along with its motion, and its sides need not be flat any more.
+    /// What the body repeats itself by where it is now, and how far from a side its ghosts have their
+    /// sources, m: a body that fills a period goes along with its motion, and its sides need not be flat any
+    /// more.
     fn repeats_at(&self, position: &[DVec3]) -> (Vec<Repeat>, f64) {
         let mut reach = self.support * (1.0 + SKIN);
         if self.repeats.is_empty() {

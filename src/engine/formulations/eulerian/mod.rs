@@ -1,6 +1,8 @@
-//! Solids whose kernels live in the current configuration (Mohseni-Mofidi and Bierwisch 2020), with the corrections of docs/eulerian.md.
+//! Solids whose kernels live in the current configuration (Mohseni-Mofidi and Bierwisch 2020), with the
+//! corrections of docs/eulerian.md.
 //!
-//! Neighbours, weights and corrections are evaluated at the current positions; the only memory of a particle is its state. A step is
+//! Neighbours, weights and corrections are evaluated at the current positions; the only memory of a particle
+//! is its state. A step is
 //!
 //! ```text
 //! rates     L_i = (sum_j V_0,j w_ij v_ij (x) x_ij) M_i^-1 ,  M_i = sum_j V_0,j w_ij x_ij (x) x_ij      with the positions at mid-step
@@ -9,12 +11,12 @@
 //! force     f_i = V_0,i sum_j V_0,j w_ij (A_i + A_j) x_ij
 //! ```
 //!
-//! The weights use reference volumes: with current volumes L would depend on F, which is known only at the ends of a step, and the step would not be
-//! time-reversible.
+//! The weights use reference volumes: with current volumes L would depend on F, which is known only at the
+//! ends of a step, and the step would not be time-reversible.
 //!
-//! The force is the exact adjoint of the velocity gradient at the same positions: its power is the stress power, and it has no resultant and no
-//! torque. The lists have a skin; a step takes from them the neighbours within the support, in the order of rows, so that no bit
-//! depends on the age of the lists.
+//! The force is the exact adjoint of the velocity gradient at the same positions: its power is the stress
+//! power, and it has no resultant and no torque. The lists have a skin; a step takes from them the neighbours
+//! within the support, in the order of rows, so that no bit depends on the age of the lists.
 
 mod artificial_stress;
 mod control;

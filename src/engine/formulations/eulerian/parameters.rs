@@ -31,7 +31,8 @@ use crate::world::{
     ReferencePosition, ReferenceVolume, Removed, SupportRadius, Velocity,
 };
 
-/// Solid whose neighbours and kernels are those of the present configuration: it flows, mixes and tears as far as it likes.
+/// Solid whose neighbours and kernels are those of the present configuration: it flows, mixes and tears as
+/// far as it likes.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Eulerian {
@@ -45,7 +46,8 @@ pub struct Eulerian {
     pub artificial_stress: Option<ArtificialStress>,
 }
 
-/// Support radius over spacing, where the scene gives none: a smoothing length of 1.3 spacings, as in the paper.
+/// Support radius over spacing, where the scene gives none: a smoothing length of 1.3 spacings, as in the
+/// paper.
 const USUAL_SUPPORT: f64 = 2.6;
 
 impl Default for Eulerian {
@@ -132,7 +134,8 @@ impl Formulation for Eulerian {
     }
 }
 
-/// The share of its stress that every row carries such that a uniform stress is in balance beside held sides at the start; empty where all carry all of it.
+/// The share of its stress that every row carries such that a uniform stress is in balance beside held sides
+/// at the start; empty where all carry all of it.
 fn shares_of(listed: &[EulerianBody], kernels: &[EulerianKernel], sim: &SimBuilder<'_>) -> Vec<f64> {
     let bodies = listed.iter().zip(kernels).map(|(body, of)| {
         let (plan, repeats) = (sim.body(body.id), &body.repeats[..]);

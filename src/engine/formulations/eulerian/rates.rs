@@ -1,7 +1,8 @@
 //! The velocity gradient at mid-step, and the update of the deformation gradient.
 //!
-//! With the Cayley map the change of F over its mean is dt L to rounding, which is what hypoelastic laws use, and a rigid rotation
-//! stays one. Positions at the end of the step would give a rotating body a spurious dilatation of omega^2 dt / 2.
+//! With the Cayley map the change of F over its mean is dt L to rounding, which is what hypoelastic laws use,
+//! and a rigid rotation stays one. Positions at the end of the step would give a rotating body a spurious
+//! dilatation of omega^2 dt / 2.
 
 use glam::{DMat3, DVec3};
 

@@ -33,7 +33,8 @@ pub(super) struct EulerianRows {
     pub near: EulerianNeighbors,
     /// F of the real rows.
     pub deformation: Vec<DMat3>,
-    /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume V_0.
+    /// Corrected stress tau M^-1, and in the last lane of its traction what it is weighted with: the volume
+    /// V_0.
     pub stresses: Vec<CorrectedStress>,
     /// What the control along pairs makes.
     pub control: EulerianControlRows,
@@ -52,7 +53,8 @@ pub(super) struct PointColumns<'a> {
 }
 
 impl EulerianRows {
-    /// Brings the lists up to date, with room for all that hangs on them. Positions and reference positions, m.
+    /// Brings the lists up to date, with room for all that hangs on them. Positions and reference positions,
+    /// m.
     pub fn update_lists(
         &mut self,
         position: &[DVec3],
@@ -77,7 +79,8 @@ impl EulerianRows {
         Ok(())
     }
 
-    /// Packs the particles where they were `back` seconds ago, ghosts too; the rows that are `gone` have no volume.
+    /// Packs the particles where they were `back` seconds ago, ghosts too; the rows that are `gone` have no
+    /// volume.
     pub fn pack(&mut self, columns: &PointColumns<'_>, back: f64, gone: impl Iterator<Item = usize>) {
         let n = columns.position.len();
         let PointColumns { position, velocity, volume, deformation } = *columns;

@@ -1,4 +1,5 @@
-//! The deformation gradient of bodies that start deformed: the fit of their positions to those of the reference configuration.
+//! The deformation gradient of bodies that start deformed: the fit of their positions to those of the
+//! reference configuration.
 
 use glam::{DMat3, DVec3};
 
@@ -6,7 +7,8 @@ use super::rows::EulerianRows;
 use crate::correction::AffineFit;
 use crate::world::DeformationGradient;
 
-/// Fits F to the places of all particles; the lists are those of the reference configuration. Bodies that start undeformed keep F = I, to the bit.
+/// Fits F to the places of all particles; the lists are those of the reference configuration. Bodies that
+/// start undeformed keep F = I, to the bit.
 pub(super) fn fit_gradients(
     packed: &EulerianRows,
     reference: &[DVec3],

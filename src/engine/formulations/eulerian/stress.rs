@@ -1,4 +1,5 @@
-//! Stress at the end of the step: the neighbours within the support, the laws, the corrected stress for the force.
+//! Stress at the end of the step: the neighbours within the support, the laws, the corrected stress for the
+//! force.
 
 use glam::{DMat3, DVec3};
 
@@ -52,7 +53,8 @@ impl Run for Stress {
         artificial_stress::write(step.world, self.phase, &packed)?;
         self.find_stable_steps(&mut packed);
         let stable = std::mem::take(&mut packed.stable_step);
-        // Weights are those of the present places: of the stretches, only the change of volume stiffens what they see.
+        // Weights are those of the present places: of the stretches, only the change of volume stiffens what
+        // they see.
         let limited = self.solids.limit_from_present(step, &stable);
         packed.stable_step = stable;
         limited
@@ -174,8 +176,9 @@ impl Stress {
         self.solids.run(of_body, columns, own, &|law, rows, own, block| pass.block(law, rows, own, block));
     }
 
-    /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same places: what the removed particles held
-    /// leaves the energy balance, and what the motion up to here, with the old forces, loses by the new ones in the second kick goes with it.
+    /// Takes out of the sums what has been removed since the last step. The pass runs twice from the same
+    /// places: what the removed particles held leaves the energy balance, and what the motion up to here,
+    /// with the old forces, loses by the new ones in the second kick goes with it.
     fn take_up_removed(&mut self, step: &mut Step<'_>, packed: &mut EulerianRows) -> Result<(), StepError> {
         let view = step.world.phase(self.phase);
         let removed = view.read_near::<Removed>()?;

@@ -181,7 +181,8 @@ impl Bodies {
     }
 }
 
-/// The cloud of the particles of all bodies, before the first step; `reach` is that of the repulsion of boundaries, m.
+/// The cloud of the particles of all bodies, before the first step; `reach` is that of the repulsion of
+/// boundaries, m.
 fn cloud(
     bodies: Bodies,
     common: Common,
@@ -228,7 +229,8 @@ fn cloud(
     })
 }
 
-/// The boundaries as the search for gaps sees them. The pressure of a gap does not answer to its volume, as that of a fluid would, and would feed vibrations of deformable bodies.
+/// The boundaries as the search for gaps sees them. The pressure of a gap does not answer to its volume, as
+/// that of a fluid would, and would feed vibrations of deformable bodies.
 fn sides(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<GapSide> {
     let copies = |body: BodyId| groups.iter().filter(|group| group.body == body).count();
     let side = |group: &Group| {
@@ -259,7 +261,8 @@ fn neighborhoods(
     bodies.into_iter().map(|id| of(id).map_err(|error| SetupError::internal(&error))).collect()
 }
 
-/// Whether the flow has no free surface, so that bodies in it can pull at it: where walls do, or where the domain has no end.
+/// Whether the flow has no free surface, so that bodies in it can pull at it: where walls do, or where the
+/// domain has no end.
 fn is_confined(walls: &[WallBody], sim: &SimBuilder<'_>) -> bool {
     let endless = sim.periodic().axes().iter().take(sim.dimension().count()).all(|&repeats| repeats);
     endless || walls.iter().any(|wall| wall.parameters.suction)

@@ -15,7 +15,8 @@ use crate::world::{Column, Value, Velocity};
 
 /// Smallest eigenvalue of the moment matrix above which a particle is inside the fluid.
 const INSIDE: f64 = 0.75;
-/// Smallest eigenvalue below which a particle is part of a surface, a thread or a drop, whatever is around it.
+/// Smallest eigenvalue below which a particle is part of a surface, a thread or a drop, whatever is around
+/// it.
 const ALONE: f64 = 0.2;
 
 /// Vorticity and free surface of fluids.
@@ -46,7 +47,8 @@ pub(crate) fn fields() -> [Field; 2] {
     [vorticity, surface].map(|field| field.only_for(BodyKind::Fluid))
 }
 
-/// `omega_i = sum_j V_j w_ij (M_i^-1 x_ij) x v_ij` over the fluids alone: exact where the velocity is linear, at walls and surfaces as well.
+/// `omega_i = sum_j V_j w_ij (M_i^-1 x_ij) x v_ij` over the fluids alone: exact where the velocity is linear,
+/// at walls and surfaces as well.
 struct Vorticity<'a> {
     cloud: &'a FlowCloud,
     velocity: &'a [Velocity],
@@ -90,8 +92,9 @@ impl RowPass<1, 6> for Vorticity<'_> {
     }
 }
 
-/// One at a free surface, zero inside, from the moment matrix and the first moment of particle `i`: a neighbour in the mouth of a cone, or of an
-/// umbrella at its end, along the outward normal covers the particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
+/// One at a free surface, zero inside, from the moment matrix and the first moment of particle `i`: a
+/// neighbour in the mouth of a cone, or of an umbrella at its end, along the outward normal covers the
+/// particle (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663, section 3).
 fn free_surface(cloud: &FlowCloud, i: usize, moment: &MomentMatrix, first_moment: DVec3) -> f64 {
     let least = smallest_eigenvalue(moment.matrix(), cloud.plane);
     if !(ALONE..=INSIDE).contains(&least) {

@@ -11,18 +11,19 @@ use crate::plugin::{BodyKind, Formulation, Offer, SetupError, SimBuilder};
 use crate::scene::{Dimension, Expression};
 use crate::world::{BodyId, ColumnSet, Density, DensityRate, Pressure};
 
-/// Weakly compressible fluid: density by continuity, pressure by the equation of state of its material, laminar viscosity.
-/// All fluid bodies of a scene share one kernel and one support radius.
+/// Weakly compressible fluid: density by continuity, pressure by the equation of state of its material,
+/// laminar viscosity. All fluid bodies of a scene share one kernel and one support radius.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Fluid {
     /// Kernel: `wendland_c2`, `wendland_c4`, `wendland_c6` or `quintic_spline`; with others particles pair.
     pub kernel: KernelName,
-    /// Support radius of the kernel over spacing; without it 3 in two dimensions and 2.6 in three with `wendland_c2`, so much wider with the others that the stable
-    /// step is the same: 3.4, 3.8 and 3.3, 2.9, 3.3 and 2.9. The quintic spline allows 3.5 at most.
+    /// Support radius of the kernel over spacing; without it 3 in two dimensions and 2.6 in three with
+    /// `wendland_c2`, so much wider with the others that the stable step is the same: 3.4, 3.8 and 3.3, 2.9,
+    /// 3.3 and 2.9. The quintic spline allows 3.5 at most.
     pub support: Option<f64>,
-    /// Pressure at the start \[Pa\], a function of place. Without it that of a fluid at rest under gravity below the surface
-    /// above each particle, with the weight of fluids that lie on it.
+    /// Pressure at the start \[Pa\], a function of place. Without it that of a fluid at rest under gravity
+    /// below the surface above each particle, with the weight of fluids that lie on it.
     pub pressure: Option<Expression>,
 }
 

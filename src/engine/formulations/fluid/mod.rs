@@ -1,9 +1,10 @@
 //! Weakly compressible fluids, and the walls that bound them.
 //!
-//! A step is two passes over pairs: the rate of compression at the middle of the step gives density and pressure at its
-//! end, then pressure and viscosity give the force. Between the two, walls take their pressure from the fluid beside
-//! them (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075). Fluids and boundaries are packed into one cloud with
-//! one search for neighbours; every pair force has its exact opposite on the other particle.
+//! A step is two passes over pairs: the rate of compression at the middle of the step gives density and
+//! pressure at its end, then pressure and viscosity give the force. Between the two, walls take their
+//! pressure from the fluid beside them (Adami, Hu, Adams, J. Comput. Phys. 231 (2012) 7057-7075). Fluids and
+//! boundaries are packed into one cloud with one search for neighbours; every pair force has its exact
+//! opposite on the other particle.
 //!
 //! Folders stand in the order in which they use each other, and import only those above them.
 

@@ -43,7 +43,8 @@ fn boundaries(groups: &[Group]) -> Vec<PhaseId> {
     phases
 }
 
-/// The phases that take sub-steps: those of bodies which the fluid moves, and that of walls if any of these may touch one.
+/// The phases that take sub-steps: those of bodies which the fluid moves, and that of walls if any of these
+/// may touch one.
 pub fn short_phases(groups: &[Group], sim: &SimBuilder<'_>) -> Vec<PhaseId> {
     let touching = sim.scene().touching_pairs();
     let touched = |group: &Group| touching.names(&sim.body(group.body).name);
@@ -117,7 +118,8 @@ pub fn add(
     Ok(())
 }
 
-/// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the compression of the fluid, where there are any.
+/// Adds what the pressure of boundaries that pull and the stretching of deformable bodies do to the
+/// compression of the fluid, where there are any.
 fn add_boundary_rates(sim: &mut SimBuilder<'_>, groups: &[Group], fluid: PhaseId, boundaries: &[PhaseId]) {
     let has_suction = groups.iter().any(Group::has_suction);
     let mut before = COMPRESSION;
@@ -257,7 +259,8 @@ fn add_boundaries(sim: &mut SimBuilder<'_>, groups: &[Group], boundaries: Vec<Ph
     }
 }
 
-/// Adds the force on particles that take long steps; those that flow get their weight and their pair terms with it.
+/// Adds the force on particles that take long steps; those that flow get their weight and their pair terms
+/// with it.
 fn add_force(
     sim: &mut SimBuilder<'_>,
     groups: &[Group],

@@ -1,8 +1,9 @@
-//! First pass over pairs: the deformation gradient, then, while a block is in cache, stress and corrected stress.
+//! First pass over pairs: the deformation gradient, then, while a block is in cache, stress and corrected
+//! stress.
 //!
-//! `F_i = I + (sum_j V_j w_ij u_ij (x) X_ij) M_i^-1` is the weighted least-squares fit of the current pair vectors
-//! (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements keep the digits of
-//! small strains). In plane strain the third row and column are those of the identity.
+//! `F_i = I + (sum_j V_j w_ij u_ij (x) X_ij) M_i^-1` is the weighted least-squares fit of the current pair
+//! vectors (Ganzenmueller 2015, eq. 13, with the correction of eq. 10 written as one inverse; displacements
+//! keep the digits of small strains). In plane strain the third row and column are those of the identity.
 
 use glam::DVec3;
 
@@ -19,7 +20,8 @@ use crate::world::Velocity;
 /// What the pass writes of packed rows, cut by rows of one body.
 pub(super) struct DeformationRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
-    /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`, the part of the force that knows no stress but its own.
+    /// `A_i sum_j V_j w_ij X_ij + k_i sum_j V_j w_ij u_ij`, the part of the force that knows no stress but
+    /// its own.
     pub self_force: &'a mut [DVec3],
     pub edges: EdgeRows<'a>,
     pub hessian: HessianBlock<'a>,

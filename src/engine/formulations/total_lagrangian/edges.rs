@@ -1,8 +1,10 @@
 //! Folded terms of particles at the edge of a crack, computed without the failed neighbours.
 //!
-//! The energy of a term is that of the residual of a fit, which is computed again over the intact neighbours: the force is then the gradient of an
-//! energy in which the failed particles do not occur. The energy of the bonds cut by a failure is released. At the positions at the end of a step it is the
-//! difference of the two energies; the motion of that step was computed with the old forces, that of the next step with the new ones.
+//! The energy of a term is that of the residual of a fit, which is computed again over the intact neighbours:
+//! the force is then the gradient of an energy in which the failed particles do not occur. The energy of the
+//! bonds cut by a failure is released. At the positions at the end of a step it is the difference of the two
+//! energies; the motion of that step was computed with the old forces, that of the next step with the new
+//! ones.
 
 use glam::{DMat3, DVec3};
 
@@ -60,8 +62,8 @@ impl DeformationPass<'_> {
         constitutive.fold(&mut rows.part(next..end), sum);
     }
 
-    /// Adds all folded terms to the row of an edge. Where a neighbour has failed in the last step they are added as they were before it, first, and what
-    /// they lose with it is released.
+    /// Adds all folded terms to the row of an edge. Where a neighbour has failed in the last step they are
+    /// added as they were before it, first, and what they lose with it is released.
     fn add_at_edge(
         &self,
         constitutive: &Constitutive<'_>,
@@ -95,7 +97,8 @@ impl DeformationPass<'_> {
         }
     }
 
-    /// The fit over the neighbours whose marks count; the one `of_all` where these are too few, and then nothing resists.
+    /// The fit over the neighbours whose marks count; the one `of_all` where these are too few, and then
+    /// nothing resists.
     fn fit(&self, i: usize, of_all: DMat3, counts: impl Fn(Mark) -> bool) -> EdgeFit {
         let mut moment = MomentMatrix::new(if self.plane { 2 } else { 3 });
         self.bonds_of(i, &counts).for_each(|bond| moment.add(bond.weight, bond.arm));

@@ -30,8 +30,8 @@ pub struct TotalLagrangian {
     pub kernel: KernelName,
     /// Support radius over spacing.
     pub support: f64,
-    /// In place of `support`, for irregular particles: the number of neighbours for which the support radius of each
-    /// particle is chosen, half-way between the distances of the last of them and of the next.
+    /// In place of `support`, for irregular particles: the number of neighbours for which the support radius
+    /// of each particle is chosen, half-way between the distances of the last of them and of the next.
     pub neighbors: Option<u32>,
 }
 

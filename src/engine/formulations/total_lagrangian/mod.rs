@@ -1,8 +1,8 @@
 //! Total-Lagrangian smoothed particle hydrodynamics of solids (Ganzenmueller 2015).
 //!
-//! Neighbours, weights and corrections belong to the reference configuration and are built once. A step is two passes
-//! over pairs. The first computes F and, block by block while the rows are in cache, the stress and the corrected stress;
-//! the second computes the force.
+//! Neighbours, weights and corrections belong to the reference configuration and are built once. A step is
+//! two passes over pairs. The first computes F and, block by block while the rows are in cache, the stress
+//! and the corrected stress; the second computes the force.
 
 mod deformation;
 mod edges;

@@ -42,7 +42,8 @@ pub(super) fn middle(body: &Range<usize>) -> usize {
 }
 
 impl PackedRows {
-    /// Makes the halo of the present cut among ranks: rows of bonds of the own rows, and the middles of `bodies`, whose motion all ranks take as frames.
+    /// Makes the halo of the present cut among ranks: rows of bonds of the own rows, and the middles of
+    /// `bodies`, whose motion all ranks take as frames.
     pub fn make_halo(&mut self, bodies: &[Range<usize>]) {
         let Self { bonds, ghosts, .. } = self;
         let mut wanted = vec![false; bodies.last().map_or(0, |body| body.end)];

@@ -1,4 +1,5 @@
-//! Removed particles leave the bonds: the remaining neighbours are fitted again, and the energy of the cut bonds is booked.
+//! Removed particles leave the bonds: the remaining neighbours are fitted again, and the energy of the cut
+//! bonds is booked.
 
 use glam::DMat3;
 
@@ -37,9 +38,9 @@ impl Deformation {
 
     /// Takes up what has been removed since the last step; returns whether the pass has been run with it.
     ///
-    /// The passes run twice from the same places, with the bonds that are gone and without them: what these held leaves
-    /// the energy balance. The second kick of the step uses the new forces, the motion up to here has used the old ones:
-    /// what that takes from the motion leaves the balance with it.
+    /// The passes run twice from the same places, with the bonds that are gone and without them: what these
+    /// held leaves the energy balance. The second kick of the step uses the new forces, the motion up to here
+    /// has used the old ones: what that takes from the motion leaves the balance with it.
     pub(super) fn take_up_removed(
         &mut self,
         step: &mut Step<'_>,
@@ -106,7 +107,8 @@ impl Deformation {
         Ok(force)
     }
 
-    /// Takes the removed particles out of the moment matrices of their neighbours, and off the edges of cracks.
+    /// Takes the removed particles out of the moment matrices of their neighbours, and off the edges of
+    /// cracks.
     fn cut(&mut self, world: &World, packed: &mut PackedRows) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let reference = view.read_near::<ReferencePosition>()?;

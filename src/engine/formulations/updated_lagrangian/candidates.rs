@@ -1,8 +1,10 @@
 //! Who may be a neighbour in the reference of a body: a list that lasts for many updates.
 //!
-//! Two particles are neighbours where both measure a distance below the mean of their support radii. With half axes l and support radii s, they are then closer
-//! than the mean of `s l`, more exactly of [`radii`]. The list holds who is closer than that and a skin, and lasts as long as particles near each other have moved by less
-//! than the skin against each other. What is taken from it does not depend on when it was built: rows are ascending, and the distance decides.
+//! Two particles are neighbours where both measure a distance below the mean of their support radii. With
+//! half axes l and support radii s, they are then closer than the mean of `s l`, more exactly of [`radii`].
+//! The list holds who is closer than that and a skin, and lasts as long as particles near each other have
+//! moved by less than the skin against each other. What is taken from it does not depend on when it was
+//! built: rows are ascending, and the distance decides.
 
 use std::ops::Range;
 
@@ -128,8 +130,9 @@ impl Candidates {
     }
 }
 
-/// How far particles with these support radii, m, and ellipsoids can see: two that measure less than the mean of their support radii are closer than the mean of these.
-/// With distances `|r|^2 (1/l_i^2 + 1/l_j^2) / 2` and more, they are closer than the product of the means of s and l, which exceeds the mean of the products
+/// How far particles with these support radii, m, and ellipsoids can see: two that measure less than the mean
+/// of their support radii are closer than the mean of these. With distances `|r|^2 (1/l_i^2 + 1/l_j^2) / 2`
+/// and more, they are closer than the product of the means of s and l, which exceeds the mean of the products
 /// by no more than a quarter of the product of the ranges of s and l.
 pub(super) fn radii(support: &[f64], ellipsoids: &[Ellipsoid], radii: &mut Vec<f64>) {
     let range = |values: &mut dyn Iterator<Item = f64>| {

@@ -1,21 +1,25 @@
-//! Stabilizers of bodies whose reference has been updated: from the original pair vectors X_ij, with weights of the reference.
+//! Stabilizers of bodies whose reference has been updated: from the original pair vectors X_ij, with weights
+//! of the reference.
 //!
 //! ```text
 //! H_i = (sum_j V_j w_ij u_ij (x) X_ij) (sum_j V_j w_ij X_ij (x) X_ij)^-1 ,   u_ij = x_ij - X_ij
 //! force_i = V_i sum_j V_j w_ij [(B_i + B_j) X_ij + (k_i + k_j) u_ij]
 //! ```
 //!
-//! Folded terms compute B and k from H and from the residual `sum_j V_j w_ij |H_i X_ij - u_ij|^2`. H_i is the fit that minimizes the residual.
-//! Between updates the force of a variational term is therefore the exact gradient of its energy, without torque on a body in rigid motion. With increments measured from the last update,
-//! every update would erase the residual that the control resists.
+//! Folded terms compute B and k from H and from the residual `sum_j V_j w_ij |H_i X_ij - u_ij|^2`. H_i is the
+//! fit that minimizes the residual. Between updates the force of a variational term is therefore the exact
+//! gradient of its energy, without torque on a body in rigid motion. With increments measured from the last
+//! update, every update would erase the residual that the control resists.
 //!
-//! The weight is evaluated at the distance `|(F_r,i + F_r,j) X_ij| / 2`, which follows from the deformation alone, and not at the distance of the particles. The latter contains the
-//! hourglass motion: at the next update a pair that has come too close would get a larger weight, and with it energy without work (two colliding rubber rings, updates
-//! every three steps: 18 J of 36 J).
+//! The weight is evaluated at the distance `|(F_r,i + F_r,j) X_ij| / 2`, which follows from the deformation
+//! alone, and not at the distance of the particles. The latter contains the hourglass motion: at the next
+//! update a pair that has come too close would get a larger weight, and with it energy without work (two
+//! colliding rubber rings, updates every three steps: 18 J of 36 J).
 //!
 //! Failed particles are in no sum.
 //!
-//! Before its first update a body has these sums already, those of its stress: there the terms fold into it, as in a total-Lagrangian body.
+//! Before its first update a body has these sums already, those of its stress: there the terms fold into it,
+//! as in a total-Lagrangian body.
 
 use glam::{DMat3, DVec3};
 
@@ -125,7 +129,8 @@ impl ControlPass<'_> {
     }
 }
 
-/// Whether these are the places, gradients and volumes of the start; those that have been removed do not count.
+/// Whether these are the places, gradients and volumes of the start; those that have been removed do not
+/// count.
 pub(super) fn is_original(
     mut rows: std::ops::Range<usize>,
     (reference, original): (&[DVec3], &[DVec3]),

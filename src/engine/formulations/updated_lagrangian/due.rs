@@ -13,7 +13,8 @@ use crate::world::DeformationGradient;
 
 /// Steps between two looks at the lengths of pairs: they change slowly against the stable step.
 const INTERVAL: u64 = 4;
-/// Distance up to which particles of a regular lattice are beside each other, over the spacing: along its axes and its diagonals.
+/// Distance up to which particles of a regular lattice are beside each other, over the spacing: along its
+/// axes and its diagonals.
 const BESIDE: f64 = 1.5;
 /// Distance from which on a pair is as good as lost, over the support radius.
 const LOST: f64 = 0.95;
@@ -30,7 +31,8 @@ pub(super) struct UpdateRule {
 }
 
 impl UpdateRule {
-    /// Whether the reference of the body with these rows is to be updated after the pass of the step of that number.
+    /// Whether the reference of the body with these rows is to be updated after the pass of the step of that
+    /// number.
     pub fn is_due(&self, rows: Range<usize>, number: u64, packed: &UpdatedRows) -> bool {
         let has_changed =
             |change: f64| number.is_multiple_of(INTERVAL) && has_changed(rows, packed, change * self.h);
@@ -42,7 +44,8 @@ impl UpdateRule {
         }
     }
 
-    /// Whether an update would separate particles that were beside each other at the start, although the material can do no such thing.
+    /// Whether an update would separate particles that were beside each other at the start, although the
+    /// material can do no such thing.
     pub fn would_separate(
         &self,
         rows: Range<usize>,
@@ -82,7 +85,8 @@ impl UpdateRule {
     }
 }
 
-/// A bound below the smallest stretch of some particles: no square of a stretch is farther from one than F^T F is from I.
+/// A bound below the smallest stretch of some particles: no square of a stretch is farther from one than F^T
+/// F is from I.
 fn least_stretch(deformation: &[DeformationGradient]) -> f64 {
     let change: Largest = sum_over_blocks(deformation, &|_, rows: &[DeformationGradient]| {
         Largest::of(rows.iter().map(|f| (Sym3::gram(f.0) - Sym3::IDENTITY).norm()))
@@ -98,7 +102,8 @@ fn smallest_stretch(deformation: &[DeformationGradient]) -> f64 {
     1.0 / most.0.max(1.0)
 }
 
-/// The largest distance of two particles that were closer than that at the start, m, and are beside each other in the lists.
+/// The largest distance of two particles that were closer than that at the start, m, and are beside each
+/// other in the lists.
 fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64 {
     let (sites, bonds, start) = (packed.pair_sites(), packed.bonds(), rows.start);
     let largest: Largest = sum_over_blocks(&sites[rows], &|first, own: &[PackedParticle]| {
@@ -113,7 +118,8 @@ fn farthest_beside(rows: Range<usize>, packed: &UpdatedRows, beside: f64) -> f64
     largest.0.sqrt()
 }
 
-/// Finds the square of the largest present distance of the bonds of some rows that were short at the start, m2.
+/// Finds the square of the largest present distance of the bonds of some rows that were short at the start,
+/// m2.
 struct LargestDistance<'a> {
     /// Original places, and displacements since the start.
     sites: &'a [PackedParticle],

@@ -1,4 +1,5 @@
-//! First pass over pairs: the deformation gradient since the last update, then, while a block is in cache, stress and corrected stress.
+//! First pass over pairs: the deformation gradient since the last update, then, while a block is in cache,
+//! stress and corrected stress.
 
 use glam::{DMat3, DVec3};
 
@@ -15,7 +16,8 @@ use crate::solids::{Constitutive, CorrectedStress, SolidBlock, SolidRows, SolidS
 pub(super) struct GradientRows<'a> {
     pub stresses: &'a mut [CorrectedStress],
     pub self_force: &'a mut [DVec3],
-    /// B and k of the stabilizers, and what they make of a particle's own; empty where they fold into the stress.
+    /// B and k of the stabilizers, and what they make of a particle's own; empty where they fold into the
+    /// stress.
     pub control: &'a mut [CorrectedStress],
     pub control_force: &'a mut [DVec3],
     pub hessian: HessianBlock<'a>,

@@ -1,8 +1,9 @@
 //! Neighbours, weights and moments of a reference, built from lists of candidates.
 //!
-//! Everything is done block by block in buffers that are kept from one update to the next: who is near by the largest radius, who is within the ellipsoids, weights of
-//! their distances, and moments of the weights as they are rounded. The stabilizers have the same neighbours with other weights, at the distances of the original pair vectors as
-//! the deformation has moved them, and moments of the original pair vectors.
+//! Everything is done block by block in buffers that are kept from one update to the next: who is near by the
+//! largest radius, who is within the ellipsoids, weights of their distances, and moments of the weights as
+//! they are rounded. The stabilizers have the same neighbours with other weights, at the distances of the
+//! original pair vectors as the deformation has moved them, and moments of the original pair vectors.
 
 use std::ops::Range;
 
@@ -18,7 +19,8 @@ use crate::neighbors::NeighborSearch;
 use crate::parallel::{BLOCK, block_count, run_hot_on};
 use crate::symmetry::Ghosts;
 
-/// Blocks of rows that each thread makes before they are put together: so few that they stay in its second-level cache until then.
+/// Blocks of rows that each thread makes before they are put together: so few that they stay in its
+/// second-level cache until then.
 const BLOCKS_AT_ONCE: usize = 8;
 /// Rows of a part of a block.
 const PART: usize = 16;
@@ -114,7 +116,8 @@ impl ReferenceLists {
         fill_columns(&mut self.columns, ghosts, gradient);
     }
 
-    /// Gives the bonds of the stabilizers of some rows, whose neighbours are there already, weights and moments.
+    /// Gives the bonds of the stabilizers of some rows, whose neighbours are there already, weights and
+    /// moments.
     pub fn weigh_control(&mut self, rows: &Range<usize>, kernel: &Kernel, bonds: &mut Bonds) {
         let Self { seen, columns, blocks, .. } = self;
         let Bonds { offsets, neighbors, weights, inverse_moment, first_moment, weight_sum, .. } = bonds;

@@ -1,8 +1,9 @@
 //! Particles that lose their neighbours get a larger support, or carry no stress.
 //!
-//! The support radius is constant while a body flows; the neighbours change. Where the material is stretched, the next particle along that direction may be farther away
-//! than the support radius. The fit of the deformation gradient is then singular, or nearly so, and the frequency of the particle unbounded. Such a particle permanently gets a larger
-//! support radius; if that is not enough, it carries no stress.
+//! The support radius is constant while a body flows; the neighbours change. Where the material is stretched,
+//! the next particle along that direction may be farther away than the support radius. The fit of the
+//! deformation gradient is then singular, or nearly so, and the frequency of the particle unbounded. Such a
+//! particle permanently gets a larger support radius; if that is not enough, it carries no stress.
 
 use super::phase::UpdatedRows;
 use crate::formulations::bonded::{BodyKernel, Ellipsoid};
@@ -12,7 +13,8 @@ use crate::plugin::Setup;
 use crate::schedule::Step;
 use crate::world::{BodyId, Damage, SupportRadius, World};
 
-/// Smallest eigenvalue of a moment matrix, which is 1 inside of a body, 1/2 at a face and 1/8 in a corner, below which the support grows.
+/// Smallest eigenvalue of a moment matrix, which is 1 inside of a body, 1/2 at a face and 1/8 in a corner,
+/// below which the support grows.
 const FEW: f64 = 0.05;
 /// Smallest eigenvalue below which a particle carries no stress.
 const LOST: f64 = 0.02;
@@ -21,7 +23,8 @@ const GROWTH: f64 = 1.2;
 /// Largest support radius over the first one.
 const LARGEST: f64 = 2.0;
 
-/// Widens the support of particles that have lost neighbours; returns whether there are any, so that the lists have to be built again. What can fail may tear.
+/// Widens the support of particles that have lost neighbours; returns whether there are any, so that the
+/// lists have to be built again. What can fail may tear.
 pub(super) fn widen(
     packed: &UpdatedRows,
     world: &World,
@@ -116,7 +119,8 @@ fn number_of(warning: &str, begin: &str) -> usize {
     rest.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or(0)
 }
 
-/// Whether the moment matrix that has this inverse has an eigenvalue below a limit, as seen in the ellipsoid of the particle.
+/// Whether the moment matrix that has this inverse has an eigenvalue below a limit, as seen in the ellipsoid
+/// of the particle.
 fn is_below(limit: f64, inverse: &Sym3, ellipsoid: &Ellipsoid) -> bool {
     // The largest eigenvalue of a positive matrix is at most its trace.
     let most = 1.0 / limit;

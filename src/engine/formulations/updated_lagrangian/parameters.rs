@@ -35,7 +35,8 @@ pub struct UpdatedLagrangian {
     pub update: Update,
 }
 
-/// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the paper.
+/// Support radius over spacing, where the scene gives none: a smoothing length of 1.2 spacings, as in the
+/// paper.
 const USUAL_SUPPORT: f64 = 2.4;
 
 impl Default for UpdatedLagrangian {
@@ -44,7 +45,8 @@ impl Default for UpdatedLagrangian {
     }
 }
 
-/// Label of the system that makes deformation gradient, stress and corrected stress, and updates the reference.
+/// Label of the system that makes deformation gradient, stress and corrected stress, and updates the
+/// reference.
 const GRADIENT: &str = "updated_lagrangian_gradient";
 /// Label of the system that makes the internal force.
 const FORCE: &str = "updated_lagrangian_force";

@@ -27,7 +27,8 @@ pub(super) struct UpdatedRows {
     pub origin: DVec3,
     /// Position in the reference with the volume V there, and displacement since.
     pub sites: Vec<PackedParticle>,
-    /// Original position with the volume V, and displacement since the start: what pair terms see where a reference has been updated.
+    /// Original position with the volume V, and displacement since the start: what pair terms see where a
+    /// reference has been updated.
     pub pair_sites: Vec<PackedParticle>,
     /// F_r of the real rows.
     pub gradient: Vec<DMat3>,

@@ -32,7 +32,8 @@ impl RenewError {
 }
 
 impl UpdatedRows {
-    /// Makes neighbours, weights, moments and ghosts of the reference that the columns hold, without `removed` rows.
+    /// Makes neighbours, weights, moments and ghosts of the reference that the columns hold, without
+    /// `removed` rows.
     pub fn renew(
         &mut self,
         world: &World,
@@ -99,7 +100,8 @@ impl UpdatedRows {
         self.hessian.resize(real, self.ghosts.len());
     }
 
-    /// Finds the stable step of each body in the reference, s, from support radii, m, and the volumes of the start, m3.
+    /// Finds the stable step of each body in the reference, s, from support radii, m, and the volumes of the
+    /// start, m3.
     fn find_stable_steps(
         &mut self,
         world: &World,
@@ -119,7 +121,8 @@ impl UpdatedRows {
         }
     }
 
-    /// Takes the deformation gradients of the reference from their column, and makes the bonds of the stabilizers, for which what has `failed` does not hold.
+    /// Takes the deformation gradients of the reference from their column, and makes the bonds of the
+    /// stabilizers, for which what has `failed` does not hold.
     pub fn take_gradients(
         &mut self,
         world: &World,
@@ -147,8 +150,8 @@ impl UpdatedRows {
     }
 }
 
-/// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their sources: a body that fills a period goes along
-/// with its motion, and its sides need not be flat any more.
+/// The repeats of a body that has moved to these bounds, and how far from a side its ghosts have their
+/// sources: a body that fills a period goes along with its motion, and its sides need not be flat any more.
 fn follow(repeats: &[Repeat], low: DVec3, high: DVec3, support: f64) -> (Vec<Repeat>, f64) {
     let mut reach = support;
     let moved = repeats.iter().map(|repeat| match *repeat {

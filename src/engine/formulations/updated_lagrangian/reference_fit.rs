@@ -1,4 +1,5 @@
-//! The fit of the deformation since the last update, at the places of a new reference: it gives F_r, and the pass that follows at the same places takes it up.
+//! The fit of the deformation since the last update, at the places of a new reference: it gives F_r, and the
+//! pass that follows at the same places takes it up.
 
 use std::ops::Range;
 

@@ -11,7 +11,8 @@ use crate::linalg::Sym3;
 use crate::neighbors::NeighborList;
 use crate::parallel::{FourLanes, HotLoop, Lanes4, Number, Vector, run_hot};
 
-/// The rows of a block, which are made in parts, so that what is measured of pairs stays in the first-level cache. Those of pairs are longer than what is used.
+/// The rows of a block, which are made in parts, so that what is measured of pairs stays in the first-level
+/// cache. Those of pairs are longer than what is used.
 #[derive(Default)]
 pub(super) struct PairBlock {
     /// Where those of each row end.
@@ -237,7 +238,8 @@ fn keep_near<A: FourLanes, const GHOSTS: bool>(
     used
 }
 
-/// Puts those that are near and within the ellipsoids behind the bonds that are used; returns how many are used then.
+/// Puts those that are near and within the ellipsoids behind the bonds that are used; returns how many are
+/// used then.
 #[inline(always)]
 fn measure_near<A: FourLanes, const GHOSTS: bool>(
     a: A,
@@ -339,7 +341,8 @@ impl HotLoop for KeepWeights<'_> {
     }
 }
 
-/// Makes the inverse moment matrices of some rows from the rounded weights; a neighbour without volume has no part in them, and a row without volume has none.
+/// Makes the inverse moment matrices of some rows from the rounded weights; a neighbour without volume has no
+/// part in them, and a row without volume has none.
 pub(super) struct Corrections<'a, 'b> {
     pub pairs: &'a RowPairs<'a>,
     pub rows: Range<usize>,

@@ -9,8 +9,8 @@ use crate::symmetry::{Ghost, Ghosts};
 /// All particles, and their ghosts. Loops that look at places alone read nothing else.
 #[derive(Default)]
 pub(super) struct SeenParticles {
-    /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of places: seen from both ends of a bond, these are then the
-    /// same to the last bit.
+    /// Place, m, and volume, m3. That of a ghost is without its shift, which is added to differences of
+    /// places: seen from both ends of a bond, these are then the same to the last bit.
     pub places: Vec<Lanes4>,
     /// Shift of a ghost, m; empty where there is none.
     shifts: Vec<Lanes4>,
@@ -47,7 +47,8 @@ impl SeenEllipsoid {
 }
 
 impl SeenParticles {
-    /// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and their ghosts.
+    /// Fills the rows of all particles at these places, m, with these volumes, m3, and support radii, m, and
+    /// their ghosts.
     pub fn fill(
         &mut self,
         ghosts: &Ghosts,

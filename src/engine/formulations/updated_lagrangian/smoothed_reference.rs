@@ -1,17 +1,22 @@
 //! The positions that become the reference: close to the particles, but free of zero-energy motions.
 //!
-//! If the particle positions themselves were the reference, zero-energy motions would enter its pair vectors, and the next increments of the deformation gradient
-//! would contain part of them. The operator changes with every update: what enters F as such a motion grows does not leave F as it decays. F would
-//! drift away from the deformation of the material, faster with more frequent updates, and a vibrating body would permanently keep a part of its
-//! energy as strain that no motion releases.
+//! If the particle positions themselves were the reference, zero-energy motions would enter its pair vectors,
+//! and the next increments of the deformation gradient would contain part of them. The operator changes with
+//! every update: what enters F as such a motion grows does not leave F as it decays. F would drift away from
+//! the deformation of the material, faster with more frequent updates, and a vibrating body would permanently
+//! keep a part of its energy as strain that no motion releases.
 //!
-//! The reference is therefore relaxed from the positions towards pair vectors that follow from F and the original ones alone,
+//! The reference is therefore relaxed from the positions towards pair vectors that follow from F and the
+//! original ones alone,
 //!
 //! `x_r,i <- x_r,i + theta sum_j V_j w_ij [r_ij - (F_i + F_j) X_ij / 2] / sum_j V_j w_ij`,
 //!
-//! a few times. The sum is taken once, with the places of the particles; then only what the relaxation has moved is summed, x_r,j - x_j. The bracket vanishes for affine motions and is of third order for smooth ones; for zero-energy motions it is the part that the gradient does not see. It is measured from
-//! the original configuration and not from the last update, so that the remainder of one update is removed by the next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F, so that an
-//! update does not change F.
+//! a few times. The sum is taken once, with the places of the particles; then only what the relaxation has
+//! moved is summed, x_r,j - x_j. The bracket vanishes for affine motions and is of third order for smooth
+//! ones; for zero-energy motions it is the part that the gradient does not see. It is measured from the
+//! original configuration and not from the last update, so that the remainder of one update is removed by the
+//! next. The particles are not at the relaxed positions and f is not I there; F_r = f^-1 F, so that an update
+//! does not change F.
 
 use std::ops::Range;
 
@@ -23,9 +28,11 @@ use crate::formulations::bonded::Bonds;
 use crate::parallel::{FourLanes, Lanes4, PlaneOrSpace, for_each_block, run_hot_in};
 use crate::world::{Damage, DeformationGradient};
 
-/// theta: it takes nine tenths of a saw-tooth along one axis of a square lattice at once, and all of a checkerboard.
+/// theta: it takes nine tenths of a saw-tooth along one axis of a square lattice at once, and all of a
+/// checkerboard.
 const SHARE: f64 = 0.75;
-/// How many times: two rubber rings that collide with updates every three steps rebound 1.5 % too slowly after one time, as without updates after three.
+/// How many times: two rubber rings that collide with updates every three steps rebound 1.5 % too slowly
+/// after one time, as without updates after three.
 const TIMES: usize = 3;
 /// Largest distance of a reference place from its particle, over the smoothing length.
 const FARTHEST: f64 = 0.25;
@@ -90,7 +97,8 @@ struct DisplacementSum {
 }
 
 impl ReferenceRelaxation {
-    /// Moves the reference places of the rows of a body, which are those of its particles, to where the reference is to be. What has failed stays, and moves nothing.
+    /// Moves the reference places of the rows of a body, which are those of its particles, to where the
+    /// reference is to be. What has failed stays, and moves nothing.
     pub fn smooth(
         &mut self,
         by: &ReferenceSmoothing<'_>,
@@ -125,7 +133,8 @@ impl ReferenceRelaxation {
         });
     }
 
-    /// Fills what neighbours see of the rows of a body and its ghosts, from places near the middle of the body.
+    /// Fills what neighbours see of the rows of a body and its ghosts, from places near the middle of the
+    /// body.
     fn expect(&mut self, by: &ReferenceSmoothing<'_>, rows: &Range<usize>, places: &[UpdatedReference]) {
         let ReferenceSmoothing { packed, original, deformation, damage, .. } = *by;
         let UpdatedRows { ghosts, volume, sites, .. } = packed;

@@ -176,7 +176,8 @@ impl UpdatedSolids {
         Ok(())
     }
 
-    /// Adds what differences of second derivatives put into the corrected stresses, after the stress of all bodies.
+    /// Adds what differences of second derivatives put into the corrected stresses, after the stress of all
+    /// bodies.
     fn add_differences(
         &mut self,
         view: &PhaseView<'_>,
@@ -211,8 +212,8 @@ impl UpdatedSolids {
         Ok(())
     }
 
-    /// Whether the reference of body `k` is to be updated after the pass of this step. A body whose reference could only follow by separating neighbours that its
-    /// material holds together keeps the one that it has.
+    /// Whether the reference of body `k` is to be updated after the pass of this step. A body whose reference
+    /// could only follow by separating neighbours that its material holds together keeps the one that it has.
     fn is_due(&mut self, k: usize, step: &mut Step<'_>, packed: &UpdatedRows) -> Result<bool, MissingColumn> {
         let body = step.world.body(self.solids.id(k));
         let (rows, number) = (body.rows.clone(), step.part.number());
@@ -234,10 +235,11 @@ impl UpdatedSolids {
         Ok(!self.keeps[k])
     }
 
-    /// Makes the present configuration the reference of the bodies that are due, among them those of which particles have been removed or have failed.
+    /// Makes the present configuration the reference of the bodies that are due, among them those of which
+    /// particles have been removed or have failed.
     ///
-    /// The second kick of the step uses the new forces, the motion up to here has used the old ones: what that takes from the motion is booked with the
-    /// change of the stored energies.
+    /// The second kick of the step uses the new forces, the motion up to here has used the old ones: what
+    /// that takes from the motion is booked with the change of the stored energies.
     fn update(
         &mut self,
         step: &mut Step<'_>,
@@ -336,8 +338,8 @@ impl UpdatedSolids {
         Ok(())
     }
 
-    /// Whether the reference of body `k` is that of its particles without what no gradient sees. The form of the paper sees it itself, and without a stabilizer nothing
-    /// would hold places and reference together.
+    /// Whether the reference of body `k` is that of its particles without what no gradient sees. The form of
+    /// the paper sees it itself, and without a stabilizer nothing would hold places and reference together.
     fn is_smoothed(&self, k: usize) -> bool {
         self.solids.iter().nth(k).is_some_and(|body| {
             body.is_stabilized() && body.hessian.is_none_or(|term| term.form != HessianForm::Vidal2007)
@@ -359,7 +361,8 @@ impl UpdatedSolids {
 }
 
 impl UpdatedSolids {
-    /// Takes up what has been removed or has failed since the last update, and notes which bodies have lost something.
+    /// Takes up what has been removed or has failed since the last update, and notes which bodies have lost
+    /// something.
     fn take_up_lost(&mut self, world: &World, has_lost: &mut [bool]) -> Result<(), MissingColumn> {
         let view = world.phase(self.phase);
         let removed = view.read::<Removed>()?;

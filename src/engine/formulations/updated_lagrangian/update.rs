@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Update {
-    /// `Adaptive(change: 1.0)` in bodies whose material flows plastically or can fail, and never in elastic ones, whose neighbours stay neighbours.
+    /// `Adaptive(change: 1.0)` in bodies whose material flows plastically or can fail, and never in elastic
+    /// ones, whose neighbours stay neighbours.
     Automatic,
     /// After every so many steps.
     Every(u64),
@@ -20,6 +21,8 @@ pub enum Update {
     Never,
 }
 
-/// Change of the length of a pair, over the smoothing length, after which the reference is updated where the scene does not say so: that of a pair at the edge of the support at a strain of a half.
-/// Updates at smaller changes add energy and take time; they are more accurate only where metal is squeezed flat (the table in docs/updated-lagrangian.md).
+/// Change of the length of a pair, over the smoothing length, after which the reference is updated where the
+/// scene does not say so: that of a pair at the edge of the support at a strain of a half. Updates at smaller
+/// changes add energy and take time; they are more accurate only where metal is squeezed flat (the table in
+/// docs/updated-lagrangian.md).
 pub(super) const USUAL_CHANGE: f64 = 1.0;

@@ -85,8 +85,8 @@ impl Output {
         }
     }
 
-    /// Makes the folder, before any work, and makes sure that the run can write there; `references` are the sources
-    /// of the methods in use.
+    /// Makes the folder, before any work, and makes sure that the run can write there; `references` are the
+    /// sources of the methods in use.
     ///
     /// # Errors
     /// A file of an earlier run is there and may not be replaced, or nothing can be written.
@@ -219,8 +219,8 @@ impl Output {
         self.recorders.iter_mut().try_for_each(|recorder| recorder.flush())
     }
 
-    /// Forces all series to the disk: a checkpoint speaks of their lengths. Recorders have no part in that, so that one which fails
-    /// does not take the checkpoint with it.
+    /// Forces all series to the disk: a checkpoint speaks of their lengths. Recorders have no part in that,
+    /// so that one which fails does not take the checkpoint with it.
     ///
     /// # Errors
     /// A series cannot be written.
@@ -279,7 +279,8 @@ impl Output {
         self.tracks.iter().skip(1).map(|track| (track.name.as_str(), track.table.extremes.as_slice()))
     }
 
-    /// Names of the probes that have found nothing in any sample, though the scene does not say that they may.
+    /// Names of the probes that have found nothing in any sample, though the scene does not say that they
+    /// may.
     pub fn empty_probes(&self) -> impl Iterator<Item = &str> {
         self.tracks.iter().skip(1).filter(|track| track.has_found_nothing()).map(|track| track.name.as_str())
     }

@@ -51,8 +51,8 @@ impl OutputFolder {
         self.file(&format!("{}.pvd", self.scene_name))
     }
 
-    /// Makes the folder, and makes sure that the run can write there and overwrites nothing that it must not; `names`
-    /// are the files it will write beside those it always writes.
+    /// Makes the folder, and makes sure that the run can write there and overwrites nothing that it must not;
+    /// `names` are the files it will write beside those it always writes.
     ///
     /// # Errors
     /// A file is there, or nothing can be written.
@@ -91,8 +91,8 @@ impl OutputFolder {
         Ok(())
     }
 
-    /// Removes what an earlier run has left and this run may not write at once: an old checkpoint or summary beside
-    /// new results would be taken for theirs.
+    /// Removes what an earlier run has left and this run may not write at once: an old checkpoint or summary
+    /// beside new results would be taken for theirs.
     ///
     /// # Errors
     /// A file cannot be removed.

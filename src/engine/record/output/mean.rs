@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Integrates what a gauge reads by the trapezoidal rule, step by step: of the force on a body this is the momentum that the leapfrog gives it.
+/// Integrates what a gauge reads by the trapezoidal rule, step by step: of the force on a body this is the
+/// momentum that the leapfrog gives it.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct TimeMean {
     /// Integral since the last sample, and its length, s.

@@ -1,7 +1,8 @@
 //! All output of a run, written by one system at the end of the step: whatever is due, and nothing else.
 //!
 //! The order within a step is samples, frames and, after all systems of the step, the checkpoint. The
-//! checkpoint therefore contains the state of the output after this step, and files continue from there without a trace of the interruption.
+//! checkpoint therefore contains the state of the output after this step, and files continue from there
+//! without a trace of the interruption.
 
 mod due;
 mod folder;

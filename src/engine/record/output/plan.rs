@@ -1,4 +1,5 @@
-//! The output that a scene asks for, resolved to bodies, fields and recorders; checked even if nothing is written.
+//! The output that a scene asks for, resolved to bodies, fields and recorders; checked even if nothing is
+//! written.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -27,8 +28,8 @@ pub struct OutputPlan {
 }
 
 impl OutputPlan {
-    /// Finds the probes and fields that the scene and the recorders name. `recorder_items` are the plugins that have
-    /// added the recorders, in their order.
+    /// Finds the probes and fields that the scene and the recorders name. `recorder_items` are the plugins
+    /// that have added the recorders, in their order.
     ///
     /// # Errors
     /// A field is not there, a selection is empty, and the like; all at once.

@@ -74,7 +74,8 @@ impl SeriesFile {
         Ok(())
     }
 
-    /// Continues the file from where the checkpoint was; a file that was not open then begins when its turn comes.
+    /// Continues the file from where the checkpoint was; a file that was not open then begins when its turn
+    /// comes.
     pub fn resume(&mut self, columns: &[(String, &str)], state: TableState) -> Result<(), SeriesError> {
         if let Some(position) = state.position {
             self.writer = Some(SeriesWriter::resume(&self.path, &borrowed(columns), position)?);

@@ -184,7 +184,8 @@ impl Track {
         self.table.push(time, &values).map_err(failed)
     }
 
-    /// Every system has run: the accounts of the ledger are the columns. Begins the file with what was held back.
+    /// Every system has run: the accounts of the ledger are the columns. Begins the file with what was held
+    /// back.
     fn open_accounts(&mut self, ledger: &Ledger, folder: &OutputFolder) -> Result<(), StepError> {
         self.accounts = Some(EnergyColumns::accounts(ledger));
         self.create(folder).map_err(failed)?;

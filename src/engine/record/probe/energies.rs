@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use crate::schedule::Ledger;
 use crate::world::BodyId;
 
-/// Which energies a series has, and in which order. Accounts open when a system first books something, so the columns
-/// are known only once all systems have run.
+/// Which energies a series has, and in which order. Accounts open when a system first books something, so the
+/// columns are known only once all systems have run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnergyColumns {
     /// Bodies that the totals are taken over, with their names.

@@ -14,8 +14,8 @@ pub struct ParticleGauge {
 }
 
 impl ParticleGauge {
-    /// Mean or sum over the particles that have not been removed, one number for each component; a mean over none is not
-    /// a number. Sums run along the tree of blocks, body by body.
+    /// Mean or sum over the particles that have not been removed, one number for each component; a mean over
+    /// none is not a number. Sums run along the tree of blocks, body by body.
     pub(super) fn read(&self, world: &World, resources: &Resources) -> Result<Vec<f64>, MissingColumn> {
         let width = self.field.width();
         let mut total = vec![0.0; width];

@@ -1,9 +1,10 @@
-//! A field at a point: an average over the particles nearby, corrected so that a linear field comes out exactly.
+//! A field at a point: an average over the particles nearby, corrected so that a linear field comes out
+//! exactly.
 //!
-//! With weights w_k and distances d_k from the point, the value is that of the weighted least-squares plane at the
-//! point, `f = mean(f) - g . mean(d)` with the slope `g = C^-1 cov(d, f)` (moving least squares of first order,
-//! Lancaster & Salkauskas, Math. Comp. 37 (1981) 141). Where the particles do not span the space, it is the plain
-//! weighted mean (Shepard).
+//! With weights w_k and distances d_k from the point, the value is that of the weighted least-squares plane
+//! at the point, `f = mean(f) - g . mean(d)` with the slope `g = C^-1 cov(d, f)` (moving least squares of
+//! first order, Lancaster & Salkauskas, Math. Comp. 37 (1981) 141). Where the particles do not span the
+//! space, it is the plain weighted mean (Shepard).
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -20,8 +21,9 @@ use crate::world::{BodyId, MissingColumn, PhaseId, Position, Removed, World};
 /// Reach of the average over the spacing of a body: less would leave a single particle at a corner.
 const REACH: f64 = 2.0;
 
-/// A field interpolated at a point of space, from the bodies that have it and are of the phase of the nearest particle: a solid and the fluid
-/// beside it have their own pressure and velocity, and no mean of the two is that of either.
+/// A field interpolated at a point of space, from the bodies that have it and are of the phase of the nearest
+/// particle: a solid and the fluid beside it have their own pressure and velocity, and no mean of the two is
+/// that of either.
 pub struct PointGauge {
     pub(super) at: DVec3,
     pub(super) field: ChosenField,
@@ -56,7 +58,8 @@ impl PointGauge {
         Ok((0..self.field.width()).map(component).collect())
     }
 
-    /// Whether none of the bodies that have the field is near the point at the start, and none of them flows there later.
+    /// Whether none of the bodies that have the field is near the point at the start, and none of them flows
+    /// there later.
     pub(super) fn is_empty(&self, bodies: &[BodyPlan]) -> bool {
         let measured = || bodies.iter().filter(|body| self.field.is_in(body.id));
         let distance = |site: &Site| self.periodic.minimal_image(site.position - self.at).length();
@@ -65,7 +68,8 @@ impl PointGauge {
         !flows && !measured().any(is_near)
     }
 
-    /// Particles of one phase within reach, in the order of bodies and rows. The weight is volume times (1 - r / reach)^2.
+    /// Particles of one phase within reach, in the order of bodies and rows. The weight is volume times (1 -
+    /// r / reach)^2.
     fn near(&self, world: &World, resources: &Resources) -> Result<Vec<NearPoint>, MissingColumn> {
         let mut near = Vec::new();
         for (k, body) in world.bodies().iter().enumerate().filter(|(k, _)| self.field.is_in(BodyId(*k))) {

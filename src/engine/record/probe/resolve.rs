@@ -80,7 +80,8 @@ fn field_name(quantity: &Quantity) -> Option<&str> {
         Quantity::Displacement => Some("displacement"),
         Quantity::Position | Quantity::Distance => Some("position"),
         Quantity::Velocity => Some("velocity"),
-        // The force column holds all that acts on a particle except its constraint: what it exerts on what holds it.
+        // The force column holds all that acts on a particle except its constraint: what it exerts on what
+        // holds it.
         Quantity::Force => Some("force"),
         Quantity::Field(name) => Some(name),
         _ => None,

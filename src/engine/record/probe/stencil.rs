@@ -72,8 +72,8 @@ impl Stencil {
         (particles().min().unwrap_or(0), particles().max().unwrap_or(0))
     }
 
-    /// The shares of the particles in the value at the point, by which linear functions are exact: those of the weighted
-    /// least-squares plane. Particles that are not `there` have none.
+    /// The shares of the particles in the value at the point, by which linear functions are exact: those of
+    /// the weighted least-squares plane. Particles that are not `there` have none.
     pub fn shares(&self, axes: usize, there: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
         let near: Vec<&StencilParticle> = self.0.iter().filter(|near| there(near.particle)).collect();
         let total: f64 = near.iter().map(|near| near.weight).sum();

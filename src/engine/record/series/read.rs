@@ -103,8 +103,8 @@ impl Series {
 
 /// Reads the CSV file `path`.
 ///
-/// Lines that begin with `#` are comments. The first other line names the columns; if it holds nothing but numbers,
-/// it is the first row and the columns are named `0`, `1`, ...
+/// Lines that begin with `#` are comments. The first other line names the columns; if it holds nothing but
+/// numbers, it is the first row and the columns are named `0`, `1`, ...
 pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
     let text = fs::read(path).map_err(|source| SeriesError::Read { path: path.to_path_buf(), source })?;
     let mut lines = LineCounter { text: &text, at: 0, line: 1 };
@@ -141,8 +141,8 @@ pub fn read_series(path: &Path) -> Result<Series, SeriesError> {
 
 /// Counts lines up to the record that a reader will read next.
 ///
-/// The reader's own count is that of where the record before ended, which is short of line feeds after carriage
-/// returns, of empty lines and of comments.
+/// The reader's own count is that of where the record before ended, which is short of line feeds after
+/// carriage returns, of empty lines and of comments.
 struct LineCounter<'a> {
     text: &'a [u8],
     at: usize,

@@ -63,7 +63,8 @@ impl PvdWriter {
         self.write_list(Existing::Replace)
     }
 
-    /// The files of a part up to the number of the frame, which stands last: so ParaView groups them as a series without the list.
+    /// The files of a part up to the number of the frame, which stands last: so ParaView groups them as a
+    /// series without the list.
     fn series(&self, part: &str) -> String {
         let plain = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '_' };
         let name: String = part.chars().map(plain).collect();

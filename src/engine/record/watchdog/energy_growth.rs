@@ -10,8 +10,8 @@ use crate::world::{BodyId, World};
 
 /// Stored energy over what was there at the start or supplied since, beyond which the run is stopped.
 const FACTOR: f64 = 10.0;
-/// Steps in a row for which that must hold: the account of a plugin may lag behind by a step. An instability can take
-/// two orders of magnitude of energy a step, so that more patience would see numbers overflow first.
+/// Steps in a row for which that must hold: the account of a plugin may lag behind by a step. An instability
+/// can take two orders of magnitude of energy a step, so that more patience would see numbers overflow first.
 const PATIENCE: u32 = 3;
 
 /// Round-off of an energy per volume over Young's modulus.
@@ -20,7 +20,8 @@ const DIGITS: f64 = 4.0 * f64::EPSILON;
 /// Compares the stored energy with all that the bodies were ever given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EnergyGrowth {
-    /// Largest energy at the start and supplied since, J; work that is given back does not count against the run.
+    /// Largest energy at the start and supplied since, J; work that is given back does not count against the
+    /// run.
     available: f64,
     /// Steps in a row beyond the limit.
     beyond: u32,
@@ -53,7 +54,8 @@ impl EnergyGrowth {
     }
 }
 
-/// Energy that solids may seem to hold by round-off, J: that of their Young's moduli over their volumes, to a few digits.
+/// Energy that solids may seem to hold by round-off, J: that of their Young's moduli over their volumes, to a
+/// few digits.
 pub(super) fn resolution(sim: &SimBuilder<'_>) -> f64 {
     let of = |body: &BodyPlan| match &body.material.law {
         Law::Solid(law) => {

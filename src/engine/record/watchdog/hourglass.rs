@@ -1,5 +1,5 @@
-//! Too much hourglass energy: the control carries load in place of the stress, and the result is too stiff; or its viscous part takes the energy that
-//! should deform the body.
+//! Too much hourglass energy: the control carries load in place of the stress, and the result is too stiff;
+//! or its viscous part takes the energy that should deform the body.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,23 +8,26 @@ use crate::plugin::{BodyPlan, SimBuilder};
 use crate::schedule::{Ledger, Step};
 use crate::world::BodyId;
 
-/// Hourglass energy over strain energy plus plastic work that is worth a warning. In a beam of n particles across, the control holds the bending energy that the
-/// mean gradients miss, some 9/n^2 of the strain energy: 14 % at eight across, where the stiffness is right to 1 %, and half of it at four (3 %). Cook's membrane at
-/// rest has 33, 8 and 4 % at 8, 16 and 32 across and is 7, 2 and .5 % off; thick rings and spheres at eight across the wall have 1 to 3 %, Taylor bars 3 to 8 %.
+/// Hourglass energy over strain energy plus plastic work that is worth a warning. In a beam of n particles
+/// across, the control holds the bending energy that the mean gradients miss, some 9/n^2 of the strain
+/// energy: 14 % at eight across, where the stiffness is right to 1 %, and half of it at four (3 %). Cook's
+/// membrane at rest has 33, 8 and 4 % at 8, 16 and 32 across and is 7, 2 and .5 % off; thick rings and
+/// spheres at eight across the wall have 1 to 3 %, Taylor bars 3 to 8 %.
 const SHARE: f64 = 0.2;
 
-/// Hourglass energy, over the largest energy of any other kind that the body has had, below which its share says nothing: at
-/// the start of a run all that a body has may be kinetic.
+/// Hourglass energy, over the largest energy of any other kind that the body has had, below which its share
+/// says nothing: at the start of a run all that a body has may be kinetic.
 const LEAST: f64 = 0.02;
 
-/// Largest strain energy plus plastic work of a body per volume, over that of any body of the scene, below which its share says nothing: no wave has
-/// reached the body yet, and what it has comes before the front.
+/// Largest strain energy plus plastic work of a body per volume, over that of any body of the scene, below
+/// which its share says nothing: no wave has reached the body yet, and what it has comes before the front.
 const REACHED: f64 = 1e-4;
 
 /// Watches the hourglass energy of every body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct HourglassShare {
-    /// Largest strain energy plus plastic work of each body so far, J: a body that swings through its rest shape is no reason to warn.
+    /// Largest strain energy plus plastic work of each body so far, J: a body that swings through its rest
+    /// shape is no reason to warn.
     largest_internal: Vec<f64>,
     /// Largest energy of any other account of each body so far, J.
     largest: Vec<f64>,
@@ -66,8 +69,8 @@ impl HourglassShare {
         }
     }
 
-    /// Warns of every body whose share has been too large. What it is a share of is only known at the end: of a small load that comes first the control carries more than of
-    /// the large one that follows.
+    /// Warns of every body whose share has been too large. What it is a share of is only known at the end: of
+    /// a small load that comes first the control carries more than of the large one that follows.
     pub fn warn(&self, step: &mut Step<'_>) {
         let per_volume =
             self.largest_internal.iter().zip(&self.volumes).map(|(energy, volume)| energy / volume);

@@ -9,7 +9,8 @@ use crate::schedule::{Step, StepError};
 use crate::shapes::Aabb;
 use crate::world::{BodyId, Position, Removed};
 
-/// Distance of particles of two bodies, over their mean spacing, below which the bodies overlap: those that touch are one spacing apart.
+/// Distance of particles of two bodies, over their mean spacing, below which the bodies overlap: those that
+/// touch are one spacing apart.
 const OVERLAP: f64 = 0.6;
 
 /// Looks for particles of bodies inside of each other.

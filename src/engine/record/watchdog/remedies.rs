@@ -7,7 +7,8 @@ use crate::scene::Item;
 use crate::schedule::Step;
 use crate::world::BodyId;
 
-/// Least pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as tension.
+/// Least pressure below zero, over the largest magnitude of the pressure in the same flow, that counts as
+/// tension.
 const TENSION: f64 = 0.1;
 
 /// Share of the energy that walls have given above which it is that of gaps.

@@ -27,7 +27,8 @@ struct Watchdog {
     passing: PassingBodies,
     remedies: Remedies,
     domain: Option<DomainCheck>,
-    /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no energies.
+    /// Looks that end in a warning come with the frames, but not with the first one: a body at rest has no
+    /// energies.
     frames: Trigger,
     end: f64,
 }

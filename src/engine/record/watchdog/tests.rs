@@ -107,8 +107,8 @@ fn a_load_that_grows_from_nothing_is_no_instability() {
 
 #[test]
 fn an_unstable_step_is_stopped_by_the_growth_of_energy() {
-    // Twice the safe step is above the critical one: the shortest waves grow, from deformations so small that no
-    // particle turns inside out before.
+    // Twice the safe step is above the critical one: the shortest waves grow, from deformations so small that
+    // no particle turns inside out before.
     let scene = "conditions: [Fix(on: Select(body: \"right\", face: MinX))],
                  time: (end: 1.0, step: Adaptive(factor: 2.0)),";
     let (error, sim) = failure(blocks_under(1.0e-3, scene));
@@ -165,7 +165,8 @@ fn hourglass_energy_that_is_small_beside_plastic_work_is_not_warned_of() {
 
 #[test]
 fn hourglass_energy_is_judged_beside_all_that_the_run_has_brought() {
-    // It grows with t and the strain energy with its square: its share is large at first, where it was warned of, and 5 % at the end.
+    // It grows with t and the strain energy with its square: its share is large at first, where it was warned
+    // of, and 5 % at the end.
     let scene = "conditions: [Fix(on: Select(face: MinX)), Book(account: \"hourglass\", energy: 1.0e-2)],
                  record: (every: 0.001), time: (end: 0.01),";
     let mut sim = blocks(scene);
@@ -284,7 +285,8 @@ fn hourglass_energy_of_a_body_that_no_wave_has_reached_is_not_judged() {
         sim.run(|_| true).unwrap();
         sim.warnings().iter().any(|text| text.contains("hourglass energy of body `right`"))
     };
-    // The left block holds some E e^2 / 2 of its 6 cm2, 3e-3 J, the right one at the end a hundredth of what is booked.
+    // The left block holds some E e^2 / 2 of its 6 cm2, 3e-3 J, the right one at the end a hundredth of what
+    // is booked.
     assert!(!is_warned(1.0e-6, 1.0e-6));
     assert!(is_warned(1.0e-3, 1.0e-3));
 }

@@ -13,11 +13,14 @@ use crate::schedule::{Account, AccountKind, INTO_HEAT, Step, warn_anew};
 
 /// Energy given, over the largest one that any account has held, that is worth a warning.
 const SHARE: f64 = 0.01;
-/// The same where walls give it: their pressure is extrapolated, and they push fluid on that starts or arrives, to take as much a little later.
+/// The same where walls give it: their pressure is extrapolated, and they push fluid on that starts or
+/// arrives, to take as much a little later.
 const SHARE_OF_WALLS: f64 = 0.05;
-/// The same over the work that gravity and loads on fluids could do on all bodies along their own heights: what is at rest has hardly any energy else.
+/// The same over the work that gravity and loads on fluids could do on all bodies along their own heights:
+/// what is at rest has hardly any energy else.
 const SHARE_OF_WEIGHT: f64 = 0.005;
-/// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of a run counts for all.
+/// Looks in a row at which that has to be so: what moves has little energy at the start of a run. The end of
+/// a run counts for all.
 const LOOKS: u32 = 5;
 /// Growth of that share for which the warning is written anew.
 const GROWTH: f64 = 1.2;
@@ -123,7 +126,8 @@ impl BlockSum for LoadedFluid {
     }
 }
 
-/// Work that the loads on fluids could do on them along their own heights, J: a `BodyForce` may be their gravity.
+/// Work that the loads on fluids could do on them along their own heights, J: a `BodyForce` may be their
+/// gravity.
 fn work_of_loads(cloud: &FlowCloud) -> f64 {
     let of = |group: &Group| {
         let (Some(state), rows) = (group.fluid(), group.cloud.clone()) else { return 0.0 };

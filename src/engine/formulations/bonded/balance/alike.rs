@@ -1,7 +1,9 @@
 //! Particles beside a side whose surroundings look alike: they carry the same share.
 //!
-//! Two particles are alike where distances, volumes and conditions are the same up to a number of neighbours away: each gets a label from those of its neighbours at their distances, some times over. Far
-//! from the edges of a side there is one kind of particle in every layer; where a lattice is irregular every particle is a kind of its own.
+//! Two particles are alike where distances, volumes and conditions are the same up to a number of neighbours
+//! away: each gets a label from those of its neighbours at their distances, some times over. Far from the
+//! edges of a side there is one kind of particle in every layer; where a lattice is irregular every particle
+//! is a kind of its own.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,7 +14,8 @@ use super::zone::Zone;
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::symmetry::Ghosts;
 
-/// How many neighbours away particles are compared: twelve spacings of a cubic lattice, over which the effect of an edge on shares falls to 1e-3.
+/// How many neighbours away particles are compared: twelve spacings of a cubic lattice, over which the effect
+/// of an edge on shares falls to 1e-3.
 const LEVELS: usize = 6;
 /// The kinds of the particles of a zone.
 pub(super) struct Kinds {
@@ -103,7 +106,8 @@ impl ZoneParticles {
         (0..labels.len()).into_par_iter().map(label).collect()
     }
 
-    /// Of each kind that one whose neighbours are of the most frequent kinds, of equal ones the first: others are at the edge of their kind.
+    /// Of each kind that one whose neighbours are of the most frequent kinds, of equal ones the first: others
+    /// are at the edge of their kind.
     fn typical(&self, of: &[u32], counts: &[u32]) -> Vec<u32> {
         let frequency = |i: usize| -> u64 {
             let neighbors = self.lists.row(i).iter().map(|j| of[self.source[*j as usize] as usize]);

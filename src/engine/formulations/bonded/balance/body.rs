@@ -14,6 +14,7 @@ pub(in crate::formulations) struct HeldBody<'a> {
     /// Number of neighbours for which the support radius of each particle is chosen.
     pub neighbors: Option<u32>,
     pub repeats: &'a [Repeat],
-    /// Whether its neighbours and weights are meant to stay those of the start: what balances there balances later.
+    /// Whether its neighbours and weights are meant to stay those of the start: what balances there balances
+    /// later.
     pub stays: bool,
 }

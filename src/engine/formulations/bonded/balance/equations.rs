@@ -9,7 +9,8 @@ use super::lattices::Lattices;
 use super::least_squares::SparseRows;
 use super::zone::Zone;
 
-/// n . b_i as a function of the changes of the shares, over the area of a particle. Of alike particles there is one unknown and one equation, which count as the root of their number.
+/// n . b_i as a function of the changes of the shares, over the area of a particle. Of alike particles there
+/// is one unknown and one equation, which count as the root of their number.
 pub(super) struct Equations {
     /// The coefficients of the unknown shares.
     pub rows: SparseRows,
@@ -94,7 +95,8 @@ impl Equations {
         }
     }
 
-    /// The change of the share of every particle whose share may change, by its number in the zone, from a solution.
+    /// The change of the share of every particle whose share may change, by its number in the zone, from a
+    /// solution.
     pub fn changes<'a>(
         &'a self,
         zone: &'a Zone,
@@ -107,7 +109,8 @@ impl Equations {
         })
     }
 
-    /// How far a uniform stress is from balance: the root mean square of the forces on the particles, over that on the area of one.
+    /// How far a uniform stress is from balance: the root mean square of the forces on the particles, over
+    /// that on the area of one.
     pub fn imbalance(&self, solution: &[f64]) -> f64 {
         let is_any_inside = self.balances.iter().any(|balance| balance.is_inside);
         let changes = self.rows.times(solution);

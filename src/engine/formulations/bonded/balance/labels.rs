@@ -1,6 +1,7 @@
 //! Labels: numbers that are the same where lengths and volumes are.
 
-/// Difference of lengths from which on they are not the same, over the spacing; no common part of the lengths of a lattice.
+/// Difference of lengths from which on they are not the same, over the spacing; no common part of the lengths
+/// of a lattice.
 pub(super) const LENGTH: f64 = 1.7e-4;
 
 /// A number that is spread over all 64 bits: the last step of `SplitMix64` (Steele, Lea, Flood 2014).

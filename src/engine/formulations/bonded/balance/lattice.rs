@@ -9,7 +9,9 @@ use crate::linalg::Sym3;
 use crate::neighbors::NeighborSearch;
 use crate::symmetry::{Ghosts, Repeat};
 
-/// Of a particle near a surface, the part of the lengths to its neighbours that is left when they are added as vectors, from which on it is beside that. On a flat surface it is a half; among irregular particles a tenth to a fifth.
+/// Of a particle near a surface, the part of the lengths to its neighbours that is left when they are added
+/// as vectors, from which on it is beside that. On a flat surface it is a half; among irregular particles a
+/// tenth to a fifth.
 const BESIDE: f64 = 0.3;
 
 /// A particle by its number in the body, and its place, m.
@@ -64,7 +66,8 @@ impl BondLattice {
         Some(Self { position, volume, bonds, ghosts, numbers, rows })
     }
 
-    /// Whether a particle or one of its neighbours is near a surface that is not normal to this direction: its neighbours are then on one side of it.
+    /// Whether a particle or one of its neighbours is near a surface that is not normal to this direction:
+    /// its neighbours are then on one side of it.
     pub fn sees_surface(&self, number: u32, normal: DVec3) -> bool {
         let is_beside = |i: usize| {
             let (mut first_moment, mut lengths) = (DVec3::ZERO, 0.0);

@@ -10,7 +10,8 @@ use super::zone::Zone;
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};
 use crate::symmetry::{Ghosts, Repeat};
 
-/// How far b of a particle depends on others, over the support radius: on its neighbours and on the neighbours of these. Particles of a side are up to a spacing away from their places in the lattice.
+/// How far b of a particle depends on others, over the support radius: on its neighbours and on the
+/// neighbours of these. Particles of a side are up to a spacing away from their places in the lattice.
 const SEEN: f64 = 2.01;
 /// Number of particles for each that stands for its kind below which all are taken.
 const MANY: usize = 20;
@@ -19,7 +20,8 @@ const MANY: usize = 20;
 pub(super) struct Lattices {
     /// The lattice as it is.
     pub now: BondLattice,
-    /// The lattice before particles were put onto sides, with its mirror image behind those sides beside which the body is no prism; none where there are no such sides.
+    /// The lattice before particles were put onto sides, with its mirror image behind those sides beside
+    /// which the body is no prism; none where there are no such sides.
     pub mirrored: Option<BondLattice>,
     /// Whether along each axis the body is a prism beside all sides.
     is_prism: [bool; 3],
@@ -64,7 +66,8 @@ impl Lattices {
         Some(Self { now: BondLattice::new(body, &near(&now), body.repeats)?, mirrored, is_prism })
     }
 
-    /// The lattice with the mirror images by which a stress along a direction is to be balanced; none where it is to be in balance by itself.
+    /// The lattice with the mirror images by which a stress along a direction is to be balanced; none where
+    /// it is to be in balance by itself.
     pub fn mirrored_along(&self, normal: DVec3) -> Option<&BondLattice> {
         self.mirrored.as_ref().filter(|_| !self.is_prism[normal.abs().max_position()])
     }

@@ -72,7 +72,8 @@ pub(super) struct LeastSquares<'a> {
 }
 
 impl LeastSquares<'_> {
-    /// The x within the bounds that makes the sum smallest, by conjugate gradients with proportioning and gradient projections (MPRGP: Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23-43).
+    /// The x within the bounds that makes the sum smallest, by conjugate gradients with proportioning and
+    /// gradient projections (MPRGP: Dostál & Schöberl, Comput. Optim. Appl. 30 (2005) 23-43).
     pub fn solve(&self) -> Vec<f64> {
         let mut x: Vec<f64> = self.bounds.iter().map(|(least, most)| 0f64.clamp(*least, *most)).collect();
         let goal = self.a.transposed_times(self.b, x.len());
@@ -138,7 +139,8 @@ impl LeastSquares<'_> {
         rows * largest(&mut columns.into_iter()) + largest(&mut self.damping.iter().map(|d| d * d))
     }
 
-    /// The slopes of the sum, of those unknowns that are free and of those on a bound that would go inside down the slope.
+    /// The slopes of the sum, of those unknowns that are free and of those on a bound that would go inside
+    /// down the slope.
     fn split(&self, x: &[f64], gradient: &[f64]) -> Slopes {
         let mut slopes = Slopes { free: vec![0.0; x.len()], inward: vec![0.0; x.len()] };
         for (k, ((x, g), (least, most))) in x.iter().zip(gradient).zip(self.bounds).enumerate() {
@@ -217,7 +219,8 @@ mod tests {
 
     #[test]
     fn what_would_be_beyond_its_bound_is_on_it_and_the_rest_is_best_with_it() {
-        // Without bounds x_1 is 0.533: with x_1 = 0.2 the first row of the normal equations is 10.25 x_0 - 0.2 = 7.
+        // Without bounds x_1 is 0.533: with x_1 = 0.2 the first row of the normal equations is 10.25 x_0 -
+        // 0.2 = 7.
         let x = solve([(-10.0, 10.0), (-0.2, 0.2)]);
         assert!(x[1] == 0.2 && (x[0] - 7.2 / 10.25).abs() < 1e-6, "{x:?}");
     }

@@ -1,4 +1,5 @@
-//! Shares of their stress that particles beside a side carry that is held along its normal, such that a uniform stress is in balance there.
+//! Shares of their stress that particles beside a side carry that is held along its normal, such that a
+//! uniform stress is in balance there.
 //!
 //! The force of a uniform stress P on particle i is P b_i,
 //!
@@ -6,12 +7,18 @@
 //! b_i = V_i sum_j V_j w_ij (c_i M_i^-1 + c_j M_j^-1) X_ij
 //! ```
 //!
-//! with the share c of its stress and energy that a particle carries, which is the weight of its place in the integral of the energy. Inside of a lattice b is zero. Beside a held side it is not, as kernels and moment
-//! matrices are cut there: with c = 1 a bar that is drawn evenly has 13 % too much stress in the layer on the side and 3.5 % too little in the next one at any spacing, and metal that hardens little takes that up in strain.
+//! with the share c of its stress and energy that a particle carries, which is the weight of its place in the
+//! integral of the energy. Inside of a lattice b is zero. Beside a held side it is not, as kernels and moment
+//! matrices are cut there: with c = 1 a bar that is drawn evenly has 13 % too much stress in the layer on the
+//! side and 3.5 % too little in the next one at any spacing, and metal that hardens little takes that up in
+//! strain.
 //!
-//! The shares are those nearest to 1 for which n . b_i of the particles beside a held side with the normal n is zero, where the body is a prism there; elsewhere what it is with the body's mirror image behind the side. All of b is then on the
-//! particles that the condition holds, and its first moment makes the sum of V c the volume of the body; where the zones of two sides meet, that sum is an equation of its own. Shares do not change with time, so that forces
-//! stay the derivative of an energy. What is left of b is the imbalance, of which metal is warned.
+//! The shares are those nearest to 1 for which n . b_i of the particles beside a held side with the normal n
+//! is zero, where the body is a prism there; elsewhere what it is with the body's mirror image behind the
+//! side. All of b is then on the particles that the condition holds, and its first moment makes the sum of V
+//! c the volume of the body; where the zones of two sides meet, that sum is an equation of its own. Shares do
+//! not change with time, so that forces stay the derivative of an energy. What is left of b is the imbalance,
+//! of which metal is warned.
 //!
 //! Sides that are held along all axes keep c = 1: their stress is not uniform.
 

@@ -19,7 +19,8 @@ pub(super) struct SideParticles<'a> {
 }
 
 impl SideParticles<'_> {
-    /// Whether the layers repeat along the normal up to that depth, after any distance: a uniform stress along the normal is then in balance without loads on other surfaces.
+    /// Whether the layers repeat along the normal up to that depth, after any distance: a uniform stress
+    /// along the normal is then in balance without loads on other surfaces.
     pub fn is_prism(&self, body: &HeldBody<'_>) -> bool {
         let near = THERE * body.plan.spacing;
         let by_depth = |a: &&DVec3, b: &&DVec3| self.depth_of(**a).total_cmp(&self.depth_of(**b));
@@ -39,7 +40,8 @@ impl SideParticles<'_> {
         self.side.normal[axis] * (at - x[axis])
     }
 
-    /// Whether all but the last layers are there once more after that distance, and all but the first before it.
+    /// Whether all but the last layers are there once more after that distance, and all but the first before
+    /// it.
     fn repeats(&self, period: f64, near: f64) -> bool {
         let layers = |from: f64, to: f64, shift: f64| -> Vec<DVec3> {
             let is_there = |x: &&DVec3| (from..to).contains(&(self.depth_of(**x) + near));

@@ -7,8 +7,9 @@ use super::lattices::Lattices;
 use super::least_squares::LeastSquares;
 use super::zone::Zone;
 
-/// Weight of the change of a share on the side against the part of b that is left, which is of the order of 1 where nothing is in balance. It grows with the fourth power of the distance from the side over the support radius, as
-/// the shares of layers farther in need hardly change.
+/// Weight of the change of a share on the side against the part of b that is left, which is of the order of 1
+/// where nothing is in balance. It grows with the fourth power of the distance from the side over the support
+/// radius, as the shares of layers farther in need hardly change.
 const DAMPING: f64 = 0.005;
 /// The least and the greatest share: every particle resists.
 const SHARES: (f64, f64) = (0.1, 2.5);
@@ -17,7 +18,8 @@ const SHARES: (f64, f64) = (0.1, 2.5);
 pub(in crate::formulations) struct Balanced {
     /// The shares of all particles that do not carry all of their stress, by their numbers.
     pub shares: Vec<(u32, f64)>,
-    /// How far a uniform stress is from balance beside them: the root mean square of the forces on the particles, over that on the area of one.
+    /// How far a uniform stress is from balance beside them: the root mean square of the forces on the
+    /// particles, over that on the area of one.
     pub imbalance: f64,
 }
 

@@ -3,7 +3,8 @@
 use super::body::HeldBody;
 use crate::plugin::HeldSide;
 
-/// Imbalance from which on plastic strain may be off by more than a tenth; it was chosen by the table of lattices in docs/solids.md.
+/// Imbalance from which on plastic strain may be off by more than a tenth; it was chosen by the table of
+/// lattices in docs/solids.md.
 const UNEVEN: f64 = 0.01;
 
 /// What to tell of a body with that imbalance beside its sides, if its metal strains unevenly.

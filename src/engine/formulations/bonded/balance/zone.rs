@@ -7,11 +7,13 @@ use super::labels::{length_label, mix};
 use crate::plugin::HeldSide;
 use crate::symmetry::Repeat;
 
-/// How far from a side shares are found, over the support radius: what its cut kernels change decays over half a spacing beyond two support radii.
+/// How far from a side shares are found, over the support radius: what its cut kernels change decays over
+/// half a spacing beyond two support radii.
 const DEPTH: f64 = 2.1;
 /// How far behind these a share acts, over the support radius: as far as kernels reach.
 const ACTS: f64 = 1.0;
-/// How far b of a particle depends on others, over the support radius: on its neighbours, and on the neighbours of these.
+/// How far b of a particle depends on others, over the support radius: on its neighbours, and on the
+/// neighbours of these.
 const SEEN: f64 = 2.01;
 /// How far a side goes on beyond the particles on it, over the spacing.
 const BESIDE: f64 = 0.6;
@@ -24,11 +26,13 @@ pub(super) struct Zone {
     pub asked: Vec<u32>,
     /// Places in `asked`, ascending, with the direction along which a stress is to balance.
     pub equations: Vec<(u32, DVec3)>,
-    /// Places in `asked` of the particles whose shares may change, ascending, with their distances from the nearest side, m.
+    /// Places in `asked` of the particles whose shares may change, ascending, with their distances from the
+    /// nearest side, m.
     pub unknown: Vec<(u32, f64)>,
     /// Particles on which b depends, by their numbers in the body, ascending.
     pub seen: Vec<u32>,
-    /// What tells each of `asked` from others, apart from its neighbours: its distances from the sides, and what is asked of it.
+    /// What tells each of `asked` from others, apart from its neighbours: its distances from the sides, and
+    /// what is asked of it.
     pub labels: Vec<u64>,
     /// Place in `asked` of every particle of the body, if it is there.
     at: Vec<Option<u32>>,
@@ -67,7 +71,8 @@ impl Zone {
         zone
     }
 
-    /// Depth from a side, m, up to which the balance of the particles beside it depends on others: no farther than the next side or symmetry plane along its normal.
+    /// Depth from a side, m, up to which the balance of the particles beside it depends on others: no farther
+    /// than the next side or symmetry plane along its normal.
     pub fn depth_beside(&self, body: &HeldBody<'_>, side: &HeldSide) -> f64 {
         let (axis, at) = side.plane;
         let mirrors = body.repeats.iter().filter_map(|repeat| match repeat {

@@ -4,9 +4,11 @@
 //! d_i = h_i sum_j V_j w_ij [x_ij - (Q_i + Q_j) r_ij / 2] ,     U = sum_i kappa_i |d_i|^2 / 2 ,     kappa = eta^2 E V_0
 //! ```
 //!
-//! with the gradient Q since the reference configuration, its pair vectors r_ij, and half of the support radius h. `2 sum_j V_j w_ij x_ij` is the Laplacian of the
-//! positions, `sum_j V_j w_ij (Q_j - Q_i) r_ij` the divergence of their gradient. Every bond for itself gives nothing for an affine motion, beside a
-//! surface too, and d turns with the body: no direction counts more than another. With p_i = h_i kappa_i d_i / V_i the force is exactly -dU/dx:
+//! with the gradient Q since the reference configuration, its pair vectors r_ij, and half of the support
+//! radius h. `2 sum_j V_j w_ij x_ij` is the Laplacian of the positions, `sum_j V_j w_ij (Q_j - Q_i) r_ij` the
+//! divergence of their gradient. Every bond for itself gives nothing for an affine motion, beside a surface
+//! too, and d turns with the body: no direction counts more than another. With p_i = h_i kappa_i d_i / V_i
+//! the force is exactly -dU/dx:
 //!
 //! ```text
 //! stress  S_i = sum_j V_j w_ij (p_j - p_i) (x) r_ij / 2      beside that of the material
@@ -15,7 +17,8 @@
 //!
 //! Both are given to the pass of the internal force. A particle with a failed neighbour resists nothing.
 //!
-//! As in that pass, sums run over the neighbours alone, with Q and u in the [`AffineFrame`] of the body: with H = Q - I and b_j = u_j - H_j X_j / 2,
+//! As in that pass, sums run over the neighbours alone, with Q and u in the [`AffineFrame`] of the body: with
+//! H = Q - I and b_j = u_j - H_j X_j / 2,
 //!
 //! ```text
 //! d_i / h_i = sum_j V_j w_ij b_j + (sum_j V_j w_ij H_j / 2) X_i - sum_j V_j w_ij u_i - H_i sum_j V_j w_ij X_ij / 2
@@ -66,8 +69,8 @@ type ResidualRows<'a> = (
 );
 
 impl FrameIndifferent<'_> {
-    /// Computes the residuals, their energies and their forces, after the stress of all bodies, for those bodies whose number is taken. A pass that repeats
-    /// a step has `dt` zero.
+    /// Computes the residuals, their energies and their forces, after the stress of all bodies, for those
+    /// bodies whose number is taken. A pass that repeats a step has `dt` zero.
     pub fn run(
         self,
         view: &PhaseView<'_>,
@@ -129,7 +132,8 @@ impl FrameIndifferent<'_> {
     }
 }
 
-/// Marks the rows, ghosts too, that have failed or have no gradient of their own: their motion says nothing. What has been removed is in no sum.
+/// Marks the rows, ghosts too, that have failed or have no gradient of their own: their motion says nothing.
+/// What has been removed is in no sum.
 fn fill_loose(
     bonds: &Bonds,
     ghosts: &Ghosts,
@@ -153,7 +157,8 @@ fn fill_loose(
     ghosts.fill(loose, |_, source| *source);
 }
 
-/// What neighbours see of a gradient: -H/2, with 1 in the last lane of the first column, and b with the volume, in the frame.
+/// What neighbours see of a gradient: -H/2, with 1 in the last lane of the first column, and b with the
+/// volume, in the frame.
 #[inline(always)]
 fn slope(h: &DMat3, site: &PackedParticle, frame: &AffineFrame) -> CorrectedStress {
     let half = (*h - frame.gradient) * -0.5;

@@ -1,7 +1,8 @@
 //! Stabilization by differences of second derivatives, over the bonds of a reference configuration.
 //!
-//! Both forms compare a second derivative of the positions with the gradient of their gradient, and their forces are the exact adjoints. The pair weight is symmetric and all other
-//! factors belong to one particle, so that the adjoint needs no data from the other end of a bond.
+//! Both forms compare a second derivative of the positions with the gradient of their gradient, and their
+//! forces are the exact adjoints. The pair weight is symmetric and all other factors belong to one particle,
+//! so that the adjoint needs no data from the other end of a bond.
 
 mod frame_indifferent;
 mod rows;

@@ -144,7 +144,8 @@ pub(in crate::formulations) struct HessianBlock<'a> {
 split_by_rows!(HessianBlock { gradient, stiffness, stress } and { eta, fitted, vidal });
 
 impl HessianBlock<'_> {
-    /// Takes the gradients of the displacements since the reference, Q - I, of the block that begins at row `first`; the form of the paper adds its difference to them.
+    /// Takes the gradients of the displacements since the reference, Q - I, of the block that begins at row
+    /// `first`; the form of the paper adds its difference to them.
     pub fn after_fit(
         &mut self,
         bonds: &Bonds,

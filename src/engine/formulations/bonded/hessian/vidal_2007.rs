@@ -1,18 +1,21 @@
-//! The form of the paper: the gradient has the difference of second derivatives along a fixed vector added (Vidal, Bonet, Huerta 2007, eq. 17).
+//! The form of the paper: the gradient has the difference of second derivatives along a fixed vector added
+//! (Vidal, Bonet, Huerta 2007, eq. 17).
 //!
 //! ```text
 //! f_i = Q_i + eta D_i ,     D_i = sum_j V_j u_ij (x) (K_ij - E_i r_ij) - sum_j s_ij (Q_j - Q_i) ,     s_ij = V_j w_ij m_i . r_ij ,  m_i = M_i^-1 h
 //! K_ij = b_ij (r_ij . h) r_ij - w_ij h ,  b_ij = (W'' + w_ij) / r_ij^2 ,     E_i = (sum_j V_j K_ij (x) r_ij) (sum_j V_j r_ij (x) r_ij)^-1
 //! ```
 //!
-//! h has the smoothing length in every component. The strain energy is that of f, and the force its exact adjoint: with T_i = V_0 P F_r^T = V_i Theta_i
+//! h has the smoothing length in every component. The strain energy is that of f, and the force its exact
+//! adjoint: with T_i = V_0 P F_r^T = V_i Theta_i
 //!
 //! ```text
 //! stress  eta [(m_i . sum_j V_j w_ij r_ij) Theta_i + sum_j V_j w_ij (m_j . r_ij) Theta_j]      beside that of the material
 //! f_i += eta V_i sum_j V_j [Theta_i (K_ij - E_i r_ij) - Theta_j (K_ij + E_j r_ij)]
 //! ```
 //!
-//! K and w are the same from both ends of a bond, so that none has to be looked up: a bond holds b, a particle m and E. A ghost has the vector h in the mirror.
+//! K and w are the same from both ends of a bond, so that none has to be looked up: a bond holds b, a
+//! particle m and E. A ghost has the vector h in the mirror.
 
 use std::ops::Range;
 

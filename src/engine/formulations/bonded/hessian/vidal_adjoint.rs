@@ -1,4 +1,5 @@
-//! The passes of the form of the paper ([`vidal_2007`](super::vidal_2007)): the gradients that it compares, and the adjoint of their differences in stress and force.
+//! The passes of the form of the paper ([`vidal_2007`](super::vidal_2007)): the gradients that it compares,
+//! and the adjoint of their differences in stress and force.
 
 use glam::{DMat3, DVec3};
 
@@ -13,7 +14,8 @@ use crate::solids::{CorrectedStress, HessianForm};
 use crate::world::Force;
 
 impl HessianRows {
-    /// Before the stress: takes in a new reference, and fits the gradients that the difference needs of all rows.
+    /// Before the stress: takes in a new reference, and fits the gradients that the difference needs of all
+    /// rows.
     pub fn begin(&mut self, bonded: BondedSites<'_>, kernels: &[BodyKernel], support: &[f64], plane: bool) {
         let BondedSites { bonds, ghosts, sites } = bonded;
         let is_stale = std::mem::take(&mut self.is_stale);
@@ -36,7 +38,8 @@ impl HessianRows {
         self.fill_ghost_gradients(ghosts);
     }
 
-    /// Adds to the corrected stresses what the form puts into their particles, after the stress of all bodies.
+    /// Adds to the corrected stresses what the form puts into their particles, after the stress of all
+    /// bodies.
     pub fn add_vidal_stress(
         &mut self,
         bonded: BondedSites<'_>,

@@ -9,8 +9,9 @@ use super::row_pass::{NearPairs, RowPass};
 use crate::correction::{MomentMatrix, add_moment, moment_of};
 use crate::parallel::{Arithmetic, Vector};
 
-/// The pass that sums the moment matrix `M_i = sum_j V_j w_ij x_ij (x) x_ij` and the first moment `S_i = sum_j V_j w_ij x_ij` (1/m) over all
-/// neighbours of a fluid particle, walls and bodies included, and makes an output of both.
+/// The pass that sums the moment matrix `M_i = sum_j V_j w_ij x_ij (x) x_ij` and the first moment `S_i =
+/// sum_j V_j w_ij x_ij` (1/m) over all neighbours of a fluid particle, walls and bodies included, and makes
+/// an output of both.
 pub struct ArrangementPass<'a, F> {
     /// The particles.
     pub cloud: &'a FlowCloud,

@@ -48,8 +48,10 @@ pub struct EdgeParticle {
     pub own: f64,
     /// Velocity at which the faces around it move, less its own, m/s.
     pub excess: DVec3,
-    /// What that adds to the rate of compression beside it, over the share of the kernel that fluids fill, 1/s.
+    /// What that adds to the rate of compression beside it, over the share of the kernel that fluids fill,
+    /// 1/s.
     pub rate: f64,
-    /// What it gives away to the faces of all boundaries: all of it, and the part that is due to its own pressure, N.
+    /// What it gives away to the faces of all boundaries: all of it, and the part that is due to its own
+    /// pressure, N.
     pub force: [DVec3; 2],
 }

@@ -24,7 +24,8 @@ pub const LEAST_SHARE: f64 = 1e-10;
 /// A neighbour of a fluid particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
-    /// Row of a fluid particle in its phase; beyond the number of fluid particles, something that bounds the fluid.
+    /// Row of a fluid particle in its phase; beyond the number of fluid particles, something that bounds the
+    /// fluid.
     pub row: usize,
     /// x_ij = x_j - x_i, m.
     pub x_ij: DVec3,
@@ -110,8 +111,9 @@ impl FlowCloud {
         self.groups.iter().any(Group::has_suction)
     }
 
-    /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of its list.
-    /// `i` is its row in the phase of fluids. On several ranks ask for the [whole cloud](FlowCloud::whole) before.
+    /// Calls `f` with every neighbour of a fluid particle within the support, walls included, in the order of
+    /// its list. `i` is its row in the phase of fluids. On several ranks ask for the [whole
+    /// cloud](FlowCloud::whole) before.
     #[inline]
     pub fn for_each_neighbor(&self, i: usize, mut f: impl FnMut(&Near)) {
         let own = self.records[i].position();
@@ -129,7 +131,8 @@ impl FlowCloud {
         }
     }
 
-    /// All particles as the last passes over pairs have seen them, fluids first; on several ranks ask for the [whole cloud](FlowCloud::whole) before.
+    /// All particles as the last passes over pairs have seen them, fluids first; on several ranks ask for the
+    /// [whole cloud](FlowCloud::whole) before.
     pub fn records(&self) -> &[FlowParticle] {
         &self.records
     }
@@ -149,7 +152,8 @@ impl FlowCloud {
         self.groups.iter().find(|group| group.body == body).and_then(Group::fluid)
     }
 
-    /// Number of neighbours within the support of every particle of a fluid body, boundary particles included.
+    /// Number of neighbours within the support of every particle of a fluid body, boundary particles
+    /// included.
     pub fn neighbor_counts(&self, body: BodyId) -> Option<Vec<usize>> {
         let group = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())?;
         let count = |i: usize| {

@@ -1,4 +1,5 @@
-//! Loads on a flow beside gravity, such as a `BodyForce`: the pressure of walls rises along them as it does along gravity.
+//! Loads on a flow beside gravity, such as a `BodyForce`: the pressure of walls rises along them as it does
+//! along gravity.
 
 use glam::DVec3;
 
@@ -6,14 +7,16 @@ use super::flow_cloud::FlowCloud;
 use crate::world::BodyId;
 
 impl FlowCloud {
-    /// Acceleration of a fluid particle by loads, m/s2; gravity is not among them. `i` is its row in the cloud.
+    /// Acceleration of a fluid particle by loads, m/s2; gravity is not among them. `i` is its row in the
+    /// cloud.
     #[inline]
     pub fn load(&self, i: usize) -> DVec3 {
         self.loads.get(i).copied().unwrap_or_default()
     }
 
-    /// Adds the acceleration of particles of a fluid body by a load, m/s2; `rows` are those of the phase. Loads are forgotten at the
-    /// beginning of every step, and have to be here before walls get their pressure.
+    /// Adds the acceleration of particles of a fluid body by a load, m/s2; `rows` are those of the phase.
+    /// Loads are forgotten at the beginning of every step, and have to be here before walls get their
+    /// pressure.
     pub fn add_loads(&mut self, body: BodyId, rows: &[u32], accelerations: &[DVec3]) {
         let Some(group) = self.groups.iter().find(|group| group.body == body && group.fluid().is_some())
         else {

@@ -18,8 +18,9 @@ pub struct FourNear<A: FourLanes> {
 }
 
 impl FlowCloud {
-    /// The neighbours of particle `i` within the support: rows of the cloud, ordered by bodies. With sums in single precision they may hold the particle itself, and others beyond the support; of particles that other ranks compute, all that is
-    /// near their blocks.
+    /// The neighbours of particle `i` within the support: rows of the cloud, ordered by bodies. With sums in
+    /// single precision they may hold the particle itself, and others beyond the support; of particles that
+    /// other ranks compute, all that is near their blocks.
     #[inline(always)]
     pub(in crate::formulations::fluid) fn near_row(&self, i: usize) -> &[u32] {
         let blocks = self.blocks.as_ref();
@@ -35,7 +36,8 @@ impl FlowCloud {
         }
     }
 
-    /// The particles of a boundary near fluid particle `i`: at least those within the support, of particles that other ranks compute as well.
+    /// The particles of a boundary near fluid particle `i`: at least those within the support, of particles
+    /// that other ranks compute as well.
     pub(in crate::formulations::fluid) fn boundary_near(&self, i: usize, boundary: &Range<usize>) -> &[u32] {
         let of_other =
             |blocks: &Blocks| blocks.shared_block(i).is_some_and(|block| !blocks.lists.others.is_own(block));
@@ -85,7 +87,8 @@ impl FlowCloud {
     }
 }
 
-/// Takes the neighbours before row `end` of the cloud, where a group ends, out of what is left of a row that is ordered by groups.
+/// Takes the neighbours before row `end` of the cloud, where a group ends, out of what is left of a row that
+/// is ordered by groups.
 #[inline(always)]
 pub fn take_until<'a>(rest: &mut &'a [u32], end: usize) -> &'a [u32] {
     let end = end as u32;

@@ -10,9 +10,12 @@ use crate::world::BodyId;
 
 /// Distance of the particles that move with one, over the spacing of the fluid.
 const REACH: f64 = 1.5;
-/// Distance from which on a neighbour of the start counts no more, over the same spacing: in a body that flows or wears it has gone elsewhere.
+/// Distance from which on a neighbour of the start counts no more, over the same spacing: in a body that
+/// flows or wears it has gone elsewhere.
 const FARTHEST: f64 = 2.0 * REACH;
-/// Mean square of the distance from the centre of a cluster, over that of the spacing of the fluid, below which the cluster has collapsed: that of two particles a spacing apart. Corners of whole bodies have twice as much.
+/// Mean square of the distance from the centre of a cluster, over that of the spacing of the fluid, below
+/// which the cluster has collapsed: that of two particles a spacing apart. Corners of whole bodies have twice
+/// as much.
 const COLLAPSED: f64 = 0.25;
 
 /// The neighbours of the particles of a body at its start.
@@ -92,10 +95,13 @@ impl Neighborhood {
         Cluster { volume, mean, moment, motion }
     }
 
-    /// The share of the moments of pressure that a cluster bears: all of it in a body, less in one that has collapsed.
+    /// The share of the moments of pressure that a cluster bears: all of it in a body, less in one that has
+    /// collapsed.
     ///
-    /// Fragments of a few particles may have no stress. The pressure around would squeeze them to a point, where the forces that have a moment grow without bounds, and so does the gradient of
-    /// the motion. Moments of pressure have no couple, so that angular momentum does not depend on this share; force and gradient take the same one.
+    /// Fragments of a few particles may have no stress. The pressure around would squeeze them to a point,
+    /// where the forces that have a moment grow without bounds, and so does the gradient of the motion.
+    /// Moments of pressure have no couple, so that angular momentum does not depend on this share; force and
+    /// gradient take the same one.
     #[inline(always)]
     pub fn share(&self, cluster: &Cluster) -> f64 {
         let collapsed = COLLAPSED * cluster.volume * self.farthest / (2.0 * REACH).powi(2);

@@ -11,7 +11,8 @@ use crate::schedule::{Run, Step, StepError};
 use crate::world::{MissingColumn, World};
 
 column! {
-    /// Position that the neighbour lists of a flow were built from: sums run in the order of the lists, and the same lists give the same bits.
+    /// Position that the neighbour lists of a flow were built from: sums run in the order of the lists, and
+    /// the same lists give the same bits.
     pub struct ListPosition(DVec3) = "list_position", "x_l", "m";
 }
 

@@ -1,7 +1,9 @@
 //! What this rank knows of the particles that other ranks compute.
 //!
-//! The loops of most flows need what is near their own particles, and ranks exchange no more than that. Who looks at particles elsewhere, as probes and warnings do, asks for the
-//! [whole cloud](FlowCloud::whole) first. Where bodies are moved by the flow, or boundaries do more than to bound it, all ranks have all particles in every step.
+//! The loops of most flows need what is near their own particles, and ranks exchange no more than that. Who
+//! looks at particles elsewhere, as probes and warnings do, asks for the [whole cloud](FlowCloud::whole)
+//! first. Where bodies are moved by the flow, or boundaries do more than to bound it, all ranks have all
+//! particles in every step.
 
 use std::cell::Ref;
 use std::ops::Range;
@@ -15,7 +17,8 @@ use crate::schedule::Resources;
 use crate::world::{MissingColumn, Velocity, World};
 
 impl FlowCloud {
-    /// Whether its loops need no more than what is near their own particles: where it is bounded by nothing but walls along which it slides.
+    /// Whether its loops need no more than what is near their own particles: where it is bounded by nothing
+    /// but walls along which it slides.
     pub(in crate::formulations::fluid) fn decide_what_others_know(&mut self) {
         let bounds = || self.groups.iter().filter(|group| group.fluid().is_none());
         let is_plain = bounds().all(|group| group.is_wall() && !group.sticks() && !group.has_suction());
@@ -41,9 +44,12 @@ impl FlowCloud {
 
     /// Exchanges the records of all particles, where ranks know some alone.
     pub(in crate::formulations::fluid) fn complete(resources: &Resources) {
+        // Loops ask for the cloud while they read it, so that it is written where something is missing alone.
         let lacks_some = |cloud: Ref<'_, Self>| cloud.is_local() && !cloud.others.is_whole;
-        if resources.try_get::<Self>().is_some_and(lacks_some) {
-            let mut cloud = resources.get_mut::<Self>();
+        if has_several()
+            && resources.try_get::<Self>().is_some_and(lacks_some)
+            && let Some(mut cloud) = resources.to_complete::<Self>()
+        {
             let Self { records, groups, others, .. } = &mut *cloud;
             share_rows_of(records, groups.iter().map(|group| group.cloud.clone()));
             others.is_whole = true;
@@ -59,7 +65,8 @@ impl FlowCloud {
         Ok(())
     }
 
-    /// Divides boundaries among ranks by the fluid beside them, once new lists tell where that is: most of a tank is dry, and its wet part may be in the first rows.
+    /// Divides boundaries among ranks by the fluid beside them, once new lists tell where that is: most of a
+    /// tank is dry, and its wet part may be in the first rows.
     pub(super) fn divide_boundaries(&mut self, world: &World) {
         let Some(cut) = ranks::cut().filter(|_| !std::mem::replace(&mut self.pairs.are_weighed, true)) else {
             return;

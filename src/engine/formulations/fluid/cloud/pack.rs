@@ -18,8 +18,8 @@ use crate::world::{
 };
 
 impl FlowCloud {
-    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far the particles have moved since
-    /// they were packed before. Of fluids, every rank packs its own.
+    /// Packs positions, volumes and velocities; fluids with their pressure, boundaries without. Says how far
+    /// the particles have moved since they were packed before. Of fluids, every rank packs its own.
     pub(in crate::formulations::fluid) fn pack(
         &mut self,
         world: &World,
@@ -47,7 +47,8 @@ impl FlowCloud {
         Ok(moved)
     }
 
-    /// Packs volumes, velocities and pressures of these rows for sums in single precision, once they are those of the end of the step.
+    /// Packs volumes, velocities and pressures of these rows for sums in single precision, once they are
+    /// those of the end of the step.
     pub(in crate::formulations::fluid) fn pack_states(&mut self, rows: Range<usize>) {
         if let Some(blocks) = &mut self.blocks {
             pack_states(&mut blocks.packed[rows.clone()], &self.records[rows]);
@@ -96,7 +97,8 @@ impl GroupRows<'_> {
         }))
     }
 
-    /// Packs the rows of this rank; those of the others too where the boundary has moved, or where all ranks look at all of them.
+    /// Packs the rows of this rank; those of the others too where the boundary has moved, or where all ranks
+    /// look at all of them.
     fn pack_boundary(
         mut self,
         view: &PhaseView<'_>,

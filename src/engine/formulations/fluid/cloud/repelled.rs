@@ -19,7 +19,8 @@ pub struct Repelled {
     pub shares: Shares,
 }
 
-/// Shares of particles near a point in what acts there, `V_w W (1 + (x_w - x_i - mean) . slope) / total`: they add up to one, and their centre is the point.
+/// Shares of particles near a point in what acts there, `V_w W (1 + (x_w - x_i - mean) . slope) / total`:
+/// they add up to one, and their centre is the point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Shares {
     pub total: f64,

@@ -76,7 +76,8 @@ impl<const R: usize, const S: usize, P: RowPass<R, S>> BlockLoop for RowPassBloc
     }
 }
 
-/// Writes the sums of a block to those of its rows that are wanted: blocks at the ends may have others as well.
+/// Writes the sums of a block to those of its rows that are wanted: blocks at the ends may have others as
+/// well.
 #[inline(always)]
 fn put<A: EightLanes, const R: usize, const S: usize, P: RowPass<R, S>>(
     pass: &P,

@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use crate::parallel::{Arithmetic, Number, Vector};
 
-/// Pairs as a [`RowPass`] sees them: a lane is a neighbour of one particle, or, with sums in single precision, a particle that has one neighbour in common with others. Where there is no
-/// neighbour, beyond the support and for the particle itself the volume is zero and the distance above zero.
+/// Pairs as a [`RowPass`] sees them: a lane is a neighbour of one particle, or, with sums in single
+/// precision, a particle that has one neighbour in common with others. Where there is no neighbour, beyond
+/// the support and for the particle itself the volume is zero and the distance above zero.
 #[derive(Clone, Copy)]
 pub struct NearPairs<A: Arithmetic> {
     /// Number of the body of the neighbour in [`FlowCloud::groups`](super::flow_cloud::FlowCloud).
@@ -26,7 +27,8 @@ pub struct NearPairs<A: Arithmetic> {
     pub volume: Number<A>,
 }
 
-/// Sums over the neighbours of every particle, in `SUMS` vectors, that read `READS` vectors of each. In the plane the z of both is zero.
+/// Sums over the neighbours of every particle, in `SUMS` vectors, that read `READS` vectors of each. In the
+/// plane the z of both is zero.
 pub trait RowPass<const READS: usize, const SUMS: usize>: Sync {
     /// What it makes for each particle.
     type Output: Send;
@@ -34,10 +36,12 @@ pub trait RowPass<const READS: usize, const SUMS: usize>: Sync {
     /// The rows of the cloud among which neighbours are summed: those of whole bodies.
     fn among(&self) -> Range<usize>;
 
-    /// What it reads of the particle in that row of the cloud. It may be rounded to single precision: subtract what all particles have in common.
+    /// What it reads of the particle in that row of the cloud. It may be rounded to single precision:
+    /// subtract what all particles have in common.
     fn reads(&self, row: usize) -> [DVec3; READS];
 
-    /// Adds neighbours to the sums; `own` was read of the particle, `other` of the neighbour. Mark it `#[inline(always)]`: it is then compiled for the instruction path of the loop around it.
+    /// Adds neighbours to the sums; `own` was read of the particle, `other` of the neighbour. Mark it
+    /// `#[inline(always)]`: it is then compiled for the instruction path of the loop around it.
     fn add<A: Arithmetic>(
         &self,
         near: &NearPairs<A>,

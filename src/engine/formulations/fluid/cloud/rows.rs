@@ -18,7 +18,8 @@ use crate::ranks::has_several;
 pub struct RowSums(Vec<DVec3>);
 
 impl FlowCloud {
-    /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums` is memory that is kept from step to step.
+    /// Runs a pass over the particles of whole bodies, from row `first` of the cloud on, in parallel. `sums`
+    /// is memory that is kept from step to step.
     pub fn for_each_row<const R: usize, const S: usize, P: RowPass<R, S>>(
         &self,
         first: usize,

@@ -3,7 +3,8 @@
 use super::flow_cloud::FlowCloud;
 use crate::schedule::Shareable;
 
-/// Position, volume, velocity and pressure of every particle of a flow ([`FlowParticle`](crate::formulations::fluid::FlowParticle)).
+/// Position, volume, velocity and pressure of every particle of a flow
+/// ([`FlowParticle`](crate::formulations::fluid::FlowParticle)).
 pub const FLOW_RECORDS: &str = "flow_records";
 /// Rates of compression of fluid particles.
 pub const COMPRESSION_RATES: &str = "compression_rates";

@@ -1,7 +1,8 @@
-//! Sorting of fluid particles along a space-filling curve: neighbours in space stay neighbours in memory while the fluid mixes.
+//! Sorting of fluid particles along a space-filling curve: neighbours in space stay neighbours in memory
+//! while the fluid mixes.
 //!
-//! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId) tells who is who. A body whose
-//! particles a selection holds by their rows keeps its order.
+//! Rows of a body are permuted within the body, in all columns; [`ParticleId`](crate::world::ParticleId)
+//! tells who is who. A body whose particles a selection holds by their rows keeps its order.
 
 use glam::DVec3;
 
@@ -10,7 +11,8 @@ use super::group::Group;
 use crate::shapes::MortonSort;
 use crate::world::World;
 
-/// Lists that are built before the particles are sorted anew: the fastest has then moved some six spacings along a wall.
+/// Lists that are built before the particles are sorted anew: the fastest has then moved some six spacings
+/// along a wall.
 pub const BUILDS: u64 = 8;
 
 /// Memory for sorting.
@@ -21,7 +23,8 @@ pub struct Sorter {
 }
 
 impl Sorter {
-    /// Sorts the fluids of the cloud, that are at these positions, and says whether there was one to sort. The cloud is then as before.
+    /// Sorts the fluids of the cloud, that are at these positions, and says whether there was one to sort.
+    /// The cloud is then as before.
     pub fn sort(&mut self, cloud: &FlowCloud, positions: &[DVec3], world: &World) -> bool {
         let free = |group: &&Group| group.fluid().is_some() && !group.held;
         for group in cloud.groups.iter().filter(free) {

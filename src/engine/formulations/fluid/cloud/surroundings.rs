@@ -2,8 +2,9 @@
 
 use crate::linalg::{Eigen, Sym3};
 
-/// The smallest eigenvalue of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij` over fluids and boundary particles: one inside, about a half at a surface, zero for a
-/// drop (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663). In a plane it is that of its two axes.
+/// The smallest eigenvalue of a moment matrix `sum_j V_j w_ij x_ij (x) x_ij` over fluids and boundary
+/// particles: one inside, about a half at a surface, zero for a drop (Marrone et al., J. Comput. Phys. 229
+/// (2010) 3652-3663). In a plane it is that of its two axes.
 #[inline(always)]
 pub fn smallest_eigenvalue(moment: &Sym3, plane: bool) -> f64 {
     if plane {

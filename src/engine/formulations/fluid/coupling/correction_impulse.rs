@@ -11,8 +11,10 @@ use crate::parallel::{Split, for_each_block, split_by_rows};
 use crate::rigid::RigidBody;
 use crate::world::{Force, Mass, Mobility, Removed, Velocity};
 
-/// Friction at the surface of a row of particles pulls at it with 1.6 times its force, and at the row below with -0.6 (`moments::friction`), and follows their velocities alike. The fluid beside, of
-/// the same density, follows at its own rate: the fastest motion of both together decays at 3.7 times the rate that the force on the first row alone has, and explicit steps stand two over the rate.
+/// Friction at the surface of a row of particles pulls at it with 1.6 times its force, and at the row below
+/// with -0.6 (`moments::friction`), and follows their velocities alike. The fluid beside, of the same
+/// density, follows at its own rate: the fastest motion of both together decays at 3.7 times the rate that
+/// the force on the first row alone has, and explicit steps stand two over the rate.
 const SHARED: f64 = 2.0;
 
 /// The columns that change.
@@ -74,7 +76,8 @@ impl Particles<'_> {
         })
     }
 
-    /// Bound of the fastest rate at which friction slows a particle of a body that deforms, 1/s, so that steps of one over it are stable.
+    /// Bound of the fastest rate at which friction slows a particle of a body that deforms, 1/s, so that
+    /// steps of one over it are stable.
     pub fn rate(&self) -> f64 {
         let moves = |k: usize| self.removed[k] == Removed::NO && self.mobility[k].0 != DVec3::ZERO;
         let rates = self.drag.iter().zip(self.mass).enumerate();
@@ -88,7 +91,8 @@ impl Particles<'_> {
         wet.map(|((record, mass), _)| mass.0 / record.volume()).min_by(f64::total_cmp)
     }
 
-    /// [`Particles::rate`] of a rigid body: the sum of the rates of all of its motions, which is no less than the fastest.
+    /// [`Particles::rate`] of a rigid body: the sum of the rates of all of its motions, which is no less than
+    /// the fastest.
     pub fn rate_of_rigid_body(&self, body: &RigidBody) -> f64 {
         let along = |x: DVec3| -> f64 { DVec3::AXES.iter().map(|&axis| body.inverse_mass_at(x, axis)).sum() };
         let pulled = self.drag.iter().zip(self.records).filter(|(drag, _)| **drag > 0.0);
@@ -107,8 +111,8 @@ impl Particles<'_> {
         self.force_now(i).0 - rows.frozen[k].0 - rest
     }
 
-    /// Puts the force of now in the place of the frozen one, and books the work of both; `velocity` is the mean of those before and
-    /// after the impulse.
+    /// Puts the force of now in the place of the frozen one, and books the work of both; `velocity` is the
+    /// mean of those before and after the impulse.
     fn take_up(&self, i: usize, k: usize, velocity: DVec3, rows: &mut ParticleRows<'_>, sum: &mut Exchange) {
         let (total, [friction, pressure]) = self.force_now(i);
         let moved = self.before.get(i).map_or(DVec3::ZERO, |before| self.records[i].position() - *before);

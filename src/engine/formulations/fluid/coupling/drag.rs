@@ -1,11 +1,14 @@
 //! Friction of a flow on bodies that take sub-steps follows their motion within the long one.
 //!
-//! Friction that is frozen in the long step lags: a part of the body that swings there and back within some steps of the flow is pushed on by what should
-//! slow it down. So the sub-steps add what the friction changes by the motion of the body, with frozen weights:
+//! Friction that is frozen in the long step lags: a part of the body that swings there and back within some
+//! steps of the flow is pushed on by what should slow it down. So the sub-steps add what the friction changes
+//! by the motion of the body, with frozen weights:
 //!
-//! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was computed with, and `c_w = 2 sum_f V_w V_f 4 mu w_wf`.
+//! `f_w = f_w(n) - c_w (v_w - v_w(n))`, with v_w(n) the velocity that f_w(n) was computed with, and `c_w = 2
+//! sum_f V_w V_f 4 mu w_wf`.
 //!
-//! At the end of the long step the body gets what it lacks of dt/2 (f(n) + f(n+1)), as the fluid has: momentum is kept.
+//! At the end of the long step the body gets what it lacks of dt/2 (f(n) + f(n+1)), as the fluid has:
+//! momentum is kept.
 
 use std::ops::Range;
 
@@ -153,7 +156,8 @@ impl DragRows<'_> {
         self.damping.get(k).map_or(DVec3::ZERO, |damping| damping.0)
     }
 
-    /// Begins a long step of particle `k` with friction computed at that velocity, m/s. Returns the work of the change of friction in the last one, J.
+    /// Begins a long step of particle `k` with friction computed at that velocity, m/s. Returns the work of
+    /// the change of friction in the last one, J.
     pub fn begin(&mut self, k: usize, drag: f64, velocity: DVec3) -> f64 {
         if k >= self.drag.len() {
             return 0.0;

@@ -1,9 +1,10 @@
 //! The force of a flow on bodies that take sub-steps.
 //!
-//! It is frozen in the long step: the sub-steps run with what the flow did at its start, f(n). At its end the change comes as an
-//! impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly the opposite of what the kicks of the
-//! fluid were. The fluid sees the mean velocity of the long step, on which the frozen force does its work. With one
-//! sub-step in the long one this is the leapfrog, and under a constant force nothing kicks at all.
+//! It is frozen in the long step: the sub-steps run with what the flow did at its start, f(n). At its end the
+//! change comes as an impulse, dt/2 (f(n+1) - f(n)), so that the body has got dt/2 (f(n) + f(n+1)), exactly
+//! the opposite of what the kicks of the fluid were. The fluid sees the mean velocity of the long step, on
+//! which the frozen force does its work. With one sub-step in the long one this is the leapfrog, and under a
+//! constant force nothing kicks at all.
 
 use glam::DVec3;
 
@@ -22,8 +23,9 @@ use crate::rigid::{RIGID_BODIES, RigidBodies};
 use crate::schedule::{AccountKind, Adds, Mode, Run, Stage, Step, StepError, System};
 use crate::world::{BodyId, BodySet, Force, Mass, Mobility, PhaseId, Position, Removed, Velocity};
 
-/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the bodies and after the second kick. Where
-/// friction `follows`, it changes in the sub-steps by the motion of the body.
+/// Adds the systems for one phase of bodies beside the flow: what they add comes after the weight of the
+/// bodies and after the second kick. Where friction `follows`, it changes in the sub-steps by the motion of
+/// the body.
 pub fn add_force_on_bodies(
     sim: &mut SimBuilder<'_>,
     groups: &[Group],
@@ -117,8 +119,9 @@ impl FlowCloud {
     }
 }
 
-/// Stable step of the surface of a deformable body in units of h / sqrt(K / rho), with its density and the largest bulk modulus K of all fluids, whose pressure moves it: a strip of half the density of
-/// the water, two particles of it thick, is stable at 0.42 and not at 0.6.
+/// Stable step of the surface of a deformable body in units of h / sqrt(K / rho), with its density and the
+/// largest bulk modulus K of all fluids, whose pressure moves it: a strip of half the density of the water,
+/// two particles of it thick, is stable at 0.42 and not at 0.6.
 const SURFACE: f64 = 0.4;
 
 struct Coupling {

@@ -9,11 +9,13 @@ use crate::schedule::{AccountKind, Run, Step, StepError};
 use crate::world::{Density, DensityRate, Mass, Removed};
 
 crate::column! {
-    /// What the density of a fluid has yet to follow of a non-advective displacement: by the next step it does.
+    /// What the density of a fluid has yet to follow of a non-advective displacement: by the next step it
+    /// does.
     pub struct DensityShift(f64) = "density_shift", "rho_s", "kg/m^3";
 }
 
-/// Account of the energy that displacements take out of fluids, by their weight and by the density that follows.
+/// Account of the energy that displacements take out of fluids, by their weight and by the density that
+/// follows.
 pub const SHIFTING_ENERGY: &str = "particle_shifting";
 
 /// Moves the density by the rate of compression, and by what pair terms found at the end of the step before.
@@ -136,8 +138,9 @@ impl HotLoop for AdvanceDensity<'_> {
                 rho.0 = state.density;
                 continue;
             }
-            // Half of what pair terms and displacements do comes before the flow and half after it: the flow then compresses at the mean of
-            // the pressures of the two kicks, and the energy balance closes to second order in the step.
+            // Half of what pair terms and displacements do comes before the flow and half after it: the flow
+            // then compresses at the mean of the pressures of the two kicks, and the energy balance closes to
+            // second order in the step.
             let by_terms = if by_terms { 0.5 * dt * rate[k].0 } else { 0.0 };
             let shift = shift.map_or(0.0, |shift| 0.5 * shift[first + k].0);
             let half = -0.5 * dt * compression[k];

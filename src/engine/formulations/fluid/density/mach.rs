@@ -1,7 +1,8 @@
 //! Mach number of a flow: whether the fluid still is as good as incompressible.
 //!
-//! A tank that moves as a whole with its fluid compresses nothing. The speed that counts is that against the frame in which the fastest of
-//! all that flows and bounds a flow is slowest: at rest, or with one of the bodies that bound the flow, or, where nothing bounds it, with the mean of what flows.
+//! A tank that moves as a whole with its fluid compresses nothing. The speed that counts is that against the
+//! frame in which the fastest of all that flows and bounds a flow is slowest: at rest, or with one of the
+//! bodies that bound the flow, or, where nothing bounds it, with the mean of what flows.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -12,7 +13,8 @@ use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_own_blocks};
 use crate::schedule::{Step, StepError, warn_anew};
 
-/// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is chosen for. The density then changes by 4 %.
+/// Speed of the flow over that of sound that is worth a warning: twice the one that a speed of sound is
+/// chosen for. The density then changes by 4 %.
 const FAST: f64 = 0.2;
 /// Growth of the largest Mach number for which the warning is written anew.
 const GROWTH: f64 = 1.05;
@@ -76,8 +78,8 @@ fn mean_velocity(groups: &[Group], records: &[FlowParticle]) -> DVec3 {
     all.velocity / all.count.max(1.0)
 }
 
-/// Largest speed of a fluid against the frame of its flow, m/s; `at_first` is the one against `base`, the [`wall_frame`]. At the speeds of fluids that are no warning
-/// nothing is looked for.
+/// Largest speed of a fluid against the frame of its flow, m/s; `at_first` is the one against `base`, the
+/// [`wall_frame`]. At the speeds of fluids that are no warning nothing is looked for.
 pub fn relative_speed(
     at_first: f64,
     base: DVec3,
@@ -111,7 +113,8 @@ pub struct Mach {
 }
 
 impl Mach {
-    /// Looks at the largest [`relative_speed`] in a step, m/s; the warning keeps up with the largest one of the run.
+    /// Looks at the largest [`relative_speed`] in a step, m/s; the warning keeps up with the largest one of
+    /// the run.
     ///
     /// # Errors
     /// The flow is faster than its sound.

@@ -14,11 +14,13 @@ use crate::world::{Density, Mass, Pressure, Removed};
 /// Stable step in units of h / (c_0 + v). A tank at rest is stable up to 1.6, and grows at once at 1.8; the
 /// energy of impacts asks for less.
 const COURANT: f64 = 0.4;
-/// Stable step of a light fluid beside a stiff one in units of h / sqrt(K / rho), with the largest bulk modulus K of all fluids: the pressure of the stiff one moves the mass of
-/// the light one. Water below air of a thousandth of its density is stable at 3.5 and not at 11.
+/// Stable step of a light fluid beside a stiff one in units of h / sqrt(K / rho), with the largest bulk
+/// modulus K of all fluids: the pressure of the stiff one moves the mass of the light one. Water below air of
+/// a thousandth of its density is stable at 3.5 and not at 11.
 const INTERFACE: f64 = 1.7;
-/// Stable step in units of rho h^2 / mu, over the factor of friction. Eigenvalues of friction are up to 3.3 (a lattice) and 4.4
-/// (irregular particles) of that factor times nu / h^2; explicit steps of friction stand two over the largest.
+/// Stable step in units of rho h^2 / mu, over the factor of friction. Eigenvalues of friction are up to 3.3
+/// (a lattice) and 4.4 (irregular particles) of that factor times nu / h^2; explicit steps of friction stand
+/// two over the largest.
 const VISCOUS: f64 = 0.32;
 
 /// Sets pressure and volume from the density.

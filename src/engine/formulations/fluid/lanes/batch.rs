@@ -1,7 +1,8 @@
 //! Loops over a row in two parts: one gathers neighbours, one takes roots and kernel weights.
 //!
-//! In one loop, a neighbour takes some ninety cycles from its index to its sum, and a processor looks ahead two or three fours. Taken apart,
-//! each loop has short chains of instructions that wait for each other, and both run at the rate at which instructions are issued.
+//! In one loop, a neighbour takes some ninety cycles from its index to its sum, and a processor looks ahead
+//! two or three fours. Taken apart, each loop has short chains of instructions that wait for each other, and
+//! both run at the rate at which instructions are issued.
 
 use crate::parallel::Lanes4;
 

@@ -1,7 +1,8 @@
 //! The kernels of fluids for four neighbours at once.
 //!
-//! Particles pair where the Fourier transform of the kernel is negative. Those of Wendland's kernels are positive whatever the number of neighbours, that of the
-//! quintic spline up to 190 in three dimensions; the lower splines already pair with the supports of flows (Dehnen & Aly 2012, Monthly Notices of the Royal
+//! Particles pair where the Fourier transform of the kernel is negative. Those of Wendland's kernels are
+//! positive whatever the number of neighbours, that of the quintic spline up to 190 in three dimensions; the
+//! lower splines already pair with the supports of flows (Dehnen & Aly 2012, Monthly Notices of the Royal
 //! Astronomical Society 425, 1068-1082).
 
 use crate::kernels::{Kernel, KernelName};
@@ -42,7 +43,8 @@ impl FluidKernel {
         if self.shape == KernelShape::QuinticSpline { 3.5 } else { 10.0 }
     }
 
-    /// The kernel of that name and support radius H, m, in two or three dimensions; none if particles pair with it.
+    /// The kernel of that name and support radius H, m, in two or three dimensions; none if particles pair
+    /// with it.
     pub fn new(name: KernelName, support: f64, dimension: usize) -> Option<Self> {
         let shape = match name {
             KernelName::WendlandC2 => KernelShape::WendlandC2,
@@ -62,8 +64,9 @@ impl FluidKernel {
         })
     }
 
-    /// Smoothing length h, m: half of the support with Wendland C2, and with the others that of the Wendland C2 of the same integral of w over the plane, on which
-    /// stable steps depend: 14, 18, 22.286 and 17.397 over the square of the support.
+    /// Smoothing length h, m: half of the support with Wendland C2, and with the others that of the Wendland
+    /// C2 of the same integral of w over the plane, on which stable steps depend: 14, 18, 22.286 and 17.397
+    /// over the square of the support.
     pub fn smoothing_length(&self) -> f64 {
         let share = match self.shape {
             KernelShape::WendlandC2 => 0.5,
@@ -80,8 +83,9 @@ impl FluidKernel {
         a.scale(self.weight_scale, self.shapes(a, r))
     }
 
-    /// Pair weights of four neighbours over that of r = 0: for sums that are multiplied with [`Self::weight_scale`] once. With q = r/H they are (1 - q)^3,
-    /// (1 - q)^5 (1 + 5 q) and (1 - q)^7 (1 + 7 q + 16 q^2).
+    /// Pair weights of four neighbours over that of r = 0: for sums that are multiplied with
+    /// [`Self::weight_scale`] once. With q = r/H they are (1 - q)^3, (1 - q)^5 (1 + 5 q) and (1 - q)^7 (1 + 7
+    /// q + 16 q^2).
     #[inline(always)]
     pub(in crate::formulations::fluid) fn shapes<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
@@ -103,7 +107,8 @@ impl FluidKernel {
         }
     }
 
-    /// Runs a loop over the weights of this kernel: compiled for Wendland C2 alone, which is the default, and for all others.
+    /// Runs a loop over the weights of this kernel: compiled for Wendland C2 alone, which is the default, and
+    /// for all others.
     pub(in crate::formulations::fluid) fn run<L: KernelLoop>(&self, hot: L) -> L::Output {
         match self.shape {
             KernelShape::WendlandC2 => hot.run(WendlandC2Lanes { slope: -self.inverse_support }),
@@ -117,8 +122,8 @@ impl FluidKernel {
         self.weight_scale
     }
 
-    /// Kernel values W of four neighbours; over W(0), with q = r/H, they are (1 - q)^4 (1 + 4 q), (1 - q)^6 (1 + 6 q + 35/3 q^2) and
-    /// (1 - q)^8 (1 + 8 q + 25 q^2 + 32 q^3).
+    /// Kernel values W of four neighbours; over W(0), with q = r/H, they are (1 - q)^4 (1 + 4 q), (1 - q)^6
+    /// (1 + 6 q + 35/3 q^2) and (1 - q)^8 (1 + 8 q + 25 q^2 + 32 q^3).
     #[inline(always)]
     pub fn values<A: Arithmetic>(&self, a: A, r: A::Lanes) -> A::Lanes {
         let s = a.max_zero(a.scale_add(-self.inverse_support, r, a.splat(1.0)));
@@ -141,8 +146,8 @@ impl FluidKernel {
         a.scale(self.value_scale, shape)
     }
 
-    /// Squared distances above zero, and beyond the support where there is no neighbour; volumes of the neighbours within the
-    /// support.
+    /// Squared distances above zero, and beyond the support where there is no neighbour; volumes of the
+    /// neighbours within the support.
     #[inline(always)]
     pub(in crate::formulations::fluid) fn within<A: Arithmetic>(
         &self,

@@ -119,7 +119,8 @@ pub fn as_rows([j, k, l, m]: [u32; 4]) -> [usize; 4] {
     [j as usize, k as usize, l as usize, m as usize]
 }
 
-/// One to four neighbours as four: the last one fills up. Without a branch, which a processor would guess wrong at every other row.
+/// One to four neighbours as four: the last one fills up. Without a branch, which a processor would guess
+/// wrong at every other row.
 #[inline(always)]
 pub fn filled_up(rest: &[u32]) -> [u32; 4] {
     let last = rest.len() - 1;

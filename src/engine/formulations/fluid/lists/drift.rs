@@ -1,8 +1,9 @@
 //! How far particles have moved against those around them since the lists were built.
 //!
-//! A list is good as long as no pair beyond its skin has come within the support. That is a matter of how neighbours move against each
-//! other: a jet that flies carries its list along. Space is cut into cells; what the particles of a cell have moved lies in a box, and the
-//! boxes of a cell and those beside it hold all neighbours. Particles of cells that do not touch were the length of a cell apart.
+//! A list is good as long as no pair beyond its skin has come within the support. That is a matter of how
+//! neighbours move against each other: a jet that flies carries its list along. Space is cut into cells; what
+//! the particles of a cell have moved lies in a box, and the boxes of a cell and those beside it hold all
+//! neighbours. Particles of cells that do not touch were the length of a cell apart.
 
 use std::ops::Range;
 
@@ -34,7 +35,8 @@ const SKIN: f64 = 0.4;
 const WALL_SKIN: f64 = 0.8;
 
 impl Skins {
-    /// The usual ones of a spacing, m; less where a periodic domain is so short that a list would hold two images of a particle.
+    /// The usual ones of a spacing, m; less where a periodic domain is so short that a list would hold two
+    /// images of a particle.
     pub fn new(support: f64, spacing: f64, periodic: &Periodic) -> Self {
         let lengths = periodic.lengths().to_array().into_iter().filter(|&length| length > 0.0);
         let widest = lengths
@@ -86,8 +88,9 @@ impl Drift {
         });
     }
 
-    /// How much particles near each other can at least still move against each other until a list that was built where they were sorted misses
-    /// a pair, m; below zero where one may miss one already, or none was built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
+    /// How much particles near each other can at least still move against each other until a list that was
+    /// built where they were sorted misses a pair, m; below zero where one may miss one already, or none was
+    /// built. The first `fluid` particles are those of the fluid; `own` are the rows that this rank looks at.
     pub fn remaining_skin(
         &mut self,
         (records, own): (&[FlowParticle], &[Range<usize>]),
@@ -131,7 +134,8 @@ impl Drift {
         far_apart.min(near)
     }
 
-    /// Lists the particles from row `first` on, ascending, that have one with another label in their cell or in one beside it. A label of `u32::MAX` counts for nothing.
+    /// Lists the particles from row `first` on, ascending, that have one with another label in their cell or
+    /// in one beside it. A label of `u32::MAX` counts for nothing.
     pub fn rows_beside_others(&self, first: usize, label: impl Fn(usize) -> u32, out: &mut Vec<usize>) {
         const NONE: [u32; 2] = [u32::MAX, 0];
         let labels = |cell: usize| {

@@ -1,6 +1,7 @@
 //! Particles of bodies that are beside other bodies or walls: no particle of a fluid may fit between the two.
 //!
-//! Their lists hold all boundary particles around them, those of their own body too. They are built with the lists of the flow, and are good for as long as these.
+//! Their lists hold all boundary particles around them, those of their own body too. They are built with the
+//! lists of the flow, and are good for as long as these.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -45,7 +46,8 @@ pub struct GapPairs {
     targets: Vec<DVec3>,
     /// The particles, as rows of the cloud and of the list.
     pub particles: Vec<[u32; 2]>,
-    /// Boundary particles around those that were looked at, of their own side and of other bodies, as rows of the cloud.
+    /// Boundary particles around those that were looked at, of their own side and of other bodies, as rows of
+    /// the cloud.
     pub list: NeighborList,
 }
 
@@ -85,7 +87,8 @@ impl GapPairs {
             .for_each(|side| side.moves = SideMotion::Prescribed);
     }
 
-    /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: the freer of the two bodies looks at it, or both.
+    /// Share of the particle in row `i` in the force of the gap between it and that in row `j`: the freer of
+    /// the two bodies looks at it, or both.
     pub fn share_of(&self, i: usize, j: usize) -> f64 {
         match self.side_of(i).moves.cmp(&self.side_of(j).moves) {
             Ordering::Less => 0.0,

@@ -1,7 +1,7 @@
 //! The neighbours within the support, taken out of the lists in every step.
 //!
-//! A third of the pairs of a list is in its skin only. The first pass over a list has the distances in its hands: it writes down who is near,
-//! and the passes after it leave out the rest.
+//! A third of the pairs of a list is in its skin only. The first pass over a list has the distances in its
+//! hands: it writes down who is near, and the passes after it leave out the rest.
 
 use std::ops::Range;
 
@@ -68,7 +68,8 @@ impl NearRows {
         &self.indices[start..start + self.counts[i] as usize]
     }
 
-    /// Fills rows that other ranks look at with all that their lists hold, and the bits of each: who asks for neighbours within the support leaves out those beyond.
+    /// Fills rows that other ranks look at with all that their lists hold, and the bits of each: who asks for
+    /// neighbours within the support leaves out those beyond.
     pub fn fill_others<'l>(
         &mut self,
         others: impl Iterator<Item = Range<usize>>,
@@ -162,7 +163,8 @@ impl<'a> NearRow<'a> {
         self.used += bits.count_ones() as usize;
     }
 
-    /// Appends a row that is near the particles of a block whose bits are set, if there is one; without a branch.
+    /// Appends a row that is near the particles of a block whose bits are set, if there is one; without a
+    /// branch.
     #[inline(always)]
     pub fn push_if<const LANES: bool>(&mut self, j: u32, bits: usize) {
         if let Some(out) = self.room.get_mut(self.used) {

@@ -1,5 +1,5 @@
-//! The neighbour lists of a flow: of every fluid particle among all particles, of every boundary particle among the
-//! fluid.
+//! The neighbour lists of a flow: of every fluid particle among all particles, of every boundary particle
+//! among the fluid.
 
 use std::ops::Range;
 
@@ -20,7 +20,8 @@ const CELL: f64 = 2.0;
 /// Room over the support that round-off cannot take away.
 const CERTAIN: f64 = 1e-6;
 
-/// Lists that hold every pair within the support as long as particles have not moved more than the skins against those around them.
+/// Lists that hold every pair within the support as long as particles have not moved more than the skins
+/// against those around them.
 #[derive(Debug)]
 pub struct FlowPairs {
     skins: Skins,
@@ -77,7 +78,8 @@ impl FlowPairs {
         self
     }
 
-    /// The rows of the cloud that this rank computes, body by body; those of all fluids and of all boundaries in a program that runs alone.
+    /// The rows of the cloud that this rank computes, body by body; those of all fluids and of all boundaries
+    /// in a program that runs alone.
     fn own_rows(&self, fluid: usize) -> Vec<Range<usize>> {
         let end = self.groups.last().map_or(0, |&end| end as usize);
         if !ranks::has_several() {
@@ -100,10 +102,11 @@ impl FlowPairs {
         &self.periodic
     }
 
-    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are those of the fluid. `moved` says how
-    /// far particles have moved since the question was last asked.
+    /// Whether a pair may be missing in the lists, or they never were built; the first `fluid` records are
+    /// those of the fluid. `moved` says how far particles have moved since the question was last asked.
     pub fn are_stale(&mut self, records: &[FlowParticle], fluid: usize, moved: DisplacementBounds) -> bool {
-        // Looking is needed when the particles may have used up the room that they had when it was last looked.
+        // Looking is needed when the particles may have used up the room that they had when it was last
+        // looked.
         self.remaining_skin -= moved.farthest(moved);
         if self.remaining_skin <= CERTAIN * self.skins.support {
             self.remaining_skin =
@@ -112,7 +115,8 @@ impl FlowPairs {
         self.remaining_skin < 0.0
     }
 
-    /// Builds the lists; the first `fluid` positions are those of the fluid. With `blocks`, fluids have those in the place of lists of their own.
+    /// Builds the lists; the first `fluid` positions are those of the fluid. With `blocks`, fluids have those
+    /// in the place of lists of their own.
     pub fn build(
         &mut self,
         positions: &[DVec3],

@@ -1,9 +1,11 @@
-//! Bodies that are somewhere thinner than the support of the fluid: the two sides of each do not see each other there.
+//! Bodies that are somewhere thinner than the support of the fluid: the two sides of each do not see each
+//! other there.
 //!
-//! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid particle sees the copy on
-//! whose side it is, the whole thickness of it; which side that is, the sign of n_j . x_ji says, with the normal n_j of the body as it is
-//! bent now. Pairs of fluid particles through the body are left out. Both are decided where the lists are built, in the same way
-//! for i and j, so that every force keeps its opposite.
+//! Such a body is in the cloud twice, once for each side, with a pressure of its own for either. A fluid
+//! particle sees the copy on whose side it is, the whole thickness of it; which side that is, the sign of n_j
+//! . x_ji says, with the normal n_j of the body as it is bent now. Pairs of fluid particles through the body
+//! are left out. Both are decided where the lists are built, in the same way for i and j, so that every force
+//! keeps its opposite.
 
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -14,7 +16,8 @@ use super::thickness::{Thickness, axes};
 use crate::neighbors::{NeighborList, Periodic};
 use crate::plugin::BodyPlan;
 
-/// A line between two particles crosses a body within this distance of one of its particles, over their spacing.
+/// A line between two particles crosses a body within this distance of one of its particles, over their
+/// spacing.
 const REACH: f64 = 0.8;
 
 /// A thin body and its two copies in the cloud.
@@ -26,7 +29,8 @@ pub struct ThinBody {
     frames: Vec<SurfaceFrame>,
 }
 
-/// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the body.
+/// Neighbours before and behind a particle along the two directions of the mid-surface, as numbers in the
+/// body.
 #[derive(Clone, Debug)]
 struct SurfaceFrame {
     along: [u32; 2],
@@ -81,7 +85,8 @@ impl SurfaceFrame {
     }
 }
 
-/// Turns the normals of neighbours to one side: from each particle that is known to the one that is most parallel to it.
+/// Turns the normals of neighbours to one side: from each particle that is known to the one that is most
+/// parallel to it.
 fn orient(frames: &mut [SurfaceFrame], normals: &[DVec3], list: &NeighborList) {
     let mut known = vec![false; frames.len()];
     let mut waiting = BinaryHeap::new();
@@ -111,7 +116,8 @@ pub struct Sides<'a> {
 }
 
 impl Sides<'_> {
-    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds what is near fluid particles and no fluid, seen or not.
+    /// Whether fluid particle `i` sees particle `j` of the cloud; `walls` holds what is near fluid particles
+    /// and no fluid, seen or not.
     pub fn sees(&self, i: usize, j: usize, walls: &NeighborList) -> bool {
         if j < self.fluid {
             return i == j

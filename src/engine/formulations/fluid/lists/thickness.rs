@@ -8,7 +8,8 @@ use crate::plugin::{BodyPlan, SetupError};
 
 /// Part of the particles of a body that may sit where it is thinner than the support: sharp edges have some.
 const THIN_SHARE: f64 = 0.05;
-/// Share of the most neighbours within half of the support that a particle has in the middle of a ball which lies inside of the body.
+/// Share of the most neighbours within half of the support that a particle has in the middle of a ball which
+/// lies inside of the body.
 const FULL: f64 = 0.9;
 
 /// Where a body is thinner than the support.
@@ -63,7 +64,8 @@ impl Thickness {
         Ok(Self { positions, spacing, support, neighbors, values })
     }
 
-    /// Where the fluid sees through the body; none where that is but its edges, no deeper than that many supports.
+    /// Where the fluid sees through the body; none where that is but its edges, no deeper than that many
+    /// supports.
     pub fn thin(&self, edges: usize) -> Option<Thin> {
         let thin = || (0..self.positions.len()).filter(|&i| self.is_thin(i));
         let least = thin().min_by(|&a, &b| self.values[a].total_cmp(&self.values[b]))?;
@@ -72,7 +74,8 @@ impl Thickness {
         (is_most || self.has_fins(edges)).then_some(found)
     }
 
-    /// Whether a thin part ends farther from what is thick than that many supports: one is that of a fin or an edge below some 40 degrees, two that of a fin or an edge below 20.
+    /// Whether a thin part ends farther from what is thick than that many supports: one is that of a fin or
+    /// an edge below some 40 degrees, two that of a fin or an edge below 20.
     fn has_fins(&self, supports: usize) -> bool {
         let mut is_known: Vec<bool> = self.thin_parts().iter().map(|is_thin| !is_thin).collect();
         let mut front: Vec<usize> = (0..is_known.len()).filter(|&i| is_known[i]).collect();
@@ -92,7 +95,8 @@ impl Thickness {
         self.values[i] < self.support - 0.25 * self.spacing
     }
 
-    /// Whether each particle is in a thin part of the body: in no ball as wide as the support that lies inside of it. Where a fin meets a hull the thickness at a particle would not tell.
+    /// Whether each particle is in a thin part of the body: in no ball as wide as the support that lies
+    /// inside of it. Where a fin meets a hull the thickness at a particle would not tell.
     pub fn thin_parts(&self) -> Vec<bool> {
         let radius = 0.5 * self.support;
         let near = |i: usize, radius: f64| {

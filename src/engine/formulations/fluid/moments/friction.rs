@@ -1,10 +1,13 @@
 //! Where the friction on boundary particles acts.
 //!
-//! The force of a pair across a surface acts in the middle of the pair: there, half of the couple `x_ij x f_ij` is that of the fluid, whose spin has it
-//! in its balance. On the boundary it acts on a particle below the surface, so that its first moment `M_w = 1/2 sum_f f_wf (x) x_wf` is missing: the couple would turn the boundary too
-//! little, and a soft body would be sheared from below its surface. [`ClusterForces`] make it.
+//! The force of a pair across a surface acts in the middle of the pair: there, half of the couple `x_ij x
+//! f_ij` is that of the fluid, whose spin has it in its balance. On the boundary it acts on a particle below
+//! the surface, so that its first moment `M_w = 1/2 sum_f f_wf (x) x_wf` is missing: the couple would turn
+//! the boundary too little, and a soft body would be sheared from below its surface. [`ClusterForces`] make
+//! it.
 //!
-//! The velocity of the surface in the middle of a pair follows from the motion of the cluster: the work of these forces is that of friction there.
+//! The velocity of the surface in the middle of a pair follows from the motion of the cluster: the work of
+//! these forces is that of friction there.
 
 use std::ops::Range;
 
@@ -53,7 +56,8 @@ impl FrictionMoments {
         self.forces.add(cloud, group, near, (total, parts), FRICTION);
     }
 
-    /// Adds to `drag` how fast the friction on each particle grows with its velocity, kg/s: the fluid sees twice the velocity of a boundary, less its own.
+    /// Adds to `drag` how fast the friction on each particle grows with its velocity, kg/s: the fluid sees
+    /// twice the velocity of a boundary, less its own.
     pub fn add_drag(&self, drag: &mut [f64]) {
         drag.iter_mut().zip(&self.moments).for_each(|(drag, moment)| *drag += moment.drag);
     }

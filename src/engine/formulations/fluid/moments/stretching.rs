@@ -1,13 +1,16 @@
 //! How a fluid sees the surface of a deformable body move.
 //!
-//! The pressure on a body acts in the middle of each pair ([`pressure`](super::pressure)). There the body moves at `v_w - 1/2 L_w x_iw`, with the gradient L_w of the motion of the cluster, so that the rate of
+//! The pressure on a body acts in the middle of each pair ([`pressure`](super::pressure)). There the body
+//! moves at `v_w - 1/2 L_w x_iw`, with the gradient L_w of the motion of the cluster, so that the rate of
 //! compression of fluid particle i is less by
 //!
 //! `1/2 sum_w V_w w_iw x_iw . L_w x_iw`:
 //!
-//! what the pressure of the fluid does to the body is what the fluid loses, and the volume that a body gives up is that of its particles. A body that turns changes nothing.
+//! what the pressure of the fluid does to the body is what the fluid loses, and the volume that a body gives
+//! up is that of its particles. A body that turns changes nothing.
 //!
-//! The pressure of the body acts in the same places, so that the rate beside it, which the fluid follows too (`walls::wall_compression`), is less by as much: `1/2 sum_f V_f w_wf x_wf . L_w x_wf`.
+//! The pressure of the body acts in the same places, so that the rate beside it, which the fluid follows too
+//! (`walls::wall_compression`), is less by as much: `1/2 sum_f V_f w_wf x_wf . L_w x_wf`.
 
 use std::ops::Range;
 
@@ -19,7 +22,8 @@ use crate::linalg::Sym3;
 use crate::parallel::for_each_block;
 use crate::schedule::{Run, Step, StepError};
 
-/// Share of the support up to which neighbours are in the rows of all ranks: those of other ranks hold more than is near now.
+/// Share of the support up to which neighbours are in the rows of all ranks: those of other ranks hold more
+/// than is near now.
 const WITHIN: f64 = 1.0 - 1e-6;
 
 /// Changes the rates of compression beside deformable bodies.
@@ -34,7 +38,8 @@ pub struct SurfaceStretching {
 struct StretchBeside {
     /// Symmetric part of L_w, 1/s.
     stretch: Sym3,
-    /// `sum_f V_f w_wf x_wf . L_w x_wf` over the share of the kernel that fluids fill, where the pressure of the body acts, 1/s.
+    /// `sum_f V_f w_wf x_wf . L_w x_wf` over the share of the kernel that fluids fill, where the pressure of
+    /// the body acts, 1/s.
     rate: f64,
 }
 
@@ -66,7 +71,8 @@ impl Run for SurfaceStretching {
 }
 
 impl SurfaceStretching {
-    /// Finds the rates of all deformable bodies half a step before now; gives their rows in the cloud if any of them moves.
+    /// Finds the rates of all deformable bodies half a step before now; gives their rows in the cloud if any
+    /// of them moves.
     fn find_rates(&mut self, cloud: &FlowCloud, half: f64) -> Option<Range<usize>> {
         let soft = || cloud.groups.iter().filter_map(|group| Some((group, cloud.soft_neighborhood(group)?)));
         let among = soft().next()?.0.cloud.start..soft().next_back()?.0.cloud.end;
@@ -145,7 +151,8 @@ struct Stretched<'a> {
 }
 
 impl Stretched<'_> {
-    /// `sum_w V_w w_iw x_iw . L_w x_iw` at the middle of the step, 1/s, and what follows the rates beside the bodies.
+    /// `sum_w V_w w_iw x_iw . L_w x_iw` at the middle of the step, 1/s, and what follows the rates beside the
+    /// bodies.
     fn beside(&self, i: usize) -> [f64; 2] {
         let (cloud, mut sums) = (self.cloud, [0.0; 2]);
         for &w in part(cloud.near_row(i), &self.among) {

@@ -1,7 +1,8 @@
 //! First pass over pairs: who is within the support, and the rate of compression.
 //!
-//! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at the end of the step
-//! and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is near is decided at the end of the step.
+//! `D_i = sum_j V_j w_ij v_ij.x_ij` at the middle of the step, so that `drho_i/dt = -rho_i D_i`. With x at
+//! the end of the step and v at its middle, the pair vectors at the middle are `x_ij - dt/2 v_ij`. Who is
+//! near is decided at the end of the step.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lanes::{
@@ -31,7 +32,8 @@ impl Run for Compression {
 }
 
 impl FlowCloud {
-    /// Finds the neighbours within the support of every fluid particle, and its D, 1/s, in a step of that length, s.
+    /// Finds the neighbours within the support of every fluid particle, and its D, 1/s, in a step of that
+    /// length, s.
     fn compress(&mut self, dt: f64) {
         let (mut near, mut rates) = (std::mem::take(&mut self.near), std::mem::take(&mut self.compression));
         let mut is_close = std::mem::take(&mut self.is_close);

@@ -1,4 +1,5 @@
-//! The force of a flow on the particles of one body, by the pass that goes in blocks or by the one that does not.
+//! The force of a flow on the particles of one body, by the pass that goes in blocks or by the one that does
+//! not.
 
 use glam::DVec3;
 
@@ -12,7 +13,8 @@ use crate::schedule::{Step, StepError};
 use crate::world::Force;
 
 impl FlowCloud {
-    /// The blocks that the particles of a body are in: those of boundaries have none where thin bodies hide some of what is near.
+    /// The blocks that the particles of a body are in: those of boundaries have none where thin bodies hide
+    /// some of what is near.
     fn blocks_of(&self, group: &Group) -> Option<&Blocks> {
         self.blocks.as_deref().filter(|blocks| group.fluid().is_some() || !blocks.hides)
     }
@@ -29,7 +31,8 @@ impl FlowCloud {
         share_wide_rows(parts, PARTS);
     }
 
-    /// The same for the particles that this rank computes; the force `adds` to what is there, or takes its place.
+    /// The same for the particles that this rank computes; the force `adds` to what is there, or takes its
+    /// place.
     pub(in crate::formulations::fluid) fn own_force(
         &self,
         group: &Group,

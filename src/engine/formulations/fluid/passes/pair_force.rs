@@ -1,11 +1,13 @@
 //! Second pass over pairs: the force of pressure and viscosity.
 //!
-//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 4 mu_ij w_ij (v_ij - omega_ij x x_ij)`, with the harmonic mean mu_ij of the
-//! two viscosities and the mean omega_ij of the two spins (`rotation`), that of the fluid at a wall. Swapping i and j turns the sign of every
-//! product. Where friction goes without spins it is `2 mu_ij w_ij v_ij`.
+//! `f_i = -V_i sum_j V_j (p_i + p_j) w_ij x_ij + V_i sum_j V_j 4 mu_ij w_ij (v_ij - omega_ij x x_ij)`, with
+//! the harmonic mean mu_ij of the two viscosities and the mean omega_ij of the two spins (`rotation`), that
+//! of the fluid at a wall. Swapping i and j turns the sign of every product. Where friction goes without
+//! spins it is `2 mu_ij w_ij v_ij`.
 //!
-//! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a boundary is not
-//! that of a compressed fluid, so its work is booked by itself, together with that of its repulsion (`walls::repulsion`).
+//! The part of the pressure force that a boundary's own pressure makes is kept apart: the energy of a
+//! boundary is not that of a compressed fluid, so its work is booked by itself, together with that of its
+//! repulsion (`walls::repulsion`).
 
 use glam::DVec3;
 
@@ -25,7 +27,8 @@ pub struct PairForce<'a> {
     pub adds: bool,
 }
 
-/// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every particle.
+/// What the pass writes: the force, what pair terms make, and [`PARTS`] parts of the force for every
+/// particle.
 pub struct ForceRows<'a> {
     pub written: TermRows<'a>,
     pub parts: &'a mut [DVec3],
@@ -44,7 +47,8 @@ impl Split for ForceRows<'_> {
 }
 
 impl PairForce<'_> {
-    /// Writes the forces on the particles of the group that this rank computes and [`PARTS`] parts of each, N.
+    /// Writes the forces on the particles of the group that this rank computes and [`PARTS`] parts of each,
+    /// N.
     pub fn run(&self, total: &mut [Force], parts: &mut [DVec3]) {
         let rows = ForceRows { written: TermRows::without_terms(total), parts };
         for_each_own_block(rows, &mut Vec::new(), &|first, rows| {
@@ -52,7 +56,8 @@ impl PairForce<'_> {
         });
     }
 
-    /// [`PairForce::run`] with the pair terms of the body, which get the geometry of each row as the pass has computed it.
+    /// [`PairForce::run`] with the pair terms of the body, which get the geometry of each row as the pass has
+    /// computed it.
     pub fn run_with(
         &self,
         terms: &mut PhaseTerms,
@@ -161,7 +166,8 @@ impl<'a> RowConstants<'a> {
         }
     }
 
-    /// The sums over the neighbours of particle `i`, and whether the batch of the terms has its pairs within its body.
+    /// The sums over the neighbours of particle `i`, and whether the batch of the terms has its pairs within
+    /// its body.
     #[inline(always)]
     fn sums<A: FourLanes, const D: usize, const P: bool>(
         &self,

@@ -196,8 +196,9 @@ impl<const D: usize> PairsOfRow<'_, D> {
 
     /// The same between fluids, and puts the geometry of the pairs into `room`.
     ///
-    /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor looks ahead two or three fours.
-    /// Taken apart, one gathers and one takes roots, each with short chains of instructions that wait for each other.
+    /// Two loops: in one, a neighbour takes some ninety cycles from its index to its sum, and a processor
+    /// looks ahead two or three fours. Taken apart, one gathers and one takes roots, each with short chains
+    /// of instructions that wait for each other.
     #[inline(always)]
     pub fn add_and_keep<A: FourLanes, const P: bool>(
         &self,

@@ -5,12 +5,14 @@ use glam::{DMat3, DVec3};
 use super::spin::rotation;
 use crate::linalg::Sym3;
 
-/// Share of the trace of the moment matrix that is added to its diagonal: points that nearly lie in a plane or on a line show nothing across it but how they turn. What that leaves of other
-/// motions is taken up in a second step, so that its square is left.
+/// Share of the trace of the moment matrix that is added to its diagonal: points that nearly lie in a plane
+/// or on a line show nothing across it but how they turn. What that leaves of other motions is taken up in a
+/// second step, so that its square is left.
 const FLAT: f64 = 0.01;
 
-/// The matrix B with `B M = T`, for the moment matrix `M = sum m x (x) x` of some points and `T = sum m v (x) x`: the gradient of their motion. A motion that turns is found as it is, and what
-/// turns in T is in `B M` to round-off, however the points lie.
+/// The matrix B with `B M = T`, for the moment matrix `M = sum m x (x) x` of some points and `T = sum m v (x)
+/// x`: the gradient of their motion. A motion that turns is found as it is, and what turns in T is in `B M`
+/// to round-off, however the points lie.
 #[inline(always)]
 pub fn affine(moment: &Sym3, first: DMat3, plane: bool) -> DMat3 {
     let trace = moment.trace();

@@ -17,7 +17,8 @@ impl FlowCloud {
         self.neighborhoods.iter().find(|near| near.is_soft && near.body == group.body)
     }
 
-    /// Calls `then` with `out` of every particle of a boundary and the velocity gradient of its body there, 1/s, where anything moves.
+    /// Calls `then` with `out` of every particle of a boundary and the velocity gradient of its body there,
+    /// 1/s, where anything moves.
     pub(in crate::formulations::fluid) fn for_each_gradient<T: Send>(
         &self,
         group: &Group,

@@ -4,14 +4,18 @@
 //!
 //! `J_i w_i = sum_j c_ij x_ij x v_ij`, `J_i = sum_j c_ij (r_ij^2 I - x_ij (x) x_ij)`, `c_ij = mu_ij V_j w_ij`
 //!
-//! over fluids and the walls to which they stick. The friction of a pair is `4 c_ij (v_ij - omega_ij x x_ij)` with the mean omega_ij of
+//! over fluids and the walls to which they stick. The friction of a pair is `4 c_ij (v_ij - omega_ij x x_ij)`
+//! with the mean omega_ij of
 //!
 //! `J_i (omega_i - w_i) = 1/2 sum_j c_ij (r_ij^2 I - x_ij (x) x_ij) (w_i - w_j)` over fluids.
 //!
-//! Between fluids it is the derivative by the velocities of the power `2 sum_ij V_i c_ij |v_ij - (w_i + w_j)/2 x x_ij|^2` of all pairs: it takes energy out whatever the
-//! velocities are, and keeps momentum and angular momentum to round-off, at free surfaces as well. Inside it is div(2 mu D) = mu (lap v + grad div v), and at a free surface 2 mu D n is
-//! zero by nature. The second term sharpens what the fit has smoothed: without it waves of number k decay by (k h)^2 / 7 too fast, with it the error on a lattice is of fourth order.
-//! With omega_i = 0 and half of the factor it is the friction of Morris, Fox, Zhu (J. Comput. Phys. 136 (1997) 214-226), whose stress mu grad v feels a rigid rotation.
+//! Between fluids it is the derivative by the velocities of the power `2 sum_ij V_i c_ij |v_ij - (w_i +
+//! w_j)/2 x x_ij|^2` of all pairs: it takes energy out whatever the velocities are, and keeps momentum and
+//! angular momentum to round-off, at free surfaces as well. Inside it is div(2 mu D) = mu (lap v + grad div
+//! v), and at a free surface 2 mu D n is zero by nature. The second term sharpens what the fit has smoothed:
+//! without it waves of number k decay by (k h)^2 / 7 too fast, with it the error on a lattice is of fourth
+//! order. With omega_i = 0 and half of the factor it is the friction of Morris, Fox, Zhu (J. Comput. Phys.
+//! 136 (1997) 214-226), whose stress mu grad v feels a rigid rotation.
 
 use std::ops::Range;
 
@@ -138,8 +142,9 @@ impl RowPass<1, 1> for Sharpened<'_> {
     }
 }
 
-/// The rotation omega with `(tr M - M) omega = L`, for the moment matrix `M = sum m x (x) x` and `L = sum m x x v` of some particles: that of their
-/// best rigid motion. Around the line on which all of them lie there is none.
+/// The rotation omega with `(tr M - M) omega = L`, for the moment matrix `M = sum m x (x) x` and `L = sum m x
+/// x v` of some particles: that of their best rigid motion. Around the line on which all of them lie there is
+/// none.
 #[inline(always)]
 pub fn rotation(moment: &Sym3, angular: DVec3, plane: bool) -> DVec3 {
     let trace = moment.trace();

@@ -24,7 +24,8 @@ pub fn undamped_density(terms: Option<&PhaseTerms>, groups: &[Group], sim: &mut 
     }
 }
 
-/// Warns of walls along which a viscous fluid slides though nobody has said so, and of moving surfaces that no fluid sticks to.
+/// Warns of walls along which a viscous fluid slides though nobody has said so, and of moving surfaces that
+/// no fluid sticks to.
 pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>) {
     let name = |wall: &WallBody| sim.body(wall.id).name.clone();
     let unstated = walls.iter().filter(|wall| viscous && wall.parameters.slip.is_none()).map(|wall| {
@@ -47,10 +48,12 @@ pub fn unfelt_walls(walls: &[WallBody], viscous: bool, sim: &mut SimBuilder<'_>)
     warnings.into_iter().for_each(|warning| sim.warn(warning));
 }
 
-/// Smoothing length over spacing below which waves on an interface of two liquids are slow to grow and quick to return, in two dimensions: that of a support of 3.3 spacings, less round-off.
+/// Smoothing length over spacing below which waves on an interface of two liquids are slow to grow and quick
+/// to return, in two dimensions: that of a support of 3.3 spacings, less round-off.
 const OF_TWO_LIQUIDS: f64 = 1.649;
 
-/// Warns of two liquids under gravity in the plane whose support makes rows of particles stiff: the pressure gives them a shear modulus, and only the difference of two weights acts against it.
+/// Warns of two liquids under gravity in the plane whose support makes rows of particles stiff: the pressure
+/// gives them a shear modulus, and only the difference of two weights acts against it.
 pub fn stiff_interface(cloud: &FlowCloud, gravity: DVec3, sim: &mut SimBuilder<'_>) {
     let mut fluids = cloud.groups.iter().filter_map(|group| Some((group, group.fluid()?)));
     let Some((first, one)) = fluids.next() else { return };

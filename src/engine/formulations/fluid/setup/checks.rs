@@ -89,7 +89,8 @@ pub fn is_fine(body: &BodyPlan, spacing: f64) -> Result<(), SetupError> {
     Err(fault(body, "spacing", message, "give the body the spacing of the fluid, or a smaller one"))
 }
 
-/// An error where a wall is so coarse or so thin that the fluid would see through it; a warning where it does so at fins.
+/// An error where a wall is so coarse or so thin that the fluid would see through it; a warning where it does
+/// so at fins.
 pub fn wall_is_thick(
     body: &BodyPlan,
     spacing: f64,

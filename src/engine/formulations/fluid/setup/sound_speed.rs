@@ -6,11 +6,13 @@ use crate::materials::Law;
 use crate::plugin::{BodyKind, BodyPlan};
 use crate::scene::{Problem, Scene};
 
-/// Speed of sound over the largest speed that the flow is expected to reach: density then changes by about 1 %.
+/// Speed of sound over the largest speed that the flow is expected to reach: density then changes by about 1
+/// %.
 const RATIO: f64 = 10.0;
 
-/// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start, against rest or against the one that
-/// bounds the flow, or, where nothing does, against the centre of mass of all, and of a fall through the height of all fluid bodies.
+/// Gives the fluids without a speed of sound ten times the largest of the speeds of all bodies at the start,
+/// against rest or against the one that bounds the flow, or, where nothing does, against the centre of mass
+/// of all, and of a fall through the height of all fluid bodies.
 ///
 /// # Errors
 /// Nothing moves, so that there is nothing to estimate from.

@@ -55,7 +55,8 @@ fn start_fluid(group: &Group, start: &StartPressure, world: &World) -> Result<()
         checks::sound_is_fast(group, x, p, rho, &world.body(group.body).name)?;
         density[row] = Density(rho);
         pressure[row] = Pressure(p);
-        // The particles fill the shape as they are, compressed: so the sums over volumes are those of the lattice.
+        // The particles fill the shape as they are, compressed: so the sums over volumes are those of the
+        // lattice.
         let m = rho * volume[row].0;
         mobility[row].0 *= mass[row].0 / m;
         mass[row] = Mass(m);

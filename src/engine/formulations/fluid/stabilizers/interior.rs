@@ -2,20 +2,23 @@
 
 use crate::formulations::fluid::cloud::FlowCloud;
 
-/// Smallest eigenvalue above which a particle can be inside the fluid (Marrone et al., J. Comput. Phys. 229 (2010) 3652-3663).
+/// Smallest eigenvalue above which a particle can be inside the fluid (Marrone et al., J. Comput. Phys. 229
+/// (2010) 3652-3663).
 const INSIDE: f64 = 0.75;
-/// Smallest eigenvalue below which a particle is at a free surface or beside a hole: its neighbours are not inside.
+/// Smallest eigenvalue below which a particle is at a free surface or beside a hole: its neighbours are not
+/// inside.
 const OUTERMOST: f64 = 0.65;
 
-/// The particles inside of fluids: the smallest eigenvalue of `sum_j V_j w_ij x_ij (x) x_ij` is at least 0.75 and that of every neighbour 0.65.
+/// The particles inside of fluids: the smallest eigenvalue of `sum_j V_j w_ij x_ij (x) x_ij` is at least 0.75
+/// and that of every neighbour 0.65.
 #[derive(Debug, Default)]
 pub struct Interior {
     inside: Vec<bool>,
 }
 
 impl Interior {
-    /// Finds them by the smallest eigenvalue of each row of the fluids. Few particles are at a surface, so that it costs less to go out from them than to look at the
-    /// neighbours of all.
+    /// Finds them by the smallest eigenvalue of each row of the fluids. Few particles are at a surface, so
+    /// that it costs less to go out from them than to look at the neighbours of all.
     pub fn find(&mut self, cloud: &FlowCloud, lambda: impl Fn(usize) -> f64) {
         self.inside.clear();
         self.inside.extend((0..cloud.fluid).map(|i| lambda(i) >= INSIDE));

@@ -1,4 +1,5 @@
-//! What plugins that stabilize a flow do to it: they act away from free surfaces, move particles, and pay energy back.
+//! What plugins that stabilize a flow do to it: they act away from free surfaces, move particles, and pay
+//! energy back.
 
 mod displace;
 

@@ -94,7 +94,8 @@ fn a_fluid_sticks_to_walls_or_slides_along_them() {
     assert!(error < 2e-5, "walls without friction took {error} of the speed");
 }
 
-/// A viscous fluid that slides along a wall because nobody has said what it does is warned of, and so is a belt that it does not feel.
+/// A viscous fluid that slides along a wall because nobody has said what it does is warned of, and so is a
+/// belt that it does not feel.
 #[test]
 fn walls_whose_slip_is_not_stated_are_warned_of() {
     let told = |wall: &str, viscosity: f64| {

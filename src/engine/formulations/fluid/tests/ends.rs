@@ -8,7 +8,8 @@ use crate::world::{Density, Force, Velocity};
 
 const SPACING: f64 = 0.02;
 
-/// A block of water without friction or weight that slides on a floor at 1 m/s, towards the end of it, under that pressure.
+/// A block of water without friction or weight that slides on a floor at 1 m/s, towards the end of it, under
+/// that pressure.
 fn sliding(dimension: usize, pressure: f64) -> String {
     let (name, floor, block) = if dimension == 3 {
         (
@@ -43,7 +44,8 @@ fn changes(sim: &mut Simulation, end: f64) -> (f64, f64) {
     (of_density, of_velocity)
 }
 
-/// All of it moves alike, so that nothing expands: the part of the kernel that the floor has filled is empty afterwards. As it was seen to expand, the density fell by 2 % in the plane.
+/// All of it moves alike, so that nothing expands: the part of the kernel that the floor has filled is empty
+/// afterwards. As it was seen to expand, the density fell by 2 % in the plane.
 #[test]
 fn water_that_slides_past_the_end_of_a_floor_hardly_expands() {
     for (dimension, end) in [(2, 0.16), (3, 0.12)] {

@@ -107,7 +107,8 @@ fn inertia(x: DVec3) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(x.dot(x))) - DMat3::from_cols(x * x.x, x * x.y, x * x.z)
 }
 
-/// The spin of a particle among all others: the matrix of inertia is inverted as it is, and returned beside the spin.
+/// The spin of a particle among all others: the matrix of inertia is inverted as it is, and returned beside
+/// the spin.
 fn spin<'a>(
     a: &Particle,
     all: impl Iterator<Item = &'a Particle>,

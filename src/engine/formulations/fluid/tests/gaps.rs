@@ -1,4 +1,5 @@
-//! Bodies so near to walls that no particle of the fluid fits between: they feel the pressure that the fluid has there.
+//! Bodies so near to walls that no particle of the fluid fits between: they feel the pressure that the fluid
+//! has there.
 
 use glam::DVec3;
 
@@ -149,7 +150,8 @@ fn a_cube_on_the_floor_has_its_buoyancy_in_space() {
     assert!((lift - expected * DVec3::Y).length() < 0.1 * expected, "{lift} and {expected}");
 }
 
-/// What strikes a body on the floor does not lift it by the pressure below it: that falls as the gap opens, and what it gives nevertheless is told of as the work of a gap.
+/// What strikes a body on the floor does not lift it by the pressure below it: that falls as the gap opens,
+/// and what it gives nevertheless is told of as the work of a gap.
 #[test]
 fn a_gap_that_opens_loses_its_pressure() {
     let mut sim = simulation(
@@ -165,7 +167,8 @@ fn a_gap_that_opens_loses_its_pressure() {
     );
     sim.run(|_| true).expect("a run");
     let given = -sim.ledger().total_named("wall_pressure");
-    // The pressure at the foot of the column at rest, on the width of the block, over the spacing: 7.8 J. Without the fall it was 13.
+    // The pressure at the foot of the column at rest, on the width of the block, over the spacing: 7.8 J.
+    // Without the fall it was 13.
     let at_rest = 1000.0 * GRAVITY * 0.4 * 0.1 * 0.02;
     assert!(given < 1.3 * at_rest, "{given} J of {at_rest} J");
     let told = |part: &str| sim.warnings().iter().any(|text| text.contains(part));

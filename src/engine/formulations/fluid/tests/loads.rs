@@ -124,7 +124,8 @@ fn a_wall_has_its_velocity_before_the_first_force() {
                 ],
                 conditions: [InitialVelocity(on: Select(body: "oil"), value: (1.0, 0.0)), {motion}], time: (end: 1.0))"#
         ));
-        // Faster than its sound, but not against the tank; the friction of a wall at rest would be mu v = 10 N on each particle.
+        // Faster than its sound, but not against the tank; the friction of a wall at rest would be mu v = 10
+        // N on each particle.
         sim.start().expect("a start");
         let viscous = column::<Force>(&sim, 0).iter().map(|force| force.0.length()).fold(0.0, f64::max);
         assert!(viscous < 1e-4 * 10.0, "{motion}: {viscous}");

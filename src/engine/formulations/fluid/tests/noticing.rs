@@ -106,7 +106,8 @@ fn a_flow_without_bounds_is_judged_in_its_own_frame() {
     assert_eq!(after(30.0), after(0.0));
 }
 
-/// Friction makes pressures that have nothing to do with the Mach number: between two discs that are drawn apart, and here by a load that varies along a closed box.
+/// Friction makes pressures that have nothing to do with the Mach number: between two discs that are drawn
+/// apart, and here by a load that varies along a closed box.
 #[test]
 fn a_slow_flow_that_is_compressed_is_warned_of() {
     let run = |sound: f64| {
@@ -315,7 +316,8 @@ fn a_fluid_that_starts_across_a_gap_from_its_floor_is_warned_of() {
         sim.run(|sim| sim.clock().step < 2).expect("a run");
         warning(&sim, "`water` starts apart from `tank`").map(str::to_owned)
     };
-    // Spacings of 0.02 m: the lowest row of 30 stands across .65 and 1.3 of them, less those in the corners that are nearer to the sides.
+    // Spacings of 0.02 m: the lowest row of 30 stands across .65 and 1.3 of them, less those in the corners
+    // that are nearer to the sides.
     for (bottom, found) in [
         (0.013, "28 of its particles face it across 0.65 spacings"),
         (0.026, "26 of its particles face it across 1.30 spacings"),
@@ -375,7 +377,8 @@ fn a_fluid_that_falls_through_a_half_space_is_warned_of() {
     };
     let text = pool("HalfSpace(point: (0, 0), normal: (0, 1))").expect("a warning");
     assert!(text.contains("`water` falls into `floor`"), "{text}");
-    // Free fall by a whole spacing, from half of it above to half of it below, takes 64 ms; the weight of the water above presses the corners out a little before.
+    // Free fall by a whole spacing, from half of it above to half of it below, takes 64 ms; the weight of the
+    // water above presses the corners out a little before.
     let time = text.split(" and ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
     let time: f64 = time.parse().expect("a time");
     assert!((50.0..70.0).contains(&time), "{text}");

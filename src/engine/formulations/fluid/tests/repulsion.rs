@@ -1,4 +1,5 @@
-//! Lone particles and boundaries: nothing passes, energy and momentum are kept, and nothing is pushed at rest.
+//! Lone particles and boundaries: nothing passes, energy and momentum are kept, and nothing is pushed at
+//! rest.
 
 use glam::DVec3;
 
@@ -11,7 +12,8 @@ pub const SPACING: f64 = 0.02;
 const SOUND: f64 = 10.0;
 const DENSITY: f64 = 1000.0;
 
-/// Lone particles above a body whose surface is at y = 0, at a height in spacings, from right above a particle of it to right above a gap; their density is over that at rest.
+/// Lone particles above a body whose surface is at y = 0, at a height in spacings, from right above a
+/// particle of it to right above a gap; their density is over that at rest.
 pub fn rain(dimension: usize, height: f64, velocity: DVec3, density: f64, below: &str) -> Simulation {
     rain_in("Mixed", (dimension, height, velocity, density), below)
 }
@@ -197,7 +199,8 @@ fn particles_between_a_turned_body_and_its_periodic_image_are_not_pushed() {
     assert!(!sim.warnings().iter().any(|text| text.contains(" is inside of ")), "{:?}", sim.warnings());
 }
 
-/// The walls of the channel are one shape whose hole ends where the domain repeats itself: water passes as if there were no end.
+/// The walls of the channel are one shape whose hole ends where the domain repeats itself: water passes as if
+/// there were no end.
 #[test]
 fn a_channel_that_is_cut_out_of_a_block_is_open_where_the_domain_repeats_itself() {
     let mut sim = simulation(
@@ -214,7 +217,8 @@ fn a_channel_that_is_cut_out_of_a_block_is_open_where_the_domain_repeats_itself(
     }
 }
 
-/// Water runs out of a slit in the floor of its tank as fast however the walls are written, and nothing at the slit gives it energy.
+/// Water runs out of a slit in the floor of its tank as fast however the walls are written, and nothing at
+/// the slit gives it energy.
 #[test]
 fn water_leaves_a_tank_through_a_slit() {
     let (outer, tank, slit) = (

@@ -74,7 +74,8 @@ fn water_below_air_stays_at_rest() {
     sim.run(|_| true).expect("a run");
     for body in 0..2 {
         let fastest = column::<Velocity>(&sim, body).iter().map(|v| v.0.length()).fold(0.0, f64::max);
-        // A hundredth of the speed of sound: what the light fluid exceeded within 0.6 ms, at the step of each fluid for itself.
+        // A hundredth of the speed of sound: what the light fluid exceeded within 0.6 ms, at the step of each
+        // fluid for itself.
         assert!(fastest < 0.3, "{body}: {fastest}");
     }
 }

@@ -131,7 +131,8 @@ fn oil_lies_on_water() {
     }
 }
 
-/// An open tank with walls and a floor 0.15 m thick, 0.3 m wide and 0.45 m deep inside, as text of an STL file.
+/// An open tank with walls and a floor 0.15 m thick, 0.3 m wide and 0.45 m deep inside, as text of an STL
+/// file.
 fn tank_mesh() -> String {
     let square = |low: f64, high: f64, y: f64| {
         [(low, low), (high, low), (high, high), (low, high)].map(|(x, z)| DVec3::new(x, y, z))

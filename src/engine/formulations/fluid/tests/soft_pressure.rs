@@ -29,7 +29,8 @@ fn immersed(
     )
 }
 
-/// `sum f (x) x` of the force of the water on the body over the volume of its particles, Pa: its mean stress in equilibrium.
+/// `sum f (x) x` of the force of the water on the body over the volume of its particles, Pa: its mean stress
+/// in equilibrium.
 fn virial(sim: &Simulation) -> DMat3 {
     let forces = sim.resources().get::<FlowCloud>().forces_on(BodyId(1)).expect("a flow");
     let places = column::<Position>(sim, 1);

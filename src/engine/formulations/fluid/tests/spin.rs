@@ -45,7 +45,8 @@ fn drop_with_core(core: &str, start: &str) -> Simulation {
     ))
 }
 
-/// Angular momentum and rate of a core that is a rigid disc: with the inertia of the disc, not of its particles as points.
+/// Angular momentum and rate of a core that is a rigid disc: with the inertia of the disc, not of its
+/// particles as points.
 fn of_disc(sim: &Simulation) -> f64 {
     let (x, m) = (column::<Position>(sim, 1), column::<Mass>(sim, 1));
     let points: f64 = (0..x.len()).map(|k| m[k].0 * x[k].0.length_squared()).sum();
@@ -93,8 +94,8 @@ fn oil_that_turns_with_its_walls_feels_no_friction() {
             time: (end: 1.0))"#
     ));
     sim.run(|sim| sim.clock().step < 10).expect("a run");
-    // Friction that feels the rotation makes 0.6 of mu (2 omega)^2 in all of the oil; there is some of the first half step, in which the walls are not
-    // yet in motion, and of the first acoustic wave.
+    // Friction that feels the rotation makes 0.6 of mu (2 omega)^2 in all of the oil; there is some of the
+    // first half step, in which the walls are not yet in motion, and of the first acoustic wave.
     let sheared = 50.0 * 4.0 * 4.0 * std::f64::consts::PI * 0.75 * sim.clock().time;
     let heat = sim.ledger().total_named("viscosity");
     assert!(heat.abs() < 0.1 * sheared, "{heat} of {sheared} J");

@@ -2,8 +2,9 @@
 
 use super::simulation;
 
-/// Rubber, half a centimetre thick, under water, eight of its particles and four of the water's over the thickness: the modes of the rubber that turn half
-/// a phase in a step of the water rose tenfold in 0.01 s before they were damped.
+/// Rubber, half a centimetre thick, under water, eight of its particles and four of the water's over the
+/// thickness: the modes of the rubber that turn half a phase in a step of the water rose tenfold in 0.01 s
+/// before they were damped.
 #[test]
 fn a_strip_under_water_does_not_ring() {
     let mut sim = simulation(
@@ -30,7 +31,8 @@ fn a_strip_under_water_does_not_ring() {
     assert!(kinetic < 1e-2 * ledger.total_named("compression"), "{kinetic} J of motion");
 }
 
-/// A block that conditions press together beside a fluid: its stable step falls with its stretch, known from the conditions, long step by long step.
+/// A block that conditions press together beside a fluid: its stable step falls with its stretch, known from
+/// the conditions, long step by long step.
 #[test]
 fn the_stretches_of_a_body_in_short_steps_are_refreshed_by_its_own_clock() {
     let mut sim = simulation(
@@ -59,8 +61,8 @@ fn the_stretches_of_a_body_in_short_steps_are_refreshed_by_its_own_clock() {
     assert!(short > 5 * long && sim.clock().time > 0.01, "{short} sub-steps in {long}");
 }
 
-/// The same under oil three thousand times as viscous. Friction that was frozen in the steps of the oil pushed on what swung there and back within three of
-/// them: it gave energy, without end.
+/// The same under oil three thousand times as viscous. Friction that was frozen in the steps of the oil
+/// pushed on what swung there and back within three of them: it gave energy, without end.
 #[test]
 fn friction_with_a_strip_in_short_steps_takes_energy() {
     let mut sim = simulation(

@@ -10,8 +10,8 @@ use crate::parallel::{Arithmetic, Vector};
 use crate::simulation::Simulation;
 use crate::world::{Force, Mass, Position, Velocity};
 
-/// Two tanks side by side with a sheet between them, `layers` particles of 0.01 m thick; water at rest in the left one and, with
-/// its own pressure, in the right one.
+/// Two tanks side by side with a sheet between them, `layers` particles of 0.01 m thick; water at rest in the
+/// left one and, with its own pressure, in the right one.
 fn tanks(precision: &str, layers: usize, right: f64, rest: &str) -> Simulation {
     let edge = 0.2 + 0.01 * layers as f64;
     simulation(&format!(

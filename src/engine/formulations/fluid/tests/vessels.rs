@@ -11,7 +11,8 @@ use crate::world::{BodyId, Density, Mass, Position, Pressure};
 const SOUND: f64 = 10.0;
 const DENSITY: f64 = 1000.0;
 
-/// A liquid eight particles across, a piston on the left that goes to 0.02 in 1.5 s, and another wall on the right.
+/// A liquid eight particles across, a piston on the left that goes to 0.02 in 1.5 s, and another wall on the
+/// right.
 fn vessel(more: &str, bodies: &str, right: &str) -> Simulation {
     vessel_with("slip: Free, suction: true", more, bodies, right)
 }
@@ -59,7 +60,8 @@ fn a_liquid_that_a_piston_presses_has_the_pressure_of_its_equation_of_state() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// Between walls along which it slides it had .78, and these took a seventh of the work; as long as the particles of these stood still behind the edges of the piston, where the liquid leans on them, it had .93.
+/// Between walls along which it slides it had .78, and these took a seventh of the work; as long as the
+/// particles of these stood still behind the edges of the piston, where the liquid leans on them, it had .93.
 #[test]
 fn a_liquid_between_walls_loses_nothing_to_them() {
     let sides = r#"
@@ -71,7 +73,8 @@ fn a_liquid_between_walls_loses_nothing_to_them() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// In a cube, whose piston has edges on four sides, it had .87; with the default support the sum of w x^2 over a cubic lattice is 2 % too small.
+/// In a cube, whose piston has edges on four sides, it had .87; with the default support the sum of w x^2
+/// over a cubic lattice is 2 % too small.
 #[test]
 fn a_piston_in_a_cube_finds_the_pressure_too() {
     let mut sim = simulation(
@@ -91,7 +94,8 @@ fn a_piston_in_a_cube_finds_the_pressure_too() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// A piston whose face is inclined, between the walls along which it slides: at its ends it meets them at 60 and 120 degrees.
+/// A piston whose face is inclined, between the walls along which it slides: at its ends it meets them at 60
+/// and 120 degrees.
 #[test]
 fn an_inclined_piston_finds_the_pressure_too() {
     let slant = |y: f64| y / 3f64.sqrt();
@@ -123,7 +127,8 @@ fn an_inclined_piston_finds_the_pressure_too() {
     assert!(walls.abs() < 1e-3, "{walls}");
 }
 
-/// The work of a piston is that of the pressure on the volume that the fluid loses, and this is what the piston sweeps.
+/// The work of a piston is that of the pressure on the volume that the fluid loses, and this is what the
+/// piston sweeps.
 #[test]
 fn the_volume_that_a_fluid_loses_is_what_its_walls_sweep() {
     let sides = r#"
@@ -152,7 +157,8 @@ fn the_volume_that_a_fluid_loses_is_what_its_walls_sweep() {
     assert!((swept / 0.02 - 1.0).abs() < 0.01, "{swept}");
 }
 
-/// Gates beside a floor: the fluid leans on the particles behind their lower edge, and what is done to these is the force on the gate.
+/// Gates beside a floor: the fluid leans on the particles behind their lower edge, and what is done to these
+/// is the force on the gate.
 #[test]
 fn a_gate_on_a_floor_bears_the_pressure_down_to_its_edge() {
     let mut sim = simulation(
@@ -173,7 +179,8 @@ fn a_gate_on_a_floor_bears_the_pressure_down_to_its_edge() {
     assert!((force / exact - 1.0).abs() < 0.01, "{}", force / exact);
 }
 
-/// The amplitude of a wave in a closed tube, four times as long as wide, that stands for three quarters of its period: it is zero. Sound was 10 % too slow, so that it was -0.47.
+/// The amplitude of a wave in a closed tube, four times as long as wide, that stands for three quarters of
+/// its period: it is zero. Sound was 10 % too slow, so that it was -0.47.
 #[test]
 fn sound_between_walls_without_friction_has_its_speed() {
     let tube = r#"(dimension: Two, materials: {"liquid": Fluid(density: 1000.0, sound_speed: 10.0, eos: Linear)},

@@ -1,5 +1,5 @@
-//! Lone particles above a floor with a pit of removed particles: they fall to its bottom, and bounce where the floor is whole, on
-//! the cushion of pressure that their approach makes.
+//! Lone particles above a floor with a pit of removed particles: they fall to its bottom, and bounce where
+//! the floor is whole, on the cushion of pressure that their approach makes.
 
 use glam::DVec3;
 

@@ -1,13 +1,16 @@
 //! Repulsion of fluid particles that come nearer to the surface of a boundary than a flow puts them.
 //!
-//! A lone particle at a wall has hardly a pressure, and the pressure of the wall, which is that of the fluid beside it, vanishes with it: nothing would stop it, and one
-//! that was torn out of a fluid, with a density below that at rest, is even drawn in. So the distance d of a fluid particle from the shape of the nearest boundary has the
-//! energy
+//! A lone particle at a wall has hardly a pressure, and the pressure of the wall, which is that of the fluid
+//! beside it, vanishes with it: nothing would stop it, and one that was torn out of a fluid, with a density
+//! below that at rest, is even drawn in. So the distance d of a fluid particle from the shape of the nearest
+//! boundary has the energy
 //!
-//! `k/2 (l_i - d)^2` where `d < l_i`, with `l_i = 0.15 dx - s_i`, `k = m (3 c_0 / h)^2`, and one over m the sum of one over each mass; that of a wall is endless.
+//! `k/2 (l_i - d)^2` where `d < l_i`, with `l_i = 0.15 dx - s_i`, `k = m (3 c_0 / h)^2`, and one over m the
+//! sum of one over each mass; that of a wall is endless.
 //!
-//! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range, where lattices do not fit shapes, lack s_i of it, which falls as soon
-//! as they have been farther away and never rises, so that it changes no energy.
+//! Particles of a fluid at rest stand half a spacing before a wall. Those that start nearer than the range,
+//! where lattices do not fit shapes, lack s_i of it, which falls as soon as they have been farther away and
+//! never rises, so that it changes no energy.
 
 use glam::DVec3;
 
@@ -42,8 +45,8 @@ pub struct Repulsion {
 }
 
 impl Repulsion {
-    /// That of the boundaries of a flow of smoothing length `h`, m, whose shapes are known; and the distance within which a fluid particle that is
-    /// repelled has a boundary particle, m.
+    /// That of the boundaries of a flow of smoothing length `h`, m, whose shapes are known; and the distance
+    /// within which a fluid particle that is repelled has a boundary particle, m.
     pub fn new(groups: &[Group], h: f64, sim: &SimBuilder<'_>) -> (Self, f64) {
         let fluid = sim.body(groups[0].body);
         let dimension = sim.dimension().count() as i32;
@@ -69,7 +72,8 @@ impl Repulsion {
         (Self { surfaces, range, close: Vec::new(), is_short: true }, widest)
     }
 
-    /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of those within its range.
+    /// Writes down how near particles are to the nearest boundary, and the direction of the repulsion of
+    /// those within its range.
     fn measure(&mut self, cloud: &FlowCloud, out: &mut [Repelled], step: &Step<'_>) -> Result<(), StepError> {
         let (range, close) = (self.range, &self.close[..]);
         for surface in &mut self.surfaces {
@@ -154,7 +158,8 @@ impl Run for Repulsion {
 }
 
 impl FlowCloud {
-    /// Adds the repulsion to the forces on the particles of a group, and to the part of them that is due to boundaries.
+    /// Adds the repulsion to the forces on the particles of a group, and to the part of them that is due to
+    /// boundaries.
     pub(in crate::formulations::fluid) fn repel(
         &self,
         group: &Group,

@@ -1,10 +1,12 @@
 //! Distance of fluid particles from the shape of a body that has moved and bent.
 //!
-//! A particle is taken back to where it would be in the body as the scene has it, and is compared with the shape there: by the motion of the whole body, where that is one
-//! affine map, else by the affine map that fits the particles of the body around it.
+//! A particle is taken back to where it would be in the body as the scene has it, and is compared with the
+//! shape there: by the motion of the whole body, where that is one affine map, else by the affine map that
+//! fits the particles of the body around it.
 //!
-//! What is left of a body that has lost particles has another shape. Its particles are spheres, and the distance is that from the nearest. They overlap, so that nothing passes between
-//! two of them in the plane or four in space, and end before a fluid at rest begins.
+//! What is left of a body that has lost particles has another shape. Its particles are spheres, and the
+//! distance is that from the nearest. They overlap, so that nothing passes between two of them in the plane
+//! or four in space, and end before a fluid at rest begins.
 
 use glam::{DMat3, DVec3};
 
@@ -17,8 +19,10 @@ use crate::plugin::SimBuilder;
 use crate::shapes::Region;
 use crate::world::ReferencePosition;
 
-/// Square of the distance of a point from the centre of the particles near it, in standard deviations of these, up to which a map is fitted to them: before a flat face it is some 2, before
-/// the corner of a square 9. Farther outside, as beside the few particles at the end of a fin that are on one side of it, shares and map would be extrapolations by many times their size.
+/// Square of the distance of a point from the centre of the particles near it, in standard deviations of
+/// these, up to which a map is fitted to them: before a flat face it is some 2, before the corner of a
+/// square 9. Farther outside, as beside the few particles at the end of a fin that are on one side of it,
+/// shares and map would be extrapolations by many times their size.
 const OUTSIDE: f64 = 16.0;
 
 /// Radii of the spheres of a worn body in the plane and in space, over its spacing.
@@ -53,7 +57,8 @@ pub struct PlaceInBody {
 }
 
 impl BoundaryShape {
-    /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest particle is within `reach`, m, of what is beside it.
+    /// That of a body whose shape is known, with a stiffness of the repulsion of each fluid, N/m; its nearest
+    /// particle is within `reach`, m, of what is beside it.
     pub fn of(group: &Group, stiffness: Vec<f64>, reach: f64, sim: &SimBuilder<'_>) -> Option<Self> {
         let body = sim.body(group.body);
         let shape = sim.scene().bodies[body.id.0].shape.cut_part_by_part();
@@ -69,8 +74,9 @@ impl BoundaryShape {
         })
     }
 
-    /// The motion of the body, if it is one map, and whether it has lost particles; both are known already of a body that has not moved since the last step, in which it was
-    /// looked at. `reference` are the places of its particles in the scene.
+    /// The motion of the body, if it is one map, and whether it has lost particles; both are known already of
+    /// a body that has not moved since the last step, in which it was looked at. `reference` are the places
+    /// of its particles in the scene.
     pub fn look(&mut self, cloud: &FlowCloud, reference: &[ReferencePosition]) -> Option<BodyMotion> {
         let is_own = |group: &Group| group.cloud.start == self.group.cloud.start;
         let is_still = cloud.groups.iter().zip(&cloud.is_still).any(|(group, still)| *still && is_own(group));
@@ -95,8 +101,8 @@ impl BoundaryShape {
         motion.keeps(cloud.pairs.periodic()) && self.distance(cloud, place) >= range
     }
 
-    /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its particles in the scene, `motion` is that of the whole body, if it
-    /// has one.
+    /// Where particle `i` is, none if it is beside no particle of the body; `reference` are the places of its
+    /// particles in the scene, `motion` is that of the whole body, if it has one.
     pub fn place(
         &self,
         cloud: &FlowCloud,
@@ -194,7 +200,8 @@ impl BoundaryShape {
         self.distance(cloud, place.at + place.map * way)
     }
 
-    /// Whether the foot of a particle is on a face of the shape: one there, zero on an edge, less than one near an edge.
+    /// Whether the foot of a particle is on a face of the shape: one there, zero on an edge, less than one
+    /// near an edge.
     pub fn on_face(&self, cloud: &FlowCloud, place: &PlaceInBody) -> f64 {
         if place.shares.only.is_some() {
             return 1.0;
@@ -235,8 +242,8 @@ fn has_gone(records: &[FlowParticle]) -> bool {
     gone > 0.0
 }
 
-/// The vector between two particles of a body, now and in the body as the scene has it, m: of the images that are nearest to `from`, which need not be those that are nearest to
-/// each other.
+/// The vector between two particles of a body, now and in the body as the scene has it, m: of the images that
+/// are nearest to `from`, which need not be those that are nearest to each other.
 pub fn apart(
     cloud: &FlowCloud,
     group: &Group,

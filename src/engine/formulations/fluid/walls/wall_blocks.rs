@@ -1,4 +1,5 @@
-//! The pass over the particles of boundaries in blocks of eight: what [`WallPressure`](super::wall_pressure::WallPressure) finds four neighbours at a time.
+//! The pass over the particles of boundaries in blocks of eight: what
+//! [`WallPressure`](super::wall_pressure::WallPressure) finds four neighbours at a time.
 
 use std::ops::Range;
 
@@ -18,7 +19,8 @@ pub struct WallBlocks<'a> {
 }
 
 impl WallBlocks<'_> {
-    /// Writes what is beside every particle of a boundary, and the neighbours within the support of every block.
+    /// Writes what is beside every particle of a boundary, and the neighbours within the support of every
+    /// block.
     pub fn run(&self, blocks: &mut Blocks, out: &mut [FluidBeside]) {
         let cloud = self.cloud;
         // Who looks at gaps asks every particle beside one for its neighbours.

@@ -1,14 +1,17 @@
 //! How a fluid is compressed by what the pressure of its boundaries does, in flows without a free surface.
 //!
-//! The pressure of a boundary that pulls is a mean of that of the fluid, `p_w = sum_i V_i W_iw p_i / S_w` with `S_w = sum_f V_f W_wf` (`wall_pressure`, beside what gravity and loads add). The power of its force is
-//! `V_w p_w D_w`, with the rate of compression of the fluid as the boundary particle sees it,
+//! The pressure of a boundary that pulls is a mean of that of the fluid, `p_w = sum_i V_i W_iw p_i / S_w`
+//! with `S_w = sum_f V_f W_wf` (`wall_pressure`, beside what gravity and loads add). The power of its force
+//! is `V_w p_w D_w`, with the rate of compression of the fluid as the boundary particle sees it,
 //!
 //! `D_w = sum_f V_f w_wf v_wf.x_wf`,
 //!
-//! so that of fluid particle i is greater by `sum_w V_w W_iw D_w / S_w`: the force is the adjoint of the rate of compression. The fluid loses what it does to its boundaries, the volume that it loses in all is
-//! that through which the force on them works, and it sees itself stretch along a wall on which it slides.
+//! so that of fluid particle i is greater by `sum_w V_w W_iw D_w / S_w`: the force is the adjoint of the rate
+//! of compression. The fluid loses what it does to its boundaries, the volume that it loses in all is that
+//! through which the force on them works, and it sees itself stretch along a wall on which it slides.
 //!
-//! Boundaries that do not pull have no such part: their pressure is cut off at zero, and at the edge of a free surface on a wall the fluid ahead of a particle is missing, so that sliding would compress it.
+//! Boundaries that do not pull have no such part: their pressure is cut off at zero, and at the edge of a
+//! free surface on a wall the fluid ahead of a particle is missing, so that sliding would compress it.
 
 use std::ops::Range;
 
@@ -47,7 +50,8 @@ impl Run for WallCompression {
 }
 
 impl WallCompression {
-    /// Finds the rates beside all boundary particles; `back` is the time from the end of the step to its middle, s.
+    /// Finds the rates beside all boundary particles; `back` is the time from the end of the step to its
+    /// middle, s.
     fn find(&mut self, cloud: &FlowCloud, back: f64) {
         let boundaries = || cloud.groups.iter().filter(|group| group.fluid().is_none());
         let mut rest = &mut self.rates[..];

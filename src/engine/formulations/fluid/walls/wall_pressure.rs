@@ -1,8 +1,9 @@
 //! Pass over the particles of boundaries: pressure and mean velocity of the fluid beside them.
 //!
-//! `p_w = (sum_f p_f W - (g - a_w) . sum_f rho_f x_wf W) / sum_f W` (Adami, Hu, Adams 2012, eq. 27, with x_wf = x_f - x_w and
-//! W for the kernel times the volume V_f, so that removed particles have no part in it). Loads b_f on the fluid act as gravity does, with the
-//! value that each particle feels: `- sum_f b_f . rho_f x_wf W` beside the pressures.
+//! `p_w = (sum_f p_f W - (g - a_w) . sum_f rho_f x_wf W) / sum_f W` (Adami, Hu, Adams 2012, eq. 27, with
+//! x_wf = x_f - x_w and W for the kernel times the volume V_f, so that removed particles have no part in it).
+//! Loads b_f on the fluid act as gravity does, with the value that each particle feels: `- sum_f b_f . rho_f
+//! x_wf W` beside the pressures.
 
 use std::ops::Range;
 
@@ -27,7 +28,8 @@ pub struct FluidBeside {
     pub pressure: f64,
     /// Mean of rho_f x_wf, kg/m2.
     pub moment: DVec3,
-    /// Mean velocity, less that of the particle, m/s; zero beside a boundary to which the fluid does not stick.
+    /// Mean velocity, less that of the particle, m/s; zero beside a boundary to which the fluid does not
+    /// stick.
     pub velocity: DVec3,
     /// Mean place, less that of the particle, m; zero likewise.
     pub offset: DVec3,
@@ -66,7 +68,8 @@ impl WallPressure<'_> {
     }
 }
 
-/// Gives all ranks what was found beside the particles of boundaries that have fluid in their lists; beside the others there is nothing.
+/// Gives all ranks what was found beside the particles of boundaries that have fluid in their lists; beside
+/// the others there is nothing.
 pub fn share_wetted<T: Pod + Default>(cloud: &FlowCloud, out: &mut [T]) {
     if !ranks::has_several() {
         return;
@@ -131,7 +134,8 @@ impl WallPressureRows<'_> {
     }
 }
 
-/// Writes down those of a list that are within the support of a particle. Half of the lists of boundaries, along which fluids slide, is skin.
+/// Writes down those of a list that are within the support of a particle. Half of the lists of boundaries,
+/// along which fluids slide, is skin.
 #[inline(always)]
 fn take_near<'a, A: FourLanes>(
     a: A,

@@ -1,4 +1,5 @@
-//! The system that gives walls the pressure of the fluid beside them, and the velocity that a sticking fluid sees.
+//! The system that gives walls the pressure of the fluid beside them, and the velocity that a sticking fluid
+//! sees.
 
 use glam::DVec3;
 
@@ -33,7 +34,8 @@ impl Run for WallState {
         (cloud.near_boundary, cloud.blocks) = (near, blocks);
         let first = cloud.fluid;
         for group in cloud.groups.iter().filter(|group| group.sticks()) {
-            // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or are sheared alike.
+            // A fluid that moves with its wall feels no friction, be it that both turn like one rigid body or
+            // are sheared alike.
             let beside = &mut self.beside[group.cloud.start - first..group.cloud.end - first];
             cloud.for_each_gradient(group, beside, |fluid, gradient| {
                 fluid.velocity -= gradient * fluid.offset
@@ -110,8 +112,9 @@ fn apply(
     }
 }
 
-/// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a mass that is added
-/// explicitly, and a light body would not stand it. What that lacks falls with the spacing.
+/// The acceleration of a body that the fluid moves is left out: it would act on itself one step later, as a
+/// mass that is added explicitly, and a light body would not stand it. What that lacks falls with the
+/// spacing.
 fn apply_to_solid(
     surface: &BoundarySurface,
     gravity: DVec3,

@@ -1,6 +1,7 @@
 //! Whether walls pull where they should: in flows without a free surface, and there alone.
 //!
-//! The pressure of walls that do not pull is no part of the balance of energy and volume (`walls::wall_compression`): what they take of the work on the fluid is missing in its pressure. At a free
+//! The pressure of walls that do not pull is no part of the balance of energy and volume
+//! (`walls::wall_compression`): what they take of the work on the fluid is missing in its pressure. At a free
 //! surface, walls that pull compress what slides along them.
 
 use serde::{Deserialize, Serialize};

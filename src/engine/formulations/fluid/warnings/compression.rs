@@ -1,8 +1,10 @@
-//! Flows that are compressed: whether pressure changes the density by more than the few per cent that a liquid may have.
+//! Flows that are compressed: whether pressure changes the density by more than the few per cent that a
+//! liquid may have.
 //!
-//! The Mach number tells that of flows whose pressure is that of their inertia, rho v^2. Friction and loads make pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a
-//! packed bed, a deep tank. So the standard deviation of the compression p / (rho_0 c_0^2) over a body is looked at. A constant added to the pressure changes nothing, and an impact passes: it has to
-//! last for some frames.
+//! The Mach number tells that of flows whose pressure is that of their inertia, rho v^2. Friction and loads
+//! make pressures of mu v / L and rho b L, however slow the flow is: in a journal bearing, a packed bed, a
+//! deep tank. So the standard deviation of the compression p / (rho_0 c_0^2) over a body is looked at. A
+//! constant added to the pressure changes nothing, and an impact passes: it has to last for some frames.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +14,8 @@ use crate::notation::quantity;
 use crate::parallel::{BlockSum, sum_over_blocks};
 use crate::schedule::{Step, warn_anew};
 
-/// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a tenth of rho_0 c_0^2.
+/// Standard deviation of the compression that is worth a warning: pressures that differ by a thirtieth to a
+/// tenth of rho_0 c_0^2.
 const DEVIATION: f64 = 0.02;
 /// Frames in sequence for which it has to last.
 const FRAMES: u32 = 3;

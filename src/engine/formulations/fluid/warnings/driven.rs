@@ -1,7 +1,10 @@
 //! Energy that the diffusion of density takes out of flows which walls drive.
 //!
-//! A particle that passes the end of a wall loses the share of its density that it owes to the wall faster than the fluid follows: behind the lips of a slot it is under tension and tears, and the diffusion of density takes what that
-//! shakes. Where walls do all the work, what is lost so is missing in the force on them. Waves that break lose as much in truth: a violent sloshing tank without viscosity 5 % in five seconds.
+//! A particle that passes the end of a wall loses the share of its density that it owes to the wall faster
+//! than the fluid follows: behind the lips of a slot it is under tension and tears, and the diffusion of
+//! density takes what that shakes. Where walls do all the work, what is lost so is missing in the force on
+//! them. Waves that break lose as much in truth: a violent sloshing tank without viscosity 5 % in five
+//! seconds.
 
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
 use crate::notation::quantity;

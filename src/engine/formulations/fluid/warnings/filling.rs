@@ -1,7 +1,7 @@
 //! Gaps and swelling: whether as much fluid is where the particles are as their densities say.
 //!
-//! `sum_j V_j W_ij`, the particle itself and boundary particles included, is one wherever the volumes m / rho fill space. The density of a
-//! particle is moved by the velocities around it and does not see gaps.
+//! `sum_j V_j W_ij`, the particle itself and boundary particles included, is one wherever the volumes m / rho
+//! fill space. The density of a particle is moved by the velocities around it and does not see gaps.
 
 use std::ops::Range;
 

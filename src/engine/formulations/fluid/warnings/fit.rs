@@ -1,7 +1,8 @@
 //! Whether the lattices of a fluid and of its boundaries fit at the start.
 //!
-//! Where particles of the two overlap or leave a gap, the densities of the fluid do not know it: a surface acts as if it stood elsewhere, by up to half a spacing, and forces are those of
-//! uneven particles. `sum_j V_j W_ij` of the particles beside the boundary shows it.
+//! Where particles of the two overlap or leave a gap, the densities of the fluid do not know it: a surface
+//! acts as if it stood elsewhere, by up to half a spacing, and forces are those of uneven particles. `sum_j
+//! V_j W_ij` of the particles beside the boundary shows it.
 
 use super::filling::FillingPass;
 use crate::formulations::fluid::cloud::{FlowCloud, RowSums};
@@ -10,11 +11,13 @@ use crate::world::BodyId;
 
 /// Distance of the particles beside a boundary from one of its particles, over their spacing.
 const BESIDE: f64 = 1.5;
-/// Root mean square difference of the filling beside a boundary from that in the fluid that is worth a warning: a gap of a quarter of a spacing along a plane. Round bodies in square lattices have 0.03.
+/// Root mean square difference of the filling beside a boundary from that in the fluid that is worth a
+/// warning: a gap of a quarter of a spacing along a plane. Round bodies in square lattices have 0.03.
 const LARGEST_DEVIATION: f64 = 0.04;
 /// Least number of particles for a mean.
 const LEAST: usize = 8;
-/// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both spacings: half a spacing to two of empty space. What is farther away is to fall.
+/// Distances of particles that face a boundary across a gap from the nearest one of it, over the mean of both
+/// spacings: half a spacing to two of empty space. What is farther away is to fall.
 const ACROSS: std::ops::Range<f64> = 1.5..3.0;
 /// Part of the particles that face a boundary that has to be across a gap: stairs of round bodies have a few.
 const PART: f64 = 0.2;
@@ -71,7 +74,8 @@ pub fn look(cloud: &FlowCloud, scratch: &mut Vec<Option<f64>>, step: &mut Step<'
     }
 }
 
-/// Distance of a particle from the nearest one of a boundary over the mean of their spacings; none where another particle of the flow is between them, or none of the boundary is near.
+/// Distance of a particle from the nearest one of a boundary over the mean of their spacings; none where
+/// another particle of the flow is between them, or none of the boundary is near.
 fn distance_across(cloud: &FlowCloud, i: usize, boundary: BodyId) -> Option<f64> {
     let row = cloud.near_row(i);
     let begin = row.partition_point(|&j| (j as usize) < cloud.fluid);

@@ -1,7 +1,8 @@
 //! Light rigid bodies that the flow presses against what they touch.
 //!
-//! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there: what it does to the rest of the body presses the two together. A heavy body rests on
-//! the wall in any case; one that is lighter than the fluid would come up.
+//! Where no particle of the fluid fits between a body and a wall, the fluid has no pressure there: what it
+//! does to the rest of the body presses the two together. A heavy body rests on the wall in any case; one
+//! that is lighter than the fluid would come up.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,8 @@ use crate::rigid::{RigidBodies, RigidBody};
 use crate::schedule::{Step, StepError};
 use crate::world::{BodyId, ReferenceVolume};
 
-/// Frames in sequence in which a body is held down before it is reported: what falls onto a body presses it down for a moment.
+/// Frames in sequence in which a body is held down before it is reported: what falls onto a body presses it
+/// down for a moment.
 const FRAMES: u32 = 3;
 /// Way from one frame to the next, over the spacing of the fluid, up to which a body stays where it is.
 const STILL: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! Fluid particles inside of the boundaries of the flow.
 //!
-//! A particle is taken back to where it would be in the body as the scene has it, by the affine map that fits the particles of the body around
-//! it, and is compared with the shape of the body there.
+//! A particle is taken back to where it would be in the body as the scene has it, by the affine map that fits
+//! the particles of the body around it, and is compared with the shape of the body there.
 
 use glam::{DMat3, DVec3};
 
@@ -18,8 +18,8 @@ use crate::world::{BodyId, ParticleId, ReferencePosition};
 
 /// Depth below the surface of a body at which a fluid particle is inside, over the spacing of the fluid.
 pub const DEPTH: f64 = 0.5;
-/// Distance of the nearest particle of a body beyond which a fluid particle is outside of it, over the spacing of the body; the middle of a
-/// cube is 0.87 away.
+/// Distance of the nearest particle of a body beyond which a fluid particle is outside of it, over the
+/// spacing of the body; the middle of a cube is 0.87 away.
 const NEAREST: f64 = 0.9;
 
 /// Looks for particles that have entered something.
@@ -27,7 +27,8 @@ pub struct Intrusion {
     bodies: Vec<IntrudedShape>,
     /// Depth at which a particle is inside, m.
     least: f64,
-    /// Pairs of a fluid and a body, by number, that the user has been warned of, with the most particles at once.
+    /// Pairs of a fluid and a body, by number, that the user has been warned of, with the most particles at
+    /// once.
     pub told: Vec<(usize, usize, u32)>,
 }
 
@@ -166,7 +167,8 @@ struct BoundingBody<'a> {
 }
 
 impl BoundingBody<'_> {
-    /// Where fluid particle `i` would be in the body as the scene has it; none if it is not among the particles of it that are near.
+    /// Where fluid particle `i` would be in the body as the scene has it; none if it is not among the
+    /// particles of it that are near.
     fn place_in_body(&self, i: usize, near: &[u32]) -> Option<DVec3> {
         let Self { cloud, group, spacing, reference } = *self;
         let position = |j: u32| cloud.records[j as usize].position();
@@ -199,9 +201,11 @@ impl BoundingBody<'_> {
     }
 }
 
-/// Mean direction of the particles of a body, over the sum of their distances, below which they surround a fluid particle.
+/// Mean direction of the particles of a body, over the sum of their distances, below which they surround a
+/// fluid particle.
 const ENCLOSED: f64 = 0.1;
-/// Distance of the nearest of them beyond which it is not among them, over their spacing; the middle of a square is 0.71 away.
+/// Distance of the nearest of them beyond which it is not among them, over their spacing; the middle of a
+/// square is 0.71 away.
 const AMONG: f64 = 0.75;
 
 /// Whether the particles of a body that are left surround a fluid particle.

@@ -1,7 +1,8 @@
 //! Closed flows whose boundaries wear: whether the fluid can fill the place of what has been removed.
 //!
-//! Removed particles leave a closed vessel, and the mass of the fluid stays. Its pressure falls by its bulk modulus times the share of its volume that is opened. Below zero it is under tension, voids open,
-//! and what happens from there on depends on single particles. The pressure at the start has to be higher than that.
+//! Removed particles leave a closed vessel, and the mass of the fluid stays. Its pressure falls by its bulk
+//! modulus times the share of its volume that is opened. Below zero it is under tension, voids open, and what
+//! happens from there on depends on single particles. The pressure at the start has to be higher than that.
 
 use serde::{Deserialize, Serialize};
 

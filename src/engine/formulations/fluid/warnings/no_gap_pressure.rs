@@ -12,10 +12,12 @@ use crate::world::Mobility;
 
 /// Distance of two particles that touch, over the mean of their spacings.
 const TOUCH: f64 = 1.25;
-/// Width of what is dry and touches something, over the spacing of the fluid, from which on a body is reported.
+/// Width of what is dry and touches something, over the spacing of the fluid, from which on a body is
+/// reported.
 const LEAST: f64 = 3.0;
 
-/// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the fluid, m.
+/// Warns, once, of the first body that lies on something and is wet elsewhere; `spacing` is that of the
+/// fluid, m.
 pub fn look(
     is_told: &mut bool,
     cloud: &FlowCloud,
@@ -74,7 +76,8 @@ fn width(cloud: &FlowCloud, record: &FlowParticle) -> f64 {
     record.volume().powf(if cloud.plane { 0.5 } else { 1.0 / 3.0 })
 }
 
-/// Numbers of the places that have a particle of another boundary beside them; particles there have the width `own`, m, and none is wider than `spacing`, m.
+/// Numbers of the places that have a particle of another boundary beside them; particles there have the width
+/// `own`, m, and none is wider than `spacing`, m.
 fn touching(
     cloud: &FlowCloud,
     group: &Group,

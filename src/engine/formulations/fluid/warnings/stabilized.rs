@@ -1,7 +1,9 @@
 //! Energy that stabilizers take out of flows that have hardly any friction to lose it by.
 //!
-//! Where water breaks and falls, stabilizers take what a real flow would lose too. A fluid without a free surface, and one that no wall bounds, lose nothing without friction: what is missing there is an error. Particles that
-//! are driven past walls whose particles form stairs, or squeezed from one lattice into another, shake, and stabilizers take the energy of that.
+//! Where water breaks and falls, stabilizers take what a real flow would lose too. A fluid without a free
+//! surface, and one that no wall bounds, lose nothing without friction: what is missing there is an error.
+//! Particles that are driven past walls whose particles form stairs, or squeezed from one lattice into
+//! another, shake, and stabilizers take the energy of that.
 
 use crate::formulations::fluid::cloud::{ACCOUNTS, FlowCloud};
 use crate::notation::quantity;

@@ -1,4 +1,5 @@
-//! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps and swelling, rows that break up.
+//! Faults of a flow that are looked for during the run: particles inside of its boundaries, compression, gaps
+//! and swelling, rows that break up.
 
 use super::closed::ClosedWatch;
 use super::compression::CompressionWatch;
@@ -33,7 +34,8 @@ struct FlowWatch {
     lies: bool,
     /// The same of motion that stabilizers have taken.
     is_stabilized: bool,
-    /// Account of the diffusion of density, if there is one, and whether the user has been told what it takes of the work of walls.
+    /// Account of the diffusion of density, if there is one, and whether the user has been told what it takes
+    /// of the work of walls.
     diffusion: Option<String>,
     is_driven: bool,
     closed: ClosedWatch,

@@ -18,7 +18,8 @@ use crate::record::OutputOptions;
 use crate::scene::{Scene, SceneError, Source, parse};
 use crate::simulation::Simulation;
 
-/// A cantilever of 24 particles that sags under gravity, with one probe of each kind; `change` edits the text.
+/// A cantilever of 24 particles that sags under gravity, with one probe of each kind; `change` edits the
+/// text.
 fn cantilever(change: impl Fn(String) -> String) -> (Scene, Source) {
     let text = r#"Scene(
     title: "Cantilever",

@@ -1,7 +1,8 @@
 //! Volume of fluid that passes a plane.
 //!
-//! `Q = sum_j V_j v_j.n max(0, 1 - |d_j| / b) / b` with the distance d_j from the plane and b twice the spacing: the mean over the
-//! layers of particles near the plane, which for evenly spread particles is that in the plane.
+//! `Q = sum_j V_j v_j.n max(0, 1 - |d_j| / b) / b` with the distance d_j from the plane and b twice the
+//! spacing: the mean over the layers of particles near the plane, which for evenly spread particles is that
+//! in the plane.
 
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! Height of the surface of fluids above a point, and the wet share of the line up from there.
 //!
-//! A place is wet where fluids fill at least half of the space that walls leave: `sum_f V_f W >= (1 - sum_w V_w W) / 2`.
+//! A place is wet where fluids fill at least half of the space that walls leave: `sum_f V_f W >= (1 - sum_w
+//! V_w W) / 2`.
 
 use glam::DVec3;
 

@@ -1,8 +1,11 @@
-//! The reading of a pressure sensor in a wall: the mean, over points of its face, of the pressure that a particle of the wall would have there.
+//! The reading of a pressure sensor in a wall: the mean, over points of its face, of the pressure that a
+//! particle of the wall would have there.
 //!
-//! `p = (sum_f p_f W - sum_f (g + b_f) . rho_f x_f W) / max(sum_f W, 0.8 (1/2 - sum_w W))`, sums in front of the face, with x_f from the point and loads b_f on the fluid (Adami, Hu, Adams, J.
-//! Comput. Phys. 231 (2012) 7057-7075, eq. 27; W stands for the kernel times the volume). A fluid at rest fills the space that walls leave in front of the point, `1/2 - sum_w W`. In a jet or a splash, where less than
-//! four fifths of it is filled, the dry part of the face has no pressure.
+//! `p = (sum_f p_f W - sum_f (g + b_f) . rho_f x_f W) / max(sum_f W, 0.8 (1/2 - sum_w W))`, sums in front of
+//! the face, with x_f from the point and loads b_f on the fluid (Adami, Hu, Adams, J. Comput. Phys. 231
+//! (2012) 7057-7075, eq. 27; W stands for the kernel times the volume). A fluid at rest fills the space that
+//! walls leave in front of the point, `1/2 - sum_w W`. In a jet or a splash, where less than four fifths of
+//! it is filled, the dry part of the face has no pressure.
 
 use glam::DVec3;
 

@@ -137,7 +137,8 @@ fn probes_of_flows_that_make_no_sense_are_refused() {
     assert!(still(&at("FluidForce", "at: (0, 0)")).contains("not at a point"));
 }
 
-/// Fluid and solid meet at x = 1: a point on either side shows its own velocity, though its reach goes across.
+/// Fluid and solid meet at x = 1: a point on either side shows its own velocity, though its reach goes
+/// across.
 #[test]
 fn a_field_at_a_point_is_that_of_one_phase() {
     let block = r#"(name: "block", material: "rubber", shape: Box(min: (1, 0), max: (1.3, 0.5)), spacing: 0.025, formulation: TotalLagrangian)"#;
@@ -157,7 +158,8 @@ fn a_sensor_that_a_drop_hits_has_no_pressure_where_it_is_dry() {
         first(&text(&format!("{drop}, {TANK}"), r#""0", "0""#, "(0, 0)", &probe))
     };
     near(&scene(0.225), &[("pressure", 1000.0)], 30.0);
-    // 0.4 spacings beside the drop its four particles have W V = .109, .025, .013 and .002, and 0.8 / 2 would be a full face.
+    // 0.4 spacings beside the drop its four particles have W V = .109, .025, .013 and .002, and 0.8 / 2 would
+    // be a full face.
     near(&scene(0.26), &[("pressure", 1000.0 * 0.149 / 0.4)], 15.0);
 }
 

@@ -1,7 +1,8 @@
 //! Roughness of a surface, from the highest particle of every column across it.
 //!
-//! The columns are a spacing wide. With the height z_k of the highest particle of column k along the normal, half a spacing included,
-//! `Ra = mean |z_k - mean z|`, `Rz = max z_k - min z_k` (ISO 21920). Columns without particles do not count.
+//! The columns are a spacing wide. With the height z_k of the highest particle of column k along the normal,
+//! half a spacing included, `Ra = mean |z_k - mean z|`, `Rz = max z_k - min z_k` (ISO 21920). Columns without
+//! particles do not count.
 
 use glam::DVec3;
 

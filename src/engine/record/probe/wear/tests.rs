@@ -4,7 +4,8 @@ use crate::assembly::{BuildOptions, build_with};
 use crate::plugin::Registry;
 use crate::scene::{Source, parse};
 
-/// The first and the last row of the series of a probe, with the names of the columns, without time. The step leaves the domain in the first step.
+/// The first and the last row of the series of a probe, with the names of the columns, without time. The step
+/// leaves the domain in the first step.
 fn both_ends(
     dimension: &str,
     [floor, step, top]: [&str; 3],
@@ -51,7 +52,8 @@ const PLANE: [&str; 3] =
 
 #[test]
 fn a_step_has_the_roughness_of_its_shape_and_none_when_it_has_gone() {
-    // z = 0.5, and 0.7 over a fifth: the mean is 0.54, Ra = 0.8 * 0.04 + 0.2 * 0.16. All rise by 0.2; the particles above 0.7 go.
+    // z = 0.5, and 0.7 over a fifth: the mean is 0.54, Ra = 0.8 * 0.04 + 0.2 * 0.16. All rise by 0.2; the
+    // particles above 0.7 go.
     let found = both_ends("Two", PLANE, "(0, 200)", "Roughness(normal: (0, 2))");
     near(&found, &[("Ra", 0.064, 0.0), ("Rz", 0.2, 0.0), ("mean", 0.54, 0.7)]);
     let found = both_ends("Two", PLANE, "(0, 200)", "RemovedVolume");

@@ -1,4 +1,5 @@
-//! Lists of the blocks that other ranks compute: what is near the box of each, found when somebody asks for it.
+//! Lists of the blocks that other ranks compute: what is near the box of each, found when somebody asks for
+//! it.
 
 use super::lists::BlockLists;
 use crate::neighbors::{Boxes, NeighborList, NeighborSearch, Periodic};
@@ -10,7 +11,8 @@ pub struct OtherSources<'a> {
     pub groups: &'a [u32],
     pub skin: f64,
     pub periodic: &'a Periodic,
-    /// Neighbours of each fluid particle among the boundary particles, and those of each boundary particle among the fluids.
+    /// Neighbours of each fluid particle among the boundary particles, and those of each boundary particle
+    /// among the fluids.
     pub walls: &'a NeighborList,
     pub boundary: &'a NeighborList,
 }

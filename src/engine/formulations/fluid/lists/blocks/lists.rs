@@ -1,6 +1,7 @@
 //! The neighbours that the particles of a block have in common.
 //!
-//! The search finds what is near the box of a block; half of that, where particles are in disorder, is near none of its particles and left out here.
+//! The search finds what is near the box of a block; half of that, where particles are in disorder, is near
+//! none of its particles and left out here.
 
 use glam::DVec3;
 
@@ -16,8 +17,8 @@ use crate::parallel::{BlockLoop, EIGHT, EightLanes, Lanes8, for_each_block, run_
 /// Room over the radius that round-off cannot take away.
 const CERTAIN: f64 = 1.0 + 1e-5;
 
-/// Lists of the blocks: rows of the cloud that are near any particle of each, its own particles included. They are there for the blocks of this rank alone; those of others
-/// are found when they are asked for.
+/// Lists of the blocks: rows of the cloud that are near any particle of each, its own particles included.
+/// They are there for the blocks of this rank alone; those of others are found when they are asked for.
 #[derive(Debug)]
 pub struct BlockLists {
     pub table: BlockTable,
@@ -25,11 +26,13 @@ pub struct BlockLists {
     pub fluid: NearRows,
     /// What bounds them.
     pub walls: NeighborList,
-    /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near any of each. None where thin bodies hide some of what is near.
+    /// For the blocks of what bounds the fluids, which come after those of fluids: the fluid particles near
+    /// any of each. None where thin bodies hide some of what is near.
     pub boundary: NeighborList,
     /// Lists of other ranks' blocks.
     pub others: OtherRows,
-    /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are the bits of `fluid`, where all see what is near.
+    /// For each pair of `walls`, the particles of the block that see the neighbour, a bit each; empty, as are
+    /// the bits of `fluid`, where all see what is near.
     seen_walls: Vec<u8>,
     units: Units,
     /// How many fluid particles are near each particle of a block.
@@ -76,14 +79,16 @@ impl BlockLists {
         }
     }
 
-    /// The bits of the particles of a block that see its neighbours, fluids and boundary particles, where some hide.
+    /// The bits of the particles of a block that see its neighbours, fluids and boundary particles, where
+    /// some hide.
     #[inline(always)]
     pub fn seen(&self, block: usize) -> (&[u8], &[u8]) {
         (self.fluid.lanes(block), &self.seen_walls[self.walls.range(block)])
     }
 
-    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each fluid particle among the boundary particles, `boundary` those of each boundary particle among
-    /// the fluid particles.
+    /// Builds blocks and lists; `groups` are the ends of all bodies, `walls` the neighbours of each fluid
+    /// particle among the boundary particles, `boundary` those of each boundary particle among the fluid
+    /// particles.
     pub fn build(
         &mut self,
         sources: &ListSources<'_>,

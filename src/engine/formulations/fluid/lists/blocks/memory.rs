@@ -11,7 +11,8 @@ pub struct Blocks {
     pub packed: Vec<Packed>,
     /// Neighbours within the support of any particle of a block.
     pub near: NearRows,
-    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are then written down in every step, and boundaries have no blocks.
+    /// Whether thin bodies hide some of what is near from particles; the neighbours of every particle are
+    /// then written down in every step, and boundaries have no blocks.
     pub hides: bool,
 }
 
@@ -21,7 +22,8 @@ impl Blocks {
         Self { lists: BlockLists::new(units), units, packed: Vec::new(), near: NearRows::default(), hides }
     }
 
-    /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the particles.
+    /// Makes room for the neighbours within the support: of the blocks, and, if they are wanted, of the
+    /// particles.
     pub fn make_room(&mut self, of_particles: &mut NearRows) {
         let BlockLists { table, fluid, walls, boundary, counts, .. } = &self.lists;
         let most = |block: usize| match block.checked_sub(walls.rows()) {

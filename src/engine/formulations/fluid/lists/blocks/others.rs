@@ -1,6 +1,7 @@
 //! The blocks that other ranks compute.
 //!
-//! Loops that are divided among ranks need the lists of their own blocks. Whoever looks at particles one by one, as probes do, may ask for any.
+//! Loops that are divided among ranks need the lists of their own blocks. Whoever looks at particles one by
+//! one, as probes do, may ask for any.
 
 use std::ops::Range;
 use std::sync::OnceLock;

@@ -1,7 +1,8 @@
 //! What the passes of blocks read per particle: 32 bytes, packed from the records in every step.
 //!
-//! Places are whole numbers of a unit of at most 2^-24 spacings that go round at the ends of their range: a difference is exact, and exactly the opposite of that from the other side.
-//! A period is a whole multiple of 2^32 units, so that differences are those of the nearest images.
+//! Places are whole numbers of a unit of at most 2^-24 spacings that go round at the ends of their range: a
+//! difference is exact, and exactly the opposite of that from the other side. A period is a whole multiple of
+//! 2^32 units, so that differences are those of the nearest images.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -171,7 +172,8 @@ mod tests {
         }
     }
 
-    /// Differences are those of the nearest images, to single precision, and exactly opposite from the other side.
+    /// Differences are those of the nearest images, to single precision, and exactly opposite from the other
+    /// side.
     #[test]
     fn differences_are_exact_and_antisymmetric_across_periods() {
         let domain = |length| {

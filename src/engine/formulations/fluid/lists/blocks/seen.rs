@@ -23,7 +23,8 @@ const fn masks() -> [Lanes8; 256] {
     masks
 }
 
-/// Writes for each pair of `joined`, whose rows are those of blocks, the bits of the particles that have it in `list`.
+/// Writes for each pair of `joined`, whose rows are those of blocks, the bits of the particles that have it
+/// in `list`.
 pub fn write_seen(seen: &mut Vec<u8>, blocks: &[Rows], joined: &NeighborList, list: &NeighborList) {
     seen.clear();
     seen.resize(joined.pairs(), 0);

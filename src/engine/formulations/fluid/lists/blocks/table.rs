@@ -1,7 +1,9 @@
 //! Which particles are a block: eight that are near each other.
 //!
-//! The rows of a fluid lie along a space-filling curve. Those that loops take at a time, 64 in sequence, are halved along the longest side of their box until eight are left:
-//! the particles of a compact box have most of their neighbours in common, and the sums of a block are those of rows of one loop. Blocks are made with the lists.
+//! The rows of a fluid lie along a space-filling curve. Those that loops take at a time, 64 in sequence, are
+//! halved along the longest side of their box until eight are left: the particles of a compact box have most
+//! of their neighbours in common, and the sums of a block are those of rows of one loop. Blocks are made with
+//! the lists.
 
 use std::ops::Range;
 
@@ -11,8 +13,9 @@ use rayon::prelude::*;
 use crate::neighbors::Periodic;
 use crate::parallel::{BLOCK, EIGHT, Split};
 
-/// Length of a box over the support, at most; where particles are farther apart, lanes of a block are left without one. The limit is there for the search, which gets longer with
-/// the box: the halves of a block have together no fewer pairs than the whole.
+/// Length of a box over the support, at most; where particles are farther apart, lanes of a block are left
+/// without one. The limit is there for the search, which gets longer with the box: the halves of a block have
+/// together no fewer pairs than the whole.
 const LONGEST: f64 = 2.0;
 
 /// Rows of the particles of a block; lanes without a particle repeat the last one.
@@ -32,7 +35,8 @@ pub struct BlockTable {
     starts: Vec<usize>,
     /// Where each particle is: eight times its block, and its lane.
     places: Vec<u32>,
-    /// Rows of the particles, block by block, and for every 64 of them a bit for each that is the last of its block.
+    /// Rows of the particles, block by block, and for every 64 of them a bit for each that is the last of its
+    /// block.
     order: Vec<u32>,
     lasts: Vec<u64>,
 }
@@ -45,7 +49,8 @@ struct RunPoint {
 }
 
 impl BlockTable {
-    /// Makes the blocks of bodies whose rows end here from the positions of their particles, m, which are finite.
+    /// Makes the blocks of bodies whose rows end here from the positions of their particles, m, which are
+    /// finite.
     pub fn build(&mut self, positions: &[DVec3], bodies: &[u32], support: f64, periodic: &Periodic) {
         self.rows.clear();
         self.starts.clear();
@@ -173,7 +178,8 @@ impl<T: Split> Split for OfBlocks<'_, T> {
     }
 }
 
-/// Halves points, of which some come before these, until eight are left, in a box of edges up to `limit`, m, and writes a bit for the last of each block.
+/// Halves points, of which some come before these, until eight are left, in a box of edges up to `limit`, m,
+/// and writes a bit for the last of each block.
 fn halve(points: &mut [RunPoint], limit: f32, before: usize, lasts: &mut u64) {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in &*points {

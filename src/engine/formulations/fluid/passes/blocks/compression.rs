@@ -1,4 +1,5 @@
-//! First pass over pairs, in blocks: who is within the support, and the rate of compression (`passes::compression`).
+//! First pass over pairs, in blocks: who is within the support, and the rate of compression
+//! (`passes::compression`).
 
 use std::ops::Range;
 
@@ -12,7 +13,8 @@ use crate::parallel::{
 };
 
 impl FlowCloud {
-    /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step of that length, s.
+    /// Finds the neighbours within the support of every block, and D of every fluid particle, 1/s, in a step
+    /// of that length, s.
     pub(in crate::formulations::fluid) fn compress_blocks(&mut self, blocks: &mut Blocks, dt: f64) {
         let Blocks { lists, units, packed, near, hides } = blocks;
         let (mut rates, mut is_close) =
@@ -71,7 +73,8 @@ struct Compress<'a> {
     unit: [f64; 3],
     /// Time from the end of the step to its middle, s.
     back: f64,
-    /// Squares of the reach of boundaries, of the support radius, and of the distance of particles in one place, m2.
+    /// Squares of the reach of boundaries, of the support radius, and of the distance of particles in one
+    /// place, m2.
     reach: f64,
     limit: f64,
     least: f64,
@@ -88,7 +91,8 @@ struct AllCompressionBlocks<'a, const HIDDEN: bool, F> {
     near_rows: NearWriter<'a>,
 }
 
-/// Rates of compression of some particles, whether each is close to a boundary, and the neighbours of their blocks.
+/// Rates of compression of some particles, whether each is close to a boundary, and the neighbours of their
+/// blocks.
 type BlockRows<'a> = (&'a mut [f64], &'a mut [u8], OfBlocks<'a, NearWriter<'a>>);
 
 impl<const HIDDEN: bool, F: Iterator<Item = Range<usize>>> KernelLoop
@@ -176,7 +180,8 @@ struct RateSums<'a, K> {
 }
 
 impl<K: PairShape> RateSums<'_, K> {
-    /// Adds a neighbour with the bits of those who see it; gives the squares of the distances at the end of the step, and writes it down where one is within the support.
+    /// Adds a neighbour with the bits of those who see it; gives the squares of the distances at the end of
+    /// the step, and writes it down where one is within the support.
     #[inline(always)]
     fn add<A: EightLanes, const HIDDEN: bool>(
         &mut self,

@@ -1,4 +1,5 @@
-//! Second pass over pairs, in blocks: the force of pressure and viscosity (`passes::pair_force`), and the pair terms of plugins.
+//! Second pass over pairs, in blocks: the force of pressure and viscosity (`passes::pair_force`), and the
+//! pair terms of plugins.
 
 use std::cell::RefCell;
 

@@ -21,7 +21,8 @@ pub struct Landing<'a> {
     pub adds: bool,
 }
 
-/// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts of each, and what the terms make.
+/// Writes the forces on the particles of a block, [`PARTS`](crate::formulations::fluid::cloud::PARTS) parts
+/// of each, and what the terms make.
 pub fn land(sums: &BlockForces, of_terms: &[TermSums], landing: Landing<'_>, rows: &mut ForceRows<'_>) {
     let Landing { particles, first, plane, adds } = landing;
     let ForceRows { written, parts } = rows;

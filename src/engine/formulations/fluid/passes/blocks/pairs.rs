@@ -1,7 +1,9 @@
 //! Sums over the neighbours of a block: the forces of the second pass.
 //!
-//! Some neighbours are taken at a time: one loop adds the forces of the flow and leaves the geometry of the pairs in the first-level cache for those of the terms of plugins, one each. So
-//! the sums of every loop stay in registers. Products of volumes, and sums of pressures, are the same from both sides of a pair, and differences exact opposites: so is the force.
+//! Some neighbours are taken at a time: one loop adds the forces of the flow and leaves the geometry of the
+//! pairs in the first-level cache for those of the terms of plugins, one each. So the sums of every loop stay
+//! in registers. Products of volumes, and sums of pressures, are the same from both sides of a pair, and
+//! differences exact opposites: so is the force.
 
 use glam::DVec3;
 
@@ -84,7 +86,8 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         self.cloud.viscosities.friction(self.viscosity)
     }
 
-    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there is room to keep it.
+    /// Adds some neighbours to the forces, and puts the geometry of the pairs into `kept`, if there is room
+    /// to keep it.
     #[inline(always)]
     pub fn add<A: EightLanes>(
         &self,
@@ -106,7 +109,8 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         }
     }
 
-    /// The pressure force is `V_i V_j (p_i + p_j) w x_ij`; the pressures of what bounds a fluid are kept apart.
+    /// The pressure force is `V_i V_j (p_i + p_j) w x_ij`; the pressures of what bounds a fluid are kept
+    /// apart.
     #[inline(always)]
     fn sum<A: EightLanes, const BETWEEN: u8, const FRICTION: u8>(
         &self,
@@ -168,7 +172,8 @@ impl<'a, K: PairShape> PairsOfBlock<'a, K> {
         }
     }
 
-    /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`, where `share` is that of the spin of the particle in that of the pair, the rest that of the neighbour.
+    /// Adds the friction with a neighbour: `mu w (v_ij - omega_ij x x_ij)`, where `share` is that of the spin
+    /// of the particle in that of the pair, the rest that of the neighbour.
     #[inline(always)]
     fn rub<A: EightLanes, const FRICTION: u8>(
         &self,

@@ -1,4 +1,5 @@
-//! The neighbours of every fluid particle, taken out of those of its block: for those who look at one particle at a time where not all see what is near them.
+//! The neighbours of every fluid particle, taken out of those of its block: for those who look at one
+//! particle at a time where not all see what is near them.
 
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::formulations::fluid::lists::NearWriter;
@@ -46,7 +47,8 @@ impl HotLoop for NearRowsOfBlocks<'_> {
     }
 }
 
-/// A bit for each of four neighbours that are near the particle in that lane, which is in row `i`, and not the particle itself.
+/// A bit for each of four neighbours that are near the particle in that lane, which is in row `i`, and not
+/// the particle itself.
 #[inline(always)]
 fn others(rows: [u32; 4], bits: [u8; 4], lane: usize, i: u32) -> usize {
     let mut near = 0;

@@ -1,4 +1,5 @@
-//! Sums in single precision against those in double precision, which have a naive second implementation of their own.
+//! Sums in single precision against those in double precision, which have a naive second implementation of
+//! their own.
 
 use glam::DVec3;
 
@@ -109,13 +110,15 @@ fn pair_forces_cancel() {
     let forces: Vec<DVec3> =
         (0..2).flat_map(|body| column::<Force>(&sim, body)).map(|force| force.0).collect();
     let sum: DVec3 = forces.iter().sum();
-    // Opposite forces are exact; what is left are the roundings of each particle's sum, some 1e-6 of it, which do not know of each other: three of their deviations.
+    // Opposite forces are exact; what is left are the roundings of each particle's sum, some 1e-6 of it,
+    // which do not know of each other: three of their deviations.
     let squares: f64 = forces.iter().map(|force| force.length_squared()).sum();
     let most = 3e-6 * squares.sqrt();
     assert!(squares > 0.0 && sum.length() < most, "{:e} {most:e}", sum.length());
 }
 
-/// What the water does to the tank is the opposite of what the tank does to the water, with friction and without.
+/// What the water does to the tank is the opposite of what the tank does to the water, with friction and
+/// without.
 #[test]
 fn forces_of_water_and_walls_cancel() {
     for (dimension, viscosity, wall) in
@@ -197,7 +200,8 @@ fn still_water_stays_still() {
     assert!((single - double).abs() < 1.2e-5, "{single:e} {double:e}");
 }
 
-/// A drop that flies and turns keeps its momenta and its energy, and turns its motion into heat of friction alone.
+/// A drop that flies and turns keeps its momenta and its energy, and turns its motion into heat of friction
+/// alone.
 #[test]
 fn a_drop_that_turns_keeps_momenta_and_energy() {
     for viscosity in [0.0, 2.0] {

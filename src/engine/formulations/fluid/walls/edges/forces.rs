@@ -69,7 +69,8 @@ impl FlowCloud {
         self.groups[self.groups.partition_point(|group| group.cloud.end <= row)].cloud.start
     }
 
-    /// Calls `f` with the row, W V and V w x of every fluid particle beside a boundary particle, `half` a step before now, s.
+    /// Calls `f` with the row, W V and V w x of every fluid particle beside a boundary particle, `half` a
+    /// step before now, s.
     pub(super) fn for_each_beside(&self, row: usize, half: f64, mut f: impl FnMut(usize, f64, DVec3)) {
         let own = &self.records[row];
         for &j in self.pairs.boundary.row(row - self.fluid) {
@@ -98,7 +99,8 @@ impl FlowCloud {
         sums
     }
 
-    /// Adds what faces at edges take over to the forces on the particles of a group, and to the part of them that is due to boundaries.
+    /// Adds what faces at edges take over to the forces on the particles of a group, and to the part of them
+    /// that is due to boundaries.
     pub(in crate::formulations::fluid) fn lean_on_edges(
         &self,
         group: &Group,

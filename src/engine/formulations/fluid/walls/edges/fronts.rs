@@ -11,7 +11,8 @@ use crate::scene::{Probe, Quantity};
 use crate::schedule::{Step, StepError};
 use crate::world::ReferencePosition;
 
-/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the first row are at half of it.
+/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
+/// first row are at half of it.
 const BEFORE: f64 = 0.85;
 
 /// The shapes of the walls.

@@ -12,12 +12,14 @@ use crate::world::ReferencePosition;
 const RADIUS: f64 = 1.2;
 /// Points on it, in the plane and in space.
 const POINTS: [usize; 2] = [64, 256];
-/// Part of it that is outside of the shape above which there is an edge, in the plane and in space: half a spacing below a flat face it is 0.36 and 0.29, at a right angle 0.6 and 0.5.
+/// Part of it that is outside of the shape above which there is an edge, in the plane and in space: half a
+/// spacing below a flat face it is 0.36 and 0.29, at a right angle 0.6 and 0.5.
 const OUTSIDE: [f64; 2] = [0.45, 0.36];
 /// Depth of the particles that are looked at, over the spacing.
 const DEPTH: f64 = 1.0;
 
-/// Adds the rows, in the cloud, of the particles of a wall at convex edges; `reference` are the places of its particles in the scene.
+/// Adds the rows, in the cloud, of the particles of a wall at convex edges; `reference` are the places of its
+/// particles in the scene.
 pub fn add_edges(
     shape: &BoundaryShape,
     cloud: &FlowCloud,

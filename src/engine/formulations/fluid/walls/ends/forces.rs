@@ -16,7 +16,8 @@ impl Group {
 }
 
 impl FlowCloud {
-    /// Calls `f` with the row and x_iw of every particle of such walls within the support of a fluid particle.
+    /// Calls `f` with the row and x_iw of every particle of such walls within the support of a fluid
+    /// particle.
     pub(super) fn for_each_end_wall(&self, i: usize, mut f: impl FnMut(usize, DVec3)) {
         let own = self.records[i].position();
         let limit = (WITHIN * self.kernel.support).powi(2);

@@ -6,7 +6,8 @@ use super::faces::FacesBefore;
 use super::forces::WITHIN;
 use crate::formulations::fluid::cloud::FlowCloud;
 
-/// Moment of normals below which a direction counts as along the faces, over all moments: faces that are round spread over less, those of a corner over more.
+/// Moment of normals below which a direction counts as along the faces, over all moments: faces that are
+/// round spread over less, those of a corner over more.
 const SPREAD: f64 = 0.1;
 
 /// What is around a fluid particle.
@@ -19,7 +20,9 @@ struct Around {
 }
 
 impl FlowCloud {
-    /// What of a motion of particle `i` is along walls, for the share that empty space answers for, and the direction along them into the wall; none where this is nothing. `faces` are those before it and the fluid particles around it.
+    /// What of a motion of particle `i` is along walls, for the share that empty space answers for, and the
+    /// direction along them into the wall; none where this is nothing. `faces` are those before it and the
+    /// fluid particles around it.
     pub(super) fn along_walls(&self, i: usize, faces: &FacesBefore) -> Option<(DMat3, DVec3)> {
         let Around { wall, all, moments } = self.around(i, faces);
         let spread = SPREAD * (moments.x_axis.x + moments.y_axis.y + moments.z_axis.z);

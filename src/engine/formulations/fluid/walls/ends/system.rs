@@ -13,12 +13,14 @@ use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
 use crate::world::ReferencePosition;
 
-/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the first row are at half of it.
+/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
+/// first row are at half of it.
 const BEFORE: f64 = 0.85;
 
 /// Number of places that are looked at on the way along a wall.
 const WAY: usize = 6;
-/// Distance from a wall at which such a place is clear of it, over the spacing: those of the first row are at half of it.
+/// Distance from a wall at which such a place is clear of it, over the spacing: those of the first row are at
+/// half of it.
 const CLEAR: f64 = 0.15;
 
 /// Finds the particles past the ends of walls.
@@ -70,7 +72,8 @@ impl WallEnds {
         Ok(())
     }
 
-    /// Finds the fluid particles of this rank beside edges, and takes them and those around them in. Whether there are any.
+    /// Finds the fluid particles of this rank beside edges, and takes them and those around them in. Whether
+    /// there are any.
     fn find_beside(&mut self, cloud: &FlowCloud) -> bool {
         let Self { edges, beside, faces, .. } = self;
         faces.clear();
@@ -129,7 +132,8 @@ impl WallEnds {
         });
     }
 
-    /// What of all ways along a wall is open, zero to one: whether one meets no wall on the way `along` it from particle `i`, within the support.
+    /// What of all ways along a wall is open, zero to one: whether one meets no wall on the way `along` it
+    /// from particle `i`, within the support.
     fn find_open(&mut self, cloud: &FlowCloud, step: &Step<'_>) -> Result<(), StepError> {
         let Self { shapes, found, .. } = self;
         for shape in shapes {

@@ -1,11 +1,12 @@
 //! The pressure in gaps, continued from where the fluid is.
 //!
-//! A particle with fluid in its support has the pressure of a wall. From there, and from where a dry gap is open to the air, pressures are continued along the body in steps of a
-//! support: each particle takes the mean of those near it that are known, with the weight of the fluid between the two. In a gap that is wet on one side and dry on the other, the
-//! two meet halfway.
+//! A particle with fluid in its support has the pressure of a wall. From there, and from where a dry gap is
+//! open to the air, pressures are continued along the body in steps of a support: each particle takes the
+//! mean of those near it that are known, with the weight of the fluid between the two. In a gap that is wet
+//! on one side and dry on the other, the two meet halfway.
 //!
-//! A gap that opens has to be filled from where the fluid is: its pressure falls by the head of that flow. Without it an impact of the fluid beside a body would lift it with a
-//! pressure that no fluid follows.
+//! A gap that opens has to be filled from where the fluid is: its pressure falls by the head of that flow.
+//! Without it an impact of the fluid beside a body would lift it with a pressure that no fluid follows.
 
 use glam::DVec3;
 
@@ -17,7 +18,8 @@ const LEAST_SHARE: f64 = 1e-10;
 /// Closed share below which a dry gap is at its end.
 const OPEN: f64 = 0.5;
 
-/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the way to where it is, m.
+/// The fluid at a particle: pressure, Pa, and its gradient at rest, Pa/m; its density, kg/m3, and the way to
+/// where it is, m.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RestOfGap {
     pub pressure: f64,
@@ -80,7 +82,8 @@ impl Gap {
         self.fluid.map(|fluid| RestOfGap { pressure: left(fluid), ..fluid })
     }
 
-    /// Bernoulli: what flows into a gap as wide as the spacing that opens comes along the way from where the fluid is, the faster the longer that is.
+    /// Bernoulli: what flows into a gap as wide as the spacing that opens comes along the way from where the
+    /// fluid is, the faster the longer that is.
     fn open(&mut self, cloud: &FlowCloud, motion: &BoundaryMotion<'_>) {
         let velocity = |row: usize| motion.velocities[row - cloud.fluid];
         let Some(RestOfGap { density, way, .. }) = self.fluid else { return };
@@ -171,7 +174,8 @@ impl Fill {
         }
     }
 
-    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support, less that `fall`, Pa.
+    /// Pressure of a particle on the other side of a gap, Pa: that of a wall if fluid is in its support, less
+    /// that `fall`, Pa.
     pub fn beyond(&self, cloud: &FlowCloud, row: usize, fall: f64) -> Option<f64> {
         if cloud.is_wet(row) {
             let pressure = cloud.records[row].pressure();

@@ -5,8 +5,9 @@ use glam::DVec3;
 use crate::formulations::fluid::cloud::{FlowCloud, part};
 use crate::linalg::Sym3;
 
-/// First moment of the empty space before a particle, over that before a plane surface, below which the space is a gap and above which it is open: along the way to the other body, and
-/// across it. A gap as wide as the spacing has .75 along that way; where a dry gap ends at a corner it is .7 across.
+/// First moment of the empty space before a particle, over that before a plane surface, below which the space
+/// is a gap and above which it is open: along the way to the other body, and across it. A gap as wide as the
+/// spacing has .75 along that way; where a dry gap ends at a corner it is .7 across.
 const ALONG: [f64; 2] = [0.75, 0.9];
 const ACROSS: [f64; 2] = [0.3, 0.5];
 
@@ -85,7 +86,8 @@ impl Surrounding {
         self.other.normalize_or_zero()
     }
 
-    /// Share of the empty space around the particle that is a gap, zero where it is open; `surface` is the first moment of a plane surface, 1/m.
+    /// Share of the empty space around the particle that is a gap, zero where it is open; `surface` is the
+    /// first moment of a plane surface, 1/m.
     pub fn closed(&self, surface: f64) -> f64 {
         let empty = -(self.own + self.other) / surface;
         let toward = self.toward();
@@ -95,7 +97,8 @@ impl Surrounding {
         below(along, ALONG).min(below(across, ACROSS))
     }
 
-    /// Force over the volume of the particle, N/m3, of a fluid that fills the empty space around it, with this pressure at the particle, Pa, and this gradient, Pa/m.
+    /// Force over the volume of the particle, N/m3, of a fluid that fills the empty space around it, with
+    /// this pressure at the particle, Pa, and this gradient, Pa/m.
     pub fn force(&self, pressure: f64, slope: DVec3) -> DVec3 {
         let first = self.own + self.other;
         let second = Sym3::IDENTITY - self.second - self.other_second;
@@ -103,7 +106,8 @@ impl Surrounding {
     }
 }
 
-/// First moment of the empty half of the support before a plane surface of a lattice of that spacing, m, in 1/m.
+/// First moment of the empty half of the support before a plane surface of a lattice of that spacing, m, in
+/// 1/m.
 pub fn of_surface(cloud: &FlowCloud, spacing: f64) -> f64 {
     let layers = (cloud.kernel.support / spacing).ceil() as i32;
     let across = if cloud.plane { 0..=0 } else { -layers..=layers };

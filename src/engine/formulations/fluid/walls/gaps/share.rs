@@ -1,7 +1,8 @@
 //! The opposite of the force on a particle beside a gap, on the particles of the other bodies around it.
 //!
-//! They take shares by their weights, changed linearly in space so that their centre is on the line along which the force acts: momentum and angular momentum stay. Where that would ask for large
-//! shares of opposite signs, the force keeps its part along the line to their centre.
+//! They take shares by their weights, changed linearly in space so that their centre is on the line along
+//! which the force acts: momentum and angular momentum stay. Where that would ask for large shares of
+//! opposite signs, the force keeps its part along the line to their centre.
 
 use glam::{DMat3, DVec3};
 
@@ -9,12 +10,14 @@ use super::moments::GapPair;
 use crate::formulations::fluid::cloud::FlowCloud;
 use crate::linalg::dyad;
 
-/// Square of the distance of the line from the centre of the particles, in their standard deviations, up to which the shares are changed.
+/// Square of the distance of the line from the centre of the particles, in their standard deviations, up to
+/// which the shares are changed.
 const OUTSIDE: f64 = 16.0;
 /// Least determinant of the moments of the particles that fixes a change, over that of a full support.
 const FLAT: f64 = 1e-9;
 
-/// Gives a force on a particle, N, to itself and its opposite to those across the gap, as far as the gap is looked at from this side.
+/// Gives a force on a particle, N, to itself and its opposite to those across the gap, as far as the gap is
+/// looked at from this side.
 pub fn give(cloud: &FlowCloud, row: usize, force: DVec3, across: &[GapPair], out: &mut [DVec3]) {
     let weight = |pair: &GapPair| cloud.pairs.gaps.share_of(row, pair.row) * pair.value;
     let total: f64 = across.iter().map(weight).sum();

@@ -34,7 +34,8 @@ impl GapPressure {
         Self { gravity, spacing, ..Self::default() }
     }
 
-    /// Looks at what surrounds the particles beside gaps, and finds the fluid there; says whether there is any pressure.
+    /// Looks at what surrounds the particles beside gaps, and finds the fluid there; says whether there is
+    /// any pressure.
     fn measure(&mut self, cloud: &FlowCloud) -> bool {
         let Self { gravity, spacing, gaps, fill, velocities, .. } = self;
         let particles = &cloud.pairs.gaps.particles[..];
@@ -125,7 +126,8 @@ impl Run for GapPressure {
 }
 
 impl FlowCloud {
-    /// Adds the pressure of gaps to the forces on the particles of a group, and to the part of them that is due to boundaries.
+    /// Adds the pressure of gaps to the forces on the particles of a group, and to the part of them that is
+    /// due to boundaries.
     pub(in crate::formulations::fluid) fn press_gaps(
         &self,
         group: &Group,
