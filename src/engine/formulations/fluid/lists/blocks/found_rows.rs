@@ -27,17 +27,18 @@ impl BlockLists {
     fn find(&self, block: usize, sources: &OtherSources<'_>) -> Box<[u32]> {
         let &OtherSources { search, groups, skin, periodic, walls, boundary } = sources;
         let (table, fluids) = (&self.table, self.walls.rows());
-        let rows = &table.rows[block..=block];
-        let (mut near, mut joined) = (NeighborList::default(), NeighborList::default());
+        let mut near = NeighborList::default();
         if block < fluids {
             let (centers, halves) = (&table.centers[block..=block], &table.halves[block..=block]);
             let boxes = Boxes { centers, halves, wanted: &[0..1], groups };
             // The same search has succeeded for the blocks of this rank.
             let _ = search.of_more_boxes(boxes, skin, periodic, &mut near);
-            joined.join((rows, |_| true), (walls, 0), &mut Vec::new());
-        } else {
-            joined.join((rows, |_| true), (boundary, walls.rows() as u32), &mut Vec::new());
         }
-        near.indices().iter().chain(joined.indices()).copied().collect()
+        let (list, first) = if block < fluids { (walls, 0) } else { (boundary, walls.rows()) };
+        let rows = table.rows[block].iter().flat_map(|&row| list.row(row as usize - first));
+        let mut beside: Vec<u32> = rows.copied().collect();
+        beside.sort_unstable();
+        beside.dedup();
+        near.indices().iter().chain(&beside).copied().collect()
     }
 }
