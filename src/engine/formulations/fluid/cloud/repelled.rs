@@ -37,7 +37,7 @@ impl Repelled {
     /// Gets those of all ranks, in the order of rows.
     pub fn share(repelled: &mut Vec<Self>) {
         if ranks::has_several() {
-            let mut words: Vec<[u64; WORDS]> = repelled.iter().map(Self::to_words).collect();
+            let mut words: Vec<[u64; WORDS]> = repelled.iter().map(|repelled| repelled.to_words()).collect();
             ranks::concatenate(&mut words);
             repelled.clear();
             repelled.extend(words.iter().map(Self::of_words));
@@ -45,12 +45,12 @@ impl Repelled {
         }
     }
 
-    fn to_words(&self) -> [u64; WORDS] {
+    fn to_words(self) -> [u64; WORDS] {
         let Self { i, boundary, distance, force, shares: Shares { total, mean, slope, only } } = self;
         let numbers =
-            [*distance, *total].into_iter().chain([force, mean, slope].into_iter().flat_map(DVec3::to_array));
+            [distance, total].into_iter().chain([force, mean, slope].into_iter().flat_map(|v| v.to_array()));
         let only = only.map_or(u64::MAX, u64::from);
-        let mut words = [*i as u64, *boundary as u64, only].into_iter().chain(numbers.map(f64::to_bits));
+        let mut words = [i as u64, boundary as u64, only].into_iter().chain(numbers.map(f64::to_bits));
         std::array::from_fn(|_| words.next().unwrap_or_default())
     }
 

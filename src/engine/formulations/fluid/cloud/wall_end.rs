@@ -20,7 +20,7 @@ impl WallEnd {
     /// Gets those of all ranks, in the order of rows.
     pub fn share(ends: &mut Vec<Self>) {
         if ranks::has_several() {
-            let mut words: Vec<[u64; WORDS]> = ends.iter().map(Self::to_words).collect();
+            let mut words: Vec<[u64; WORDS]> = ends.iter().map(|end| end.to_words()).collect();
             ranks::concatenate(&mut words);
             ends.clear();
             ends.extend(words.iter().map(Self::of_words));
@@ -28,7 +28,7 @@ impl WallEnd {
         }
     }
 
-    fn to_words(&self) -> [u64; WORDS] {
+    fn to_words(self) -> [u64; WORDS] {
         let columns = self.along.to_cols_array();
         std::array::from_fn(|k| k.checked_sub(1).map_or(self.i as u64, |k| columns[k].to_bits()))
     }

@@ -234,7 +234,9 @@ mod tests {
                     .enumerate()
                     .map(|(k, x)| if k < 700 { *x + t * flow(*x) } else { *x })
                     .collect();
-                let is_small = drift.remaining_skin((&records(&now), &[0..820]), 700, SKINS) >= 0.0;
+                let is_small =
+                    drift.remaining_skin((&records(&now), std::slice::from_ref(&(0..820))), 700, SKINS)
+                        >= 0.0;
                 let misses = misses(&then, &now, 700, &periodic);
                 assert!(!(is_small && misses), "{n}");
                 small += i32::from(is_small);
@@ -250,13 +252,18 @@ mod tests {
         let mut drift = Drift::default();
         drift.sort(&then, 2.0 * SKINS.support, &Periodic::NONE);
         let moved = |by: DVec3| -> Vec<DVec3> { then.iter().map(|x| *x + by).collect() };
-        let left =
-            drift.remaining_skin((&records(&moved(DVec3::new(70.0, -3.0, 0.1))), &[0..700]), 700, SKINS);
+        let left = drift.remaining_skin(
+            (&records(&moved(DVec3::new(70.0, -3.0, 0.1))), std::slice::from_ref(&(0..700))),
+            700,
+            SKINS,
+        );
         assert!((left - SKINS.fluid).abs() < 1e-12, "{left}");
         for wrong in [f64::NAN, f64::INFINITY] {
             let mut now = moved(DVec3::ZERO);
             now[5].x = wrong;
-            assert!(drift.remaining_skin((&records(&now), &[0..700]), 700, SKINS) < 0.0);
+            assert!(
+                drift.remaining_skin((&records(&now), std::slice::from_ref(&(0..700))), 700, SKINS) < 0.0
+            );
         }
     }
 }

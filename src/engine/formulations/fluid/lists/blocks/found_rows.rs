@@ -30,7 +30,7 @@ impl BlockLists {
         let mut near = NeighborList::default();
         if block < fluids {
             let (centers, halves) = (&table.centers[block..=block], &table.halves[block..=block]);
-            let boxes = Boxes { centers, halves, wanted: &[0..1], groups };
+            let boxes = Boxes { centers, halves, wanted: std::slice::from_ref(&(0..1)), groups };
             // The same search has succeeded for the blocks of this rank.
             let _ = search.of_more_boxes(boxes, skin, periodic, &mut near);
         }
