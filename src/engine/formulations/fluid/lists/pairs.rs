@@ -29,6 +29,9 @@ pub struct FlowPairs {
     periodic: Periodic,
     /// Where the bodies end, as rows of the cloud: rows of the lists are ordered by them.
     groups: Vec<u32>,
+    /// The rows of the cloud that this rank computes, body by body; those of all fluids and of all boundaries
+    /// in a program that runs alone.
+    own: Vec<Range<usize>>,
     search: NeighborSearch,
     /// Fluid neighbours of each fluid particle.
     pub fluid: NeighborList,
@@ -56,6 +59,7 @@ impl FlowPairs {
             drift: Drift::default(),
             periodic,
             groups,
+            own: Vec::new(),
             search: NeighborSearch::default(),
             fluid: NeighborList::default(),
             walls: NeighborList::default(),
@@ -78,16 +82,18 @@ impl FlowPairs {
         self
     }
 
-    /// The rows of the cloud that this rank computes, body by body; those of all fluids and of all boundaries
-    /// in a program that runs alone.
-    fn own_rows(&self, fluid: usize) -> Vec<Range<usize>> {
-        let end = self.groups.last().map_or(0, |&end| end as usize);
+    /// Finds the rows that this rank computes.
+    fn find_own(&mut self, fluid: usize) {
+        let Self { groups, own, .. } = self;
+        own.clear();
         if !ranks::has_several() {
-            return vec![0..fluid, fluid..end];
+            let end = groups.last().map_or(0, |&end| end as usize);
+            own.extend([0..fluid, fluid..end]);
+            return;
         }
-        let starts = std::iter::once(0).chain(self.groups.iter().map(|&end| end as usize));
-        let bodies = starts.zip(&self.groups).map(|(start, &end)| start..end as usize);
-        bodies.map(|body| own_rows(&body)).filter(|own| !own.is_empty()).collect()
+        let starts = std::iter::once(0).chain(groups.iter().map(|&end| end as usize));
+        let bodies = starts.zip(&*groups).map(|(start, &end)| start..end as usize);
+        own.extend(bodies.map(|body| own_rows(&body)).filter(|own| !own.is_empty()));
     }
 
     /// What is near a block that another rank computes.
@@ -109,8 +115,8 @@ impl FlowPairs {
         // looked.
         self.remaining_skin -= moved.farthest(moved);
         if self.remaining_skin <= CERTAIN * self.skins.support {
-            self.remaining_skin =
-                self.drift.remaining_skin((records, &self.own_rows(fluid)), fluid, self.skins);
+            self.find_own(fluid);
+            self.remaining_skin = self.drift.remaining_skin((records, &self.own), fluid, self.skins);
         }
         self.remaining_skin < 0.0
     }

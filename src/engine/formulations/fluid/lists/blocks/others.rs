@@ -22,17 +22,21 @@ pub struct OtherRows {
 }
 
 /// The blocks of a table that this rank computes, and all of the bodies that every rank looks at.
-pub fn own_blocks(table: &BlockTable, looks_at_all: impl Fn(&Range<usize>) -> bool) -> Vec<Range<usize>> {
-    let rows = table.bodies().map(|body| if looks_at_all(&body) { body } else { own_rows(&body) });
-    rows.filter(|rows| !rows.is_empty()).map(|rows| table.of_rows(&rows)).collect()
+pub fn own_blocks(
+    table: &BlockTable,
+    looks_at_all: impl Fn(&Range<usize>) -> bool,
+) -> impl Iterator<Item = Range<usize>> {
+    let rows = table.bodies().map(move |body| if looks_at_all(&body) { body } else { own_rows(&body) });
+    rows.filter(|rows| !rows.is_empty()).map(|rows| table.of_rows(&rows))
 }
 
 impl OtherRows {
     /// Begins anew, with these blocks of this rank among `count`.
-    pub fn begin(&mut self, own: Vec<Range<usize>>, count: usize) {
-        let others = count - own.iter().map(Range::len).sum::<usize>();
+    pub fn begin(&mut self, own: impl Iterator<Item = Range<usize>>, count: usize) {
+        self.own.clear();
+        self.own.extend(own);
+        let others = count - self.own.iter().map(Range::len).sum::<usize>();
         self.cut = ranks::cut();
-        self.own = own;
         self.found.clear();
         self.found.resize_with(if others > 0 { count } else { 0 }, OnceLock::new);
     }
