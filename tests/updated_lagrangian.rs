@@ -230,7 +230,7 @@ fn a_gate_beside_water_moves_alike_in_every_formulation() {
     let scene = include_str!("validation/elastic_gate/scene.ron");
     let swing = |formulation: &str| {
         let text = scene.replace("formulation: TotalLagrangian", &format!("formulation: {formulation}"));
-        let mut sim = simulation(&Source::new("gate.ron", text.replace("end: 0.4", "end: 0.04")));
+        let mut sim = simulation(&Source::new("gate.ron", text.replace("end: 0.16", "end: 0.04")));
         let start = positions(&sim, 1);
         sim.run(|_| true).expect("a run");
         let moved = positions(&sim, 1).into_iter().zip(start).map(|(now, start)| now - start);
