@@ -44,3 +44,22 @@ pub fn concatenate<T: Pod>(values: &mut Vec<T>) {
         *values = all;
     });
 }
+
+/// The same of rows that are exchanged as that many numbers each, where there are several ranks; in the order
+/// of `key`.
+pub fn concatenate_rows<R, const WORDS: usize>(
+    rows: &mut Vec<R>,
+    to_words: impl Fn(&R) -> [u64; WORDS],
+    of_words: impl Fn(&[u64; WORDS]) -> R,
+    key: impl Fn(&R) -> usize,
+) where
+    [u64; WORDS]: Pod,
+{
+    if group::has_several() {
+        let mut words: Vec<[u64; WORDS]> = rows.iter().map(to_words).collect();
+        concatenate(&mut words);
+        rows.clear();
+        rows.extend(words.iter().map(of_words));
+        rows.sort_unstable_by_key(key);
+    }
+}

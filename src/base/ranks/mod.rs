@@ -26,5 +26,5 @@ pub use group::{
     spoil_old_rows, traffic,
 };
 pub use halo::Halo;
-pub use join::{concatenate, join};
+pub use join::{concatenate, concatenate_rows, join};
 pub(crate) use tree::{complete, maximal_subtrees};

@@ -36,13 +36,8 @@ const WORDS: usize = 14;
 impl Repelled {
     /// Gets those of all ranks, in the order of rows.
     pub fn share(repelled: &mut Vec<Self>) {
-        if ranks::has_several() {
-            let mut words: Vec<[u64; WORDS]> = repelled.iter().map(|repelled| repelled.to_words()).collect();
-            ranks::concatenate(&mut words);
-            repelled.clear();
-            repelled.extend(words.iter().map(Self::of_words));
-            repelled.sort_unstable_by_key(|repelled| repelled.i);
-        }
+        let key = |repelled: &Self| repelled.i;
+        ranks::concatenate_rows(repelled, |repelled| repelled.to_words(), Self::of_words, key);
     }
 
     fn to_words(self) -> [u64; WORDS] {

@@ -19,13 +19,7 @@ const WORDS: usize = 10;
 impl WallEnd {
     /// Gets those of all ranks, in the order of rows.
     pub fn share(ends: &mut Vec<Self>) {
-        if ranks::has_several() {
-            let mut words: Vec<[u64; WORDS]> = ends.iter().map(|end| end.to_words()).collect();
-            ranks::concatenate(&mut words);
-            ends.clear();
-            ends.extend(words.iter().map(Self::of_words));
-            ends.sort_unstable_by_key(|end| end.i);
-        }
+        ranks::concatenate_rows(ends, |end| end.to_words(), Self::of_words, |end| end.i);
     }
 
     fn to_words(self) -> [u64; WORDS] {

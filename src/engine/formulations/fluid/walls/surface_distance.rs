@@ -28,6 +28,10 @@ const OUTSIDE: f64 = 16.0;
 /// Radii of the spheres of a worn body in the plane and in space, over its spacing.
 const SPHERES: [f64; 2] = [0.65, 0.75];
 
+/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
+/// first row are at half of it.
+const BEFORE: f64 = 0.85;
+
 /// The shape of a boundary.
 pub struct BoundaryShape {
     pub group: Group,
@@ -159,6 +163,18 @@ impl BoundaryShape {
         let slope = -(fit.unwrap_or(DMat3::ZERO) * mean);
         let shares = Shares { total, mean, slope, only: None };
         Some(PlaceInBody { at, distance: self.distance(cloud, at), map, shares })
+    }
+
+    /// Distance up to which a fluid particle is before a face, m.
+    pub fn before(&self) -> f64 {
+        BEFORE * self.spacing
+    }
+
+    /// What a face counts for before a particle at that place: one on it, zero at [`Self::before`] and
+    /// beyond, where it is none.
+    pub fn nearness(&self, place: &PlaceInBody) -> Option<f64> {
+        let limit = self.before();
+        (place.distance < limit).then(|| 1.0 - (place.distance.max(0.0) / limit).powi(2))
     }
 
     /// Beside the sphere of one particle, which is at `offset` from here.

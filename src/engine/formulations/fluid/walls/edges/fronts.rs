@@ -11,10 +11,6 @@ use crate::scene::{Probe, Quantity};
 use crate::schedule::{Step, StepError};
 use crate::world::ReferencePosition;
 
-/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
-/// first row are at half of it.
-const BEFORE: f64 = 0.85;
-
 /// The shapes of the walls.
 pub struct WallShapes {
     shapes: Vec<BoundaryShape>,
@@ -84,13 +80,12 @@ impl WallShapes {
                 if own.is_empty() || !walls.iter().any(is_other) {
                     continue;
                 }
-                let limit = BEFORE * shape.spacing;
-                if motion.is_some_and(|motion| shape.is_beyond(limit, cloud, i, &motion)) {
+                if motion.is_some_and(|motion| shape.is_beyond(shape.before(), cloud, i, &motion)) {
                     continue;
                 }
                 let place = shape.place(cloud, i, reference, motion.as_ref());
-                let Some(place) = place.filter(|place| place.distance < limit) else { continue };
-                let nearness = 1.0 - (place.distance.max(0.0) / limit).powi(2);
+                let near = place.and_then(|place| Some((shape.nearness(&place)?, place)));
+                let Some((nearness, place)) = near else { continue };
                 let share =
                     |j: &u32| place.shares.of(cloud, i, *j as usize) * cloud.records[*j as usize].velocity();
                 out.push(Front {

@@ -13,10 +13,6 @@ use crate::plugin::SimBuilder;
 use crate::schedule::{Run, Step, StepError};
 use crate::world::ReferencePosition;
 
-/// Distance from a face up to which a fluid particle is before it, over the spacing of the wall: those of the
-/// first row are at half of it.
-const BEFORE: f64 = 0.85;
-
 /// Number of places that are looked at on the way along a wall.
 const WAY: usize = 6;
 /// Distance from a wall at which such a place is clear of it, over the spacing: those of the first row are at
@@ -105,11 +101,9 @@ impl WallEnds {
             let reference = &view.read_near::<ReferencePosition>()?[shape.group.rows.clone()];
             let motion = shape.look(cloud, reference);
             let shape = &*shape;
-            let limit = BEFORE * shape.spacing;
             faces.add(|i| {
-                let place = shape.place(cloud, i, reference, motion.as_ref());
-                let place = place.filter(|place| place.distance < limit)?;
-                let nearness = 1.0 - (place.distance.max(0.0) / limit).powi(2);
+                let place = shape.place(cloud, i, reference, motion.as_ref())?;
+                let nearness = shape.nearness(&place)?;
                 let normal = shape.direction(cloud, &place).normalize_or_zero();
                 Some(nearness * shape.on_face(cloud, &place) * dyad(normal, normal))
             });
