@@ -1,9 +1,9 @@
-//! Artificial viscosity: the friction that shocks and impacts need in a scheme without any.
+//! Artificial viscosity: dissipation at shocks and impacts, which the scheme itself does not have.
 //!
 //! For pairs that approach, `mu = h v_ij.x_ij / (|x_ij|^2 + 0.01 h^2) < 0` and `f_i = V_i V_j rho_0 (alpha c
 //! mu - beta mu^2) |W'_ij| x_ij / |x_ij|`: a repulsion, linear and quadratic in the speed of approach. h is
 //! half the support radius, c the speed of longitudinal waves, or of sound in a fluid. In fluids the linear
-//! part acts on pairs that part as well (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
+//! part also acts on receding pairs (Sun et al., Comput. Methods Appl. Mech. Engrg. 315 (2017) 25-49).
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::pair::{Pair, PairTerm, Rates};

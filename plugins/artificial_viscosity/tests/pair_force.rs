@@ -1,4 +1,4 @@
-//! The force against a naive second implementation, and what every viscosity must do.
+//! The force against a naive second implementation, and the properties of every viscosity.
 
 use glam::{DVec2, DVec3};
 use meshless_engine::assembly::build;

@@ -1,5 +1,5 @@
-//! Diffusion of density (delta-SPH): takes the noise of the grid out of density and pressure, and leaves
-//! smooth fields alone.
+//! Diffusion of density (delta-SPH): removes grid-scale noise from density and pressure, and leaves smooth
+//! fields unchanged.
 //!
 //! `drho_i/dt = 2 delta h c_0 sum_j V_j w_ij [(rho_j - rho_i) - (g_i + g_j).x_ij / 2]` over the neighbours of
 //! the same body; g is the renormalised gradient of the density with `model: Antuono`, zero with `model:

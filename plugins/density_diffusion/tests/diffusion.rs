@@ -1,4 +1,4 @@
-//! The rate against a naive second implementation, linear fields, energy, and off as if it were not there.
+//! The rate against a naive second implementation, linear fields, energy; a zero coefficient changes nothing.
 
 use meshless_engine::assembly::build;
 use meshless_engine::glam::{DMat2, DVec2, DVec3};

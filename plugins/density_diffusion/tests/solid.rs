@@ -1,4 +1,4 @@
-//! Eulerian solids: the rate against a naive second implementation, and off as if it were not there.
+//! Eulerian solids: the rate against a naive second implementation; a zero coefficient changes nothing.
 
 use meshless_engine::assembly::build;
 use meshless_engine::formulations::eulerian::DilatationRate;

@@ -1,9 +1,9 @@
-//! Wear: failed particles at a surface of their body are taken out of the run, those inside stay.
+//! Wear: failed particles at a surface of their body are removed, those inside stay.
 //!
 //! The neighbours of a particle lie on one side of it where there is a surface: their mean direction, with
-//! the weights of the gradient, leads inwards. It is at the surface where no neighbour is outwards of it,
-//! within 40 degrees of the normal. A hole of single particles inside of a body is no surface: beyond it
-//! there are others.
+//! the weights of the gradient, leads inwards. A particle is at the surface if no neighbour lies outwards of
+//! it, within 40 degrees of the normal. A hole of single particles inside a body is no surface, because there
+//! are particles beyond it.
 
 use glam::DVec3;
 use meshless_engine::bytemuck;

@@ -1,12 +1,13 @@
-//! The law of a material that can fail, about any other law.
+//! The law of a material that can fail: it wraps any other law.
 //!
-//! Up to failure, the law is asked as it is, and damage 0 < D < 1 takes its share of the stress. The energy
-//! that is left is the share sigma' : sigma / sigma : sigma of the law's. What stress does in a step and is
-//! neither stored nor plastic work has been set free by damage: mean stress times the change of F, as the two
-//! kicks spend it.
+//! Up to failure, the wrapped law is evaluated unchanged, and damage 0 < D < 1 reduces its stress. The
+//! remaining energy is the share sigma' : sigma / sigma : sigma of the law's energy. The energy released by
+//! damage is the stress work of a step that is neither stored nor plastic: mean stress times the change of F,
+//! as the two kicks apply it.
 //!
-//! After failure, the law is shown the deformation at failure at the present volume: only the mean stress
-//! sigma_m(J) of what comes back is borne, P = sigma_m J F^-T. Its energy is the integral of sigma_m dJ.
+//! After failure, the law is evaluated for the deformation at failure, scaled to the present volume. The
+//! particle carries only the mean stress sigma_m(J) of the result, P = sigma_m J F^-T. Its energy is the
+//! integral of sigma_m dJ.
 
 use std::sync::Arc;
 

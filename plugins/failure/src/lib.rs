@@ -1,5 +1,5 @@
-//! Failure of solids: when a particle breaks, how fast, and what it then does. It wraps the material of a
-//! body, whichever that is.
+//! Failure of solids: the criterion, the growth of damage, and the behaviour of failed particles. It wraps
+//! any material law.
 
 mod criterion;
 mod energy;

@@ -1,4 +1,4 @@
-//! Failed particles that are taken out of the run.
+//! Removal of failed particles.
 
 use meshless_engine::removal::RemovalRule;
 use meshless_engine::schedule::{Access, Mode, Step, StepError};

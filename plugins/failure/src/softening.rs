@@ -1,4 +1,4 @@
-//! What damage leaves of the stress.
+//! The stress of a damaged particle.
 
 use glam::{DMat3, DVec3};
 use meshless_engine::linalg::{Eigen, Sym3};

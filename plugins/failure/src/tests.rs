@@ -1,4 +1,4 @@
-//! One particle on its way to failure and beyond: growth of damage, what it bears, where its energy goes.
+//! One particle before, at and after failure: growth of damage, stress, and energy balance.
 
 use glam::DMat3;
 use meshless_engine::materials::{

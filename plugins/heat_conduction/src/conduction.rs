@@ -1,13 +1,13 @@
-//! Heat from particle to particle, as much to the one as from the other.
+//! Heat flux between pairs of particles, antisymmetric, so that heat is conserved.
 //!
 //! `m_i c dT_i/dt = sum_j 2 k V_i V_j w_ij g_ij (T_j - T_i)`, with present volumes and pair vectors. g_ij is
-//! 1 inside of an undeformed body, where `M = sum_j V_j w_ij x_ij (x) x_ij` is the identity. Else the
-//! neighbourhood is taken for the affine image of a round one, in d dimensions:
+//! 1 inside of an undeformed body, where `M = sum_j V_j w_ij x_ij (x) x_ij` is the identity. Otherwise the
+//! neighbourhood is treated as the affine image of an isotropic one, in d dimensions:
 //!
 //! `g_i = 1/2 [(d + 2) (x . M_i^-2 x) / (x . M_i^-1 x) - tr M_i^-1]`, `g_ij = max((g_i + g_j) / 2, 0)`,
 //!
-//! which is exact for quadratic temperatures where that is so, and about makes up for the half neighbourhoods
-//! along surfaces. Heat never flows from cold to hot.
+//! which is exact for quadratic temperatures in that case, and approximately compensates the truncated
+//! neighbourhoods along surfaces. Heat never flows from cold to hot.
 
 use meshless_engine::bytemuck;
 use meshless_engine::correction::MomentMatrix;

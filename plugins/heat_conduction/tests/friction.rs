@@ -1,5 +1,5 @@
-//! Two strips without ends that rub on each other are warmed as half-spaces with a constant flux through
-//! their surface.
+//! Two endless strips that rub on each other heat up like half-spaces with a constant flux through their
+//! surface.
 
 use std::f64::consts::PI;
 

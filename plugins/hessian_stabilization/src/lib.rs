@@ -1,8 +1,9 @@
 //! Stabilization of solids by differences of second derivatives.
 //!
-//! Motions that leave the mean deformation gradient as it is meet no resistance from stress. A second
-//! derivative of the positions sees them, and the gradient of the gradient does not: their difference is
-//! resisted. The engine computes it ([`HessianDifference`]), with the neighbours of the formulation.
+//! Motions that do not change the averaged deformation gradient cause no stress. They change a second
+//! derivative of the positions, but not the gradient of the gradient. The stabilization resists the
+//! difference of the two. The engine computes it ([`HessianDifference`]), with the neighbours of the
+//! formulation.
 
 use meshless_engine::materials::ParameterError;
 use meshless_engine::plugin::{Offer, Plugin, Registry, SetupError, SimBuilder};

@@ -1,5 +1,5 @@
-//! What holds exactly: affine maps, force as the gradient of the energy, momentum and angular momentum, in
-//! both Lagrangian formulations, and after updates.
+//! Exact properties: affine maps, force as the gradient of the energy, momentum and angular momentum, in both
+//! Lagrangian formulations, and after updates.
 
 use std::error::Error;
 

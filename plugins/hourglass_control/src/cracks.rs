@@ -1,8 +1,8 @@
 //! Pair forms of the control in bodies that can fail.
 //!
-//! A bond with a failed particle at either end carries no hourglass force: its error is how far the sides of
-//! a crack are apart. Nor is such an error part of the deformation gradient that other bonds are compared
-//! with. The variational form needs nothing of this, as bond terms do not act across cracks.
+//! A bond with a failed particle at either end carries no hourglass force: its residual is the opening of a
+//! crack. The deformation gradient with which other bonds are compared leaves such bonds out too. The
+//! variational form needs no such treatment, because bond terms do not act across cracks.
 
 use glam::DMat3;
 use meshless_engine::pair::{Pair, PairTerm, Rates};

@@ -1,5 +1,5 @@
-//! The control of bodies whose weights are those of the present places: pair terms, which leave out what has
-//! failed.
+//! The control of bodies whose weights belong to the current configuration: pair terms, which leave out
+//! failed particles.
 
 use meshless_engine::plugin::{SetupError, SimBuilder};
 use meshless_engine::solids::{FoldedTerm, FoldedTermOfBodies, PairControl};

@@ -1,8 +1,8 @@
-//! The form of the paper: the error along the current bond (Ganzenmueller 2015, eqs. 31-32).
+//! The form of the paper: the residual along the current bond (Ganzenmueller 2015, eqs. 31-32).
 //!
 //! `f_i = -sum_j (alpha/2) V_i V_j W_ij / |X_ij|^2 [E_i e_ij^i . x_ij + E_j e_ij^j . x_ij] x_ij / |x_ij|^2`
-//! with `e_ij^i = F_i X_ij - x_ij`. Eq. 31 has W_ij and eq. 32 multiplies with it again; it belongs there
-//! once. The force is not the gradient of an energy: its work is booked as dissipated, and may be negative.
+//! with `e_ij^i = F_i X_ij - x_ij`. W_ij occurs in eq. 31 and again as a factor in eq. 32; once is correct.
+//! The force is not the gradient of an energy: its work is booked as dissipated, and may be negative.
 
 use std::marker::PhantomData;
 

@@ -1,8 +1,8 @@
 //! Hourglass control of solids.
 //!
-//! The deformation gradient of a particle is a mean over its neighbourhood; motions that leave the mean as it
-//! is, the zero-energy or hourglass modes, meet no resistance from stress. The control resists the error of
-//! the mean, `e_ij = F_i X_ij - x_ij`.
+//! The deformation gradient of a particle is a mean over its neighbourhood; motions that do not change the
+//! mean, the zero-energy or hourglass modes, cause no stress. The control resists the hourglass residual,
+//! `e_ij = F_i X_ij - x_ij`.
 
 mod cracks;
 mod eulerian;

@@ -1,4 +1,4 @@
-//! The modulus that the control resists with.
+//! The modulus in the stiffness of the control.
 
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};
 use schemars::JsonSchema;

@@ -1,11 +1,11 @@
-//! The stiffness form, of bodies whose weights are those of the present places (Mohseni-Mofidi and Bierwisch
-//! 2020, eq. 32).
+//! The stiffness form, for bodies whose weights belong to the current configuration (Mohseni-Mofidi and
+//! Bierwisch 2020, eq. 32).
 //!
-//! `f_i = -xi sum_j V_i V_j (E_i + E_j)/2 W_ij / |X_ij|^2 (e_ij . x_ij) x_ij / |x_ij|^2` with the error of
-//! the mean deformation since the start, `e_ij = (F_i + F_j)/2 X_ij - x_ij`: attraction where a pair is too
-//! long. Printed, the sign is that of pair vectors from i to j, and E is Young's modulus in plastic flow,
-//! too. The force is along the bond, so that momentum and angular momentum are kept; it has no energy, and
-//! its work is booked.
+//! `f_i = -xi sum_j V_i V_j (E_i + E_j)/2 W_ij / |X_ij|^2 (e_ij . x_ij) x_ij / |x_ij|^2` with the hourglass
+//! residual since the start, `e_ij = (F_i + F_j)/2 X_ij - x_ij`: attraction where a pair is too long. In the
+//! paper the sign is that for pair vectors from i to j, and E is Young's modulus in plastic flow too. The
+//! force is along the bond, so that momentum and angular momentum are conserved; it has no energy, and its
+//! work is booked.
 
 use meshless_engine::pair::{Pair, PairTerm, Rates};
 use meshless_engine::parallel::{Arithmetic, Matrix, Number};

@@ -1,13 +1,13 @@
 //! The variational form: the exact gradient of an energy.
 //!
-//! `U = sum_i (alpha/12) E_i V_i sum_j V_j w_ij |F_i X_ij - x_ij|^2`. F_i is the fit that makes the inner sum
-//! least, so its change does not contribute to dU/dx, and the force is `f_i = -(alpha/6) V_i sum_j V_j w_ij
-//! [E_i (F_i X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors. With F_i X_ij - x_ij = H_i
-//! X_ij - u_ij it folds into the corrected stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness, k_i +=
-//! (alpha/6) E_i.
+//! `U = sum_i (alpha/12) E_i V_i sum_j V_j w_ij |F_i X_ij - x_ij|^2`. F_i minimizes the inner sum, so that
+//! its change does not contribute to dU/dx, and the force is `f_i = -(alpha/6) V_i sum_j V_j w_ij [E_i (F_i
+//! X_ij - x_ij) + E_j (F_j X_ij - x_ij)]`: linear in the pair vectors. With F_i X_ij - x_ij = H_i X_ij - u_ij
+//! it folds into the corrected stress, A_i -= (alpha/6) E_i H_i, and the bond stiffness, k_i += (alpha/6)
+//! E_i.
 //!
-//! Where E_i falls, because the particle has yielded or is damaged, the energy falls with it and no force has
-//! worked for that: it is booked as released.
+//! Where E_i falls, because the particle has yielded or is damaged, the energy falls without the work of a
+//! force: the difference is booked as released.
 
 use meshless_engine::parallel::{FourLanes, HotLoop, run_hot};
 use meshless_engine::solids::{FoldedEnergy, FoldedRows, FoldedTerm};

@@ -1,11 +1,11 @@
-//! The viscous form: a pair force against the growth of the error (Mohseni-Mofidi and Bierwisch 2020, eq.
-//! 33).
+//! The viscous form: a pair force against the growth of the hourglass residual (Mohseni-Mofidi and Bierwisch
+//! 2020, eq. 33).
 //!
 //! `f_i = zeta rho_0 sum_j V_i V_j (|e_ij| / |X_ij|) c h (v_ij . x_ij) / |x_ij|^2 |W'_ij| x_ij / |x_ij|`
-//! where the error `e_ij = (F_i + F_j)/2 X_ij - x_ij` grows, (v_ij . x_ij)(e_ij . x_ij) < 0. Printed, the
-//! equation lacks the density, its gradient of the kernel is a vector, and its sign is that of pair vectors
-//! from i to j. The force is along the bond and against the relative motion: momentum and angular momentum
-//! are kept, energy is only ever taken out.
+//! where the residual `e_ij = (F_i + F_j)/2 X_ij - x_ij` grows, (v_ij . x_ij)(e_ij . x_ij) < 0. In the paper
+//! the equation lacks the density, the gradient of the kernel is a vector, and the sign is that for pair
+//! vectors from i to j. The force is along the bond and against the relative motion: momentum and angular
+//! momentum are conserved, and the force only dissipates energy.
 
 use std::marker::PhantomData;
 

@@ -1,4 +1,4 @@
-//! What holds exactly with the control, in both Lagrangian formulations: affine maps, force as the slope of
+//! Exact properties with the control, in both Lagrangian formulations: affine maps, force as the gradient of
 //! the energy, conservation.
 
 use std::error::Error;

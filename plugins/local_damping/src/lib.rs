@@ -1,4 +1,4 @@
-//! Damping of the motion of each particle by itself: v decays, whatever the neighbours do.
+//! Damping of the absolute velocity of each particle, independent of its neighbours.
 //!
 //! With a constant rate, or as dynamic relaxation: the rate follows the slowest oscillation that is left,
 //! until the bodies are at rest.

@@ -1,10 +1,10 @@
 //! Dynamic relaxation: damping that follows the slowest oscillation that is left, until rest.
 //!
 //! The Rayleigh quotient of the last displacement, omega^2 = -dx.df / (m dx.dx), is a mean of the squared
-//! frequencies in the motion, weighted by their share. Damping at 2 omega takes out the fast ones first; what
-//! is left is slower, and the rate falls with it until the slowest is critically damped. Against stopping the
-//! motion at each peak of kinetic energy it needs no detection of peaks, which fast oscillations set off too
-//! early.
+//! frequencies in the motion, weighted by their share. Damping at 2 omega removes the fast modes first; the
+//! remaining motion is slower, and the rate falls with it until the slowest mode is critically damped.
+//! Compared with stopping the motion at each peak of kinetic energy, it needs no detection of peaks, which
+//! fast oscillations trigger too early.
 
 use meshless_engine::schedule::{AccountKind, Run, Step, StepError};
 use meshless_engine::world::BodySet;

@@ -1,8 +1,8 @@
-//! Particle shifting: moves fluid particles a little from where they are crowded to where there is room.
+//! Particle shifting: small displacements of fluid particles from crowded to sparse places.
 //!
-//! Two passes over neighbours: `local` measures how the particles of a neighbourhood lie and move, from which
-//! `displacement` makes the displacement of each particle, and `response` computes how velocity and density
-//! respond. The README has the equations and the variants that were tried.
+//! Two passes over neighbours: `local` measures the arrangement and the motion of a neighbourhood;
+//! `displacement` computes the displacement of each particle from it, and `response` the changes of velocity
+//! and density. The README has the equations and the variants that were tried.
 
 mod displacement;
 mod local;

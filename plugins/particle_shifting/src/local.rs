@@ -1,4 +1,4 @@
-//! How the particles of a neighbourhood lie, and how fast they are sheared.
+//! The arrangement of the particles of a neighbourhood, and its shear rate.
 
 use std::ops::Range;
 

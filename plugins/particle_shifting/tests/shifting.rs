@@ -1,4 +1,4 @@
-//! Even particles stay, uneven ones become even, off is as if it were not there.
+//! Evenly spread particles stay, uneven ones become even, and a strength of zero changes nothing.
 
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;

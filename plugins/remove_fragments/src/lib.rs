@@ -1,9 +1,8 @@
-//! Takes debris of solids out of the run: particles that are crushed, and pieces too small to have an
-//! interior.
+//! Removes debris of solids: crushed particles, and pieces too small to have an interior.
 //!
-//! What the law of a body cannot bear squeezes its particles to nothing, until they turn inside out and the
-//! run ends. What is left of a body that has failed may be single particles, whose deformation gradient is
-//! fitted to one or two neighbours and means nothing. Neither is a solid that the spacing resolves.
+//! A load beyond the capacity of a material law compresses its particles until they invert and the run ends.
+//! A failed body may leave single particles, whose deformation gradient is fitted to one or two neighbours
+//! and has no meaning. The spacing resolves neither.
 
 mod debris;
 

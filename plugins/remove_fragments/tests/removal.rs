@@ -1,4 +1,4 @@
-//! Debris is taken out, and the books close.
+//! Debris is removed, and the energy balance closes.
 
 use meshless_engine::assembly::build;
 use meshless_engine::plugin::Registry;

@@ -1,10 +1,10 @@
-//! Tensile control (delta-plus-SPH): where the pressure is negative inside a fluid, particles neither pair
-//! nor tear.
+//! Tensile control (delta-plus-SPH): it prevents pairing and voids where the pressure is negative inside a
+//! fluid.
 //!
 //! For p_i < 0 away from a free surface `p_i + p_j` of the pressure force becomes `p_j - p_i`: the force is
-//! less `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. What it takes has no
-//! energy and no opposite: momentum is kept no better than particles are evenly spread, and all of it is
-//! scaled down where it would give more energy than it has taken.
+//! reduced by `-2 p_i V_i sum_j V_j w_ij x_ij`, which is zero for evenly spread particles. This term has no
+//! energy and no opposite force: momentum is conserved only as far as particles are evenly spread, and the
+//! whole term is scaled down where it would supply more energy than it has dissipated.
 
 use meshless_engine::correction::MomentMatrix;
 use meshless_engine::formulations::fluid::{

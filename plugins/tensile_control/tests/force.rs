@@ -1,5 +1,5 @@
-//! Even particles feel nothing; the force of uneven ones against a naive second implementation; no energy
-//! from it.
+//! No force on evenly spread particles; the force on uneven ones against a naive second implementation; no
+//! energy gain.
 
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;

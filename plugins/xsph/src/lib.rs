@@ -1,7 +1,7 @@
 //! XSPH: fluid particles move with a velocity between their own and the mean around them.
 //!
 //! `dx_i/dt = v_i + epsilon sum_j V_j W_ij v_ij` over the neighbours of the same body. Velocities and forces
-//! stay what they are.
+//! do not change.
 
 use std::ops::Range;
 

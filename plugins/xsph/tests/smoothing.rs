@@ -1,4 +1,4 @@
-//! The displacement against a naive second implementation, and off as if it were not there.
+//! The displacement against a naive second implementation; a zero coefficient changes nothing.
 
 #[path = "../../../tests/common/periodic_flow.rs"]
 mod periodic_flow;

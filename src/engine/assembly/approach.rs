@@ -1,5 +1,5 @@
-//! How fast the faces of two bodies come towards each other when they touch: by what they start with, by what
-//! drives them, and by gravity.
+//! Closing speed of the faces of two bodies at first contact: from initial velocities, prescribed motion, and
+//! gravity.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,7 @@
-//! Clamps of bodies whose kernels live in the current configuration: they must be as thick as the support
-//! radius.
+//! Clamps of Eulerian bodies must be as thick as the support radius.
 //!
 //! The support of a particle in front of a thinner clamp reaches into the empty space behind it, as at a free
-//! surface: the clamp holds up to half a spacing from where it is said to end. Deflections, forces and
+//! surface: the clamp acts up to half a spacing from its stated edge. Deflections, forces and
 //! plastic strains differ by up to 4 % from those of a thick one.
 
 use crate::neighbors::{Cloud, NeighborList, NeighborSearch, Periodic};

@@ -1,5 +1,5 @@
-//! Metal whose side a condition holds or drives along its normal alone, where its stress is not in balance:
-//! some layers yield first.
+//! Warning of metal beside a side held or driven along its normal alone, where a uniform stress is not in
+//! equilibrium: some layers yield first.
 
 use std::collections::BTreeMap;
 

@@ -1,8 +1,8 @@
 //! Bodies that hit each other face to face and stay elastic, without artificial viscosity.
 //!
 //! The whole face touches within one step, so that the front behind it is as steep as the lattice allows,
-//! however slow the impact: the velocities of particles oscillate behind it and overshoot by a fifth, with
-//! nothing that takes this energy. Round bodies touch little by little, and plastic flow takes the
+//! however slow the impact: the velocities of particles oscillate behind it and overshoot by a fifth, and
+//! nothing dissipates this energy. The contact of round bodies grows gradually, and plastic flow damps the
 //! oscillations of harder impacts.
 
 use glam::DVec3;

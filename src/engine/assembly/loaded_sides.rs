@@ -1,9 +1,9 @@
 //! Loads on a `face` beside a side that is held along its normal alone. Loads by `surface` are warned of
 //! where they are added, and contact where it reaches such a side.
 //!
-//! The particles of such a side stand on it, and the load of their cells acts at arms of half a spacing.
-//! These bend the layers beside the edge as long as nothing takes the moment, which the other half of the
-//! body does behind a symmetry plane.
+//! The particles of such a side lie on it, and the load of their cells acts at lever arms of half a spacing.
+//! The moment bends the layers beside the edge, because nothing balances it; behind a symmetry plane the
+//! other half of the body does.
 
 use crate::boundaries::{PressureLoad, Traction};
 use crate::plugin::{BodyKind, Plugin, SimBuilder};

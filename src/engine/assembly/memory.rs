@@ -1,4 +1,4 @@
-//! The memory that is left for particles.
+//! The memory available for particles.
 
 use std::fs::read_to_string;
 

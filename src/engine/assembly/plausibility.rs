@@ -1,4 +1,4 @@
-//! Values that are allowed but most likely a slip of units.
+//! Values that are allowed but most likely wrong units.
 
 use crate::boundaries::LARGEST_MACH;
 use crate::materials::Law;

@@ -1,11 +1,11 @@
-//! Particles held by a side of a body stand on that side.
+//! Held particles of a `face` are moved onto that side of the body.
 //!
 //! The outermost layer of a lattice is half a spacing inside, which would shorten the body by that much. It
 //! is moved onto the side with its mass and volume: the next layer is then one and a half spacings away, and
 //! the cells of both fill the body between them. Particles keep their lattice where the side is not a plane,
 //! beside symmetry planes and periodic sides, and in scenes with fluids, for which the particles of a body
-//! are its surface. Formulations let the particles beside a side that is held along its normal alone carry
-//! what a uniform stress needs to be in balance.
+//! are its surface. Beside a side that is held along its normal alone, the formulations give the particles
+//! shares of their stress for which a uniform stress is in equilibrium.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! Loads on fluids, as the walls beside them need them: the pressure in a wall rises along every acceleration
-//! that acts on the fluid.
+//! Loads on fluids for the pressure of walls, which increases along every acceleration that acts on the
+//! fluid.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The displacement that particles start with.
+//! Initial displacement of particles.
 
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,4 +1,4 @@
-//! The velocity that particles start with.
+//! Initial velocity of particles.
 
 use std::collections::BTreeMap;
 

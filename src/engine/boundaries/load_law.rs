@@ -1,4 +1,4 @@
-//! What gives the force on every particle that a load acts on.
+//! The force of a load on each of its particles.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Where loads act on rigid bodies: on the surface, of which their particles stand half a spacing inside.
+//! Loads on rigid bodies act on the surface; the particles lie half a spacing inside.
 
 use glam::DVec3;
 

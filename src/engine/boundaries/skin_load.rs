@@ -2,9 +2,10 @@
 //!
 //! The work of a step is the mean of the forces at its two ends times the displacement of the vertices.
 //!
-//! Bodies that can fail are loaded so until a first particle that carries the loaded `face` fails, and on the
-//! selected particles from that step on ([`OnceBroken`](super::broken_skin::OnceBroken)). No particles stand
-//! for another part of the `surface`: of this the facets are left out whose particles have failed.
+//! On bodies that can fail, loads on a `face` act so until the first particle that carries it fails, and from
+//! that step on they act on the selected particles ([`OnceBroken`](super::broken_skin::OnceBroken)). Loads on
+//! another part of the `surface` have no such particles: they leave out the facets whose particles have
+//! failed.
 
 use std::sync::Arc;
 
